@@ -52,6 +52,18 @@ class PrintCommandTest : public CommandTest {
   std::string WriteCamera() const { return folder_.Write("camera.yaml", kCamera); }
 };
 
+TEST_F(PrintCommandTest, EveryPadIsPrinted) {
+  folder_.Write("board.yaml", "tags:\n  - {family: tag36h11, id: 3, size_m: 0.1}\n");
+  const std::string board = " --set landing.target.nested.board=" + folder_ / "board.yaml";
+  for (const std::string kind : {"apriltag", "aruco", "nested", "ring-with-tags", "helipad"}) {
+    const std::string pdf = folder_ / (kind + ".pdf");
+    Succeed("print --target " + kind + board + " --output " + pdf);
+    EXPECT_GT(std::filesystem::file_size(pdf), 1000) << kind;
+  }
+  ExpectInputError("print --target helipat --output " + folder_ / "x.pdf",
+                   "did you mean 'helipad'?");
+}
+
 TEST_F(PrintCommandTest, WhatIsPrintedIsDetectedAndRight) {
   ASSERT_EQ(std::system("command -v pdftoppm >/dev/null"), 0)
       << "pdftoppm is not there: scripts/install-deps";

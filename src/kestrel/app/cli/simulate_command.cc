@@ -76,7 +76,7 @@ template <class Options>
 std::shared_ptr<SimulateArguments> AddKind(CLI::App* command, const char* name, const char* meaning,
                                            const Kind<Options>& kind) {
   CLI::App* subcommand = command->add_subcommand(name, meaning);
-  const auto arguments = std::make_shared<SimulateArguments>();
+  auto arguments = std::make_shared<SimulateArguments>();
   const auto threads = std::make_shared<int>(0);
   arguments->AddTo(subcommand);
   subcommand

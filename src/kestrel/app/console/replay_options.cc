@@ -5,6 +5,7 @@
 #include <span>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <variant>
 
 #include <fmt/format.h>
@@ -131,7 +132,7 @@ ConsoleOptionList ReplayOptions(const HuntPipelineOptions& options) { return Lis
 
 LandingPipelineOptions WithSettings(LandingPipelineOptions options,
                                     const std::vector<std::string>& settings) {
-  return Changed(options, settings);
+  return Changed(std::move(options), settings);
 }
 
 HuntPipelineOptions WithSettings(HuntPipelineOptions options,

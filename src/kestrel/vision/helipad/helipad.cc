@@ -22,7 +22,7 @@ constexpr int kPiecesAround = 96;
 Polyline ClosedLine(const std::vector<Vector2d>& corners) {
   Polyline line;
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Vector2d from = corners[i];
+    const Vector2d& from = corners[i];
     const Vector2d side = corners[(i + 1) % corners.size()] - from;
     for (int k = 0; k <= kPiecesPerSide; ++k) {
       const Vector2d point = from + side * k / kPiecesPerSide;

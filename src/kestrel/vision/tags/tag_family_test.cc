@@ -137,26 +137,26 @@ TEST_P(ArucoFamilyTest, EveryIdIsReadByOpenCvUpright) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Families, ArucoFamilyTest,
-    testing::Values(ArucoCase{"aruco_4x4_50", cv::aruco::DICT_4X4_50},
-                    ArucoCase{"aruco_4x4_100", cv::aruco::DICT_4X4_100},
-                    ArucoCase{"aruco_4x4_250", cv::aruco::DICT_4X4_250},
-                    ArucoCase{"aruco_4x4_1000", cv::aruco::DICT_4X4_1000},
-                    ArucoCase{"aruco_5x5_50", cv::aruco::DICT_5X5_50},
-                    ArucoCase{"aruco_5x5_100", cv::aruco::DICT_5X5_100},
-                    ArucoCase{"aruco_5x5_250", cv::aruco::DICT_5X5_250},
-                    ArucoCase{"aruco_5x5_1000", cv::aruco::DICT_5X5_1000},
-                    ArucoCase{"aruco_6x6_50", cv::aruco::DICT_6X6_50},
-                    ArucoCase{"aruco_6x6_100", cv::aruco::DICT_6X6_100},
-                    ArucoCase{"aruco_6x6_250", cv::aruco::DICT_6X6_250},
-                    ArucoCase{"aruco_6x6_1000", cv::aruco::DICT_6X6_1000},
-                    ArucoCase{"aruco_7x7_50", cv::aruco::DICT_7X7_50},
-                    ArucoCase{"aruco_7x7_100", cv::aruco::DICT_7X7_100},
-                    ArucoCase{"aruco_7x7_250", cv::aruco::DICT_7X7_250},
-                    ArucoCase{"aruco_7x7_1000", cv::aruco::DICT_7X7_1000},
-                    ArucoCase{"aruco_original", cv::aruco::DICT_ARUCO_ORIGINAL}),
-    [](const auto& test) { return std::string(test.param.name); });
+INSTANTIATE_TEST_SUITE_P(Families, ArucoFamilyTest,
+                         testing::Values(ArucoCase{"aruco_4x4_50", cv::aruco::DICT_4X4_50},
+                                         ArucoCase{"aruco_4x4_100", cv::aruco::DICT_4X4_100},
+                                         ArucoCase{"aruco_4x4_250", cv::aruco::DICT_4X4_250},
+                                         ArucoCase{"aruco_4x4_1000", cv::aruco::DICT_4X4_1000},
+                                         ArucoCase{"aruco_5x5_50", cv::aruco::DICT_5X5_50},
+                                         ArucoCase{"aruco_5x5_100", cv::aruco::DICT_5X5_100},
+                                         ArucoCase{"aruco_5x5_250", cv::aruco::DICT_5X5_250},
+                                         ArucoCase{"aruco_5x5_1000", cv::aruco::DICT_5X5_1000},
+                                         ArucoCase{"aruco_6x6_50", cv::aruco::DICT_6X6_50},
+                                         ArucoCase{"aruco_6x6_100", cv::aruco::DICT_6X6_100},
+                                         ArucoCase{"aruco_6x6_250", cv::aruco::DICT_6X6_250},
+                                         ArucoCase{"aruco_6x6_1000", cv::aruco::DICT_6X6_1000},
+                                         ArucoCase{"aruco_7x7_50", cv::aruco::DICT_7X7_50},
+                                         ArucoCase{"aruco_7x7_100", cv::aruco::DICT_7X7_100},
+                                         ArucoCase{"aruco_7x7_250", cv::aruco::DICT_7X7_250},
+                                         ArucoCase{"aruco_7x7_1000", cv::aruco::DICT_7X7_1000},
+                                         ArucoCase{"aruco_original",
+                                                   cv::aruco::DICT_ARUCO_ORIGINAL}),
+                         [](const auto& test) { return std::string(test.param.name); });
 
 TEST(TagFamilyTest, EveryFamilyHasItsBorders) {
   for (const std::string& name : TagFamily::Names()) {

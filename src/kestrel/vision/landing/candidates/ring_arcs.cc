@@ -266,16 +266,16 @@ class ArcGrouper {
     const Eigen::Vector3d wide = solver.eigenvectors().col(1) / std::sqrt(solver.eigenvalues()(1));
     const Eigen::Vector3d narrow =
         solver.eigenvectors().col(2) / std::sqrt(solver.eigenvalues()(2));
-    constexpr int kBins = std::numeric_limits<std::uint32_t>::digits;
+    constexpr int kDirectionBins = std::numeric_limits<std::uint32_t>::digits;
     std::uint32_t bins = 0;
     for (const Eigen::Vector3d& ray : workspace_.selected) {
       // Dividing by the half axes (1 / sqrt of the eigenvalues) makes the ellipse a circle.
       const double x = ray.dot(wide) / wide.squaredNorm();
       const double y = ray.dot(narrow) / narrow.squaredNorm();
       const double turn = std::atan2(y, x) / (2 * std::numbers::pi) + 0.5;
-      bins |= std::uint32_t{1} << (static_cast<int>(turn * kBins) % kBins);
+      bins |= std::uint32_t{1} << (static_cast<int>(turn * kDirectionBins) % kDirectionBins);
     }
-    return static_cast<double>(std::popcount(bins)) / kBins;
+    return static_cast<double>(std::popcount(bins)) / kDirectionBins;
   }
 
   double tolerance_;
