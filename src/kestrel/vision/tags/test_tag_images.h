@@ -51,10 +51,12 @@ class TagRenderer {
         const bool near = place && place->lpNorm<Eigen::Infinity>() < 1.2 * plate + 0.05;
         const int samples = near ? 5 : 1;
         double sum = 0;
-        for (int k = 0; k < samples * samples; ++k) {
-          const double du = (k % samples + 0.5) / samples - 0.5;
-          const double dv = (k / samples + 0.5) / samples - 0.5;
-          sum += GrayAt(tags, plate, OnPlane(board_from_camera, u + du, v + dv), options, seed);
+        for (int row = 0; row < samples; ++row) {
+          for (int column = 0; column < samples; ++column) {
+            const double du = (column + 0.5) / samples - 0.5;
+            const double dv = (row + 0.5) / samples - 0.5;
+            sum += GrayAt(tags, plate, OnPlane(board_from_camera, u + du, v + dv), options, seed);
+          }
         }
         image.at<float>(v, u) = static_cast<float>(sum / (samples * samples));
       }
