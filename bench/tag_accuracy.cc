@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What TagBoardDetector finds on rendered images, by altitude, in one table with libapriltag and
+// Detections of TagBoardDetector on rendered images, by altitude, in one table with libapriltag and
 // OpenCV's ArUco on the raw image and on an undistorted one. Times are processor times of one
 // thread and include the undistortion.
 #include <algorithm>
@@ -41,7 +41,7 @@ constexpr double kWrongPx = 10;  // corners farther off than this are a false de
 using Corners =
     std::array<Eigen::Vector2d, 4>;  // of the tag's square, clockwise from the upper left
 
-// What a finder tells of one image: the corners of the tag, in the image that it looked at.
+// Result of a finder on one image: the corners of the tag, in the image that it looked at.
 struct Found {
   std::optional<Corners> corners;
   bool wrong_id = false;

@@ -59,16 +59,20 @@ LandingReport HelipadDetector::Detect(const cv::Mat& image, const LandingHint& h
     report.reason = "the image is not CV_8UC1 of the camera's size";
     return report;
   }
-  const HelipadSearchModels models{camera, impl_->pad, impl_->options, impl_->finder,
-                                   impl_->alignment};
+  constexpr double kPartFactor = 1.5, kPartMarginPx = 12;
+  const HelipadSearchModels models{{camera, impl_->alignment, impl_->pad.edges.radius_m,
+                                    impl_->options.level_sigma_deg, kPartFactor, kPartMarginPx},
+                                   impl_->pad,
+                                   impl_->finder,
+                                   impl_->options.min_quality};
   auto& buffers = dynamic_cast<HelipadWorkspace&>(workspace).buffers;
   return HelipadSearch(models, image, hint, &buffers).Run();
 }
 
 std::unique_ptr<TargetWorkspace> HelipadDetector::MakeWorkspace() const {
   auto workspace = std::make_unique<HelipadWorkspace>();
-  workspace->buffers.samples.Reserve(impl_->pad.samples.size());
-  workspace->buffers.alignment.Reserve(impl_->pad.edges);
+  workspace->buffers.board.samples.Reserve(impl_->pad.samples.size());
+  workspace->buffers.board.alignment.Reserve(impl_->pad.edges);
   return workspace;
 }
 

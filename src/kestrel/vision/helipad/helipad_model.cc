@@ -8,6 +8,8 @@
 
 #include <Eigen/LU>
 
+#include "kestrel/vision/tags/board_samples.h"
+
 namespace kestrel {
 namespace {
 
@@ -165,6 +167,7 @@ FigureMoments MomentsOf(std::span<const Vector2d> corners) {
 
 HelipadModel::HelipadModel(const Helipad& helipad)
     : white(helipad.white), samples(MakeSamples(helipad)), moments(MomentsOf(CornersOf(helipad))) {
+  for (const HelipadSample& sample : samples) places.push_back(sample.place);
   edges.tags.push_back(ModelOfH(helipad));
   if (helipad.frame != "none") edges.tags.push_back(ModelOfFrame(helipad));
   for (const TagModel& part : edges.tags) edges.most_edges += part.edges.size();
@@ -208,21 +211,9 @@ HelipadAgreement HelipadModel::Compare(std::span<const float> gray) const {
   return agreement;
 }
 
-double HelipadModel::Likeness(std::span<const float> gray) const {
-  double sum[2] = {0, 0}, squares = 0;
-  int count[2] = {0, 0};
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (gray[i] < 0) continue;
-    const bool bright = samples[i].ink == white;
-    sum[bright] += gray[i];
-    squares += gray[i] * gray[i];
-    ++count[bright];
-  }
-  if (count[0] < 4 || count[1] < 4) return -1;
-  const int all = count[0] + count[1];
-  const double mean = (sum[0] + sum[1]) / all;
-  const double spread = std::sqrt(std::max(1.0, squares / all - mean * mean));
-  return (sum[1] / count[1] - sum[0] / count[0]) / spread;
+double HelipadModel::LikenessOf(std::span<const float> gray) const {
+  return Likeness(gray,
+                  [this](std::size_t i) { return static_cast<int>(samples[i].ink == white); });
 }
 
 }  // namespace kestrel

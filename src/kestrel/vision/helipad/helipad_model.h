@@ -36,7 +36,7 @@ struct FigureMoments {
 };
 FigureMoments MomentsOf(std::span<const Eigen::Vector2d> corners);
 
-// How gray values of the samples agree with the H.
+// Agreement of the gray values of the samples with the H.
 struct HelipadAgreement {
   double evidence = 0;     // natural logarithm of how much likelier the H is than chance
   double worst_share = 1;  // of the samples of a part, those that agree, in the worst part
@@ -52,14 +52,14 @@ struct HelipadModel {
   // against the ink and the ground around it, so that the edge of a shadow does not matter.
   HelipadAgreement Compare(std::span<const float> gray) const;
 
-  // Mean of the ink minus mean of the ground, over the spread of all: how much gray values look
-  // like the H; negative when there are few.
-  double Likeness(std::span<const float> gray) const;
+  // Returns how much gray values of all samples look like the H, see Likeness.
+  double LikenessOf(std::span<const float> gray) const;
 
   bool white = true;  // the ink
   BoardModel edges;   // its first tag is the H, its second one the frame where there is one
   std::vector<HelipadSample> samples;
-  FigureMoments moments;  // of the H
+  std::vector<Eigen::Vector2d> places;  // of the samples
+  FigureMoments moments;                // of the H
 };
 
 }  // namespace kestrel

@@ -20,7 +20,7 @@
 
 namespace kestrel {
 
-// How an image of a pad is taken.
+// Conditions under which an image of a pad is taken.
 struct PadImageOptions {
   double blur_px = 0.6;  // sigma of the lens
   double motion_px = 0;  // length of the blur by motion, along the rows

@@ -15,7 +15,7 @@
 
 namespace kestrel {
 
-// What is known of the board's tilt: its face looks up.
+// Knowledge of the board's tilt: its face looks up.
 struct LevelPrior {
   std::optional<Eigen::Vector3d> up_in_camera;
   double sigma = 0.05;  // rad

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -47,7 +49,29 @@ class BoardSamples {
 double CellPx(const CameraModel& camera, const RigidTransform& camera_from_board,
               const TagModel& tag);
 
-// How well gray values of a tag's cells agree with its bits.
+// Returns the mean of the bright samples minus that of the dark ones, over the spread of all: how
+// much gray values, negative where out of view, look like a print. 'color' of a sample's index: 1
+// bright, 0 dark, -1 neither. Negative when few are in view.
+template <class Color>
+double Likeness(std::span<const float> gray, const Color& color) {
+  constexpr int kFewest = 4;
+  double sum[2] = {0, 0}, squares = 0;
+  int count[2] = {0, 0};
+  for (std::size_t i = 0; i < gray.size(); ++i) {
+    const int here = color(i);
+    if (here < 0 || gray[i] < 0) continue;
+    sum[here] += gray[i];
+    squares += gray[i] * gray[i];
+    ++count[here];
+  }
+  if (count[0] < kFewest || count[1] < kFewest) return -1;
+  const int all = count[0] + count[1];
+  const double mean = (sum[0] + sum[1]) / all;
+  const double spread = std::sqrt(std::max(1.0, squares / all - mean * mean));
+  return (sum[1] / count[1] - sum[0] / count[0]) / spread;
+}
+
+// Agreement of the gray values of a tag's cells with its bits.
 struct TagAgreement {
   double evidence = 0;  // natural logarithm of how much likelier the tag is than other bits
   int seen = 0;         // number of data cells in view

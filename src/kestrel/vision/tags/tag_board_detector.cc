@@ -95,15 +95,19 @@ LandingReport TagBoardDetector::Detect(const cv::Mat& image, const LandingHint& 
     report.reason = "the image is not CV_8UC1 of the camera's size";
     return report;
   }
-  const TagSearchModels models{camera, impl_->board, impl_->options, impl_->finder,
-                               impl_->alignment};
+  constexpr double kPartFactor = 1.3, kPartMarginPx = 8;
+  const TagSearchModels models{{camera, impl_->alignment, impl_->board.radius_m,
+                                impl_->options.level_sigma_deg, kPartFactor, kPartMarginPx},
+                               impl_->board,
+                               impl_->finder,
+                               impl_->options.min_quality};
   return TagSearch(models, image, hint, &dynamic_cast<TagWorkspace&>(workspace).buffers).Run();
 }
 
 std::unique_ptr<TargetWorkspace> TagBoardDetector::MakeWorkspace() const {
   auto workspace = std::make_unique<TagWorkspace>();
-  workspace->buffers.cells.Reserve(impl_->board.most_cells);
-  workspace->buffers.alignment.Reserve(impl_->board);
+  workspace->buffers.board.samples.Reserve(impl_->board.most_cells);
+  workspace->buffers.board.alignment.Reserve(impl_->board);
   return workspace;
 }
 

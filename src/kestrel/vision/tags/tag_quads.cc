@@ -3,38 +3,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include <Eigen/Geometry>
 
 namespace kestrel {
 namespace {
 
-struct QuadPass {
-  int image_level;  // the image at 1 / 2^level
-  int tile_level;   // tiles of 2^tile_level pixels make the threshold's box
-  int min_px;       // least and largest extent of a quad, full resolution
-  int max_px;
-};
-
-constexpr std::array<QuadPass, TagQuadFinder::kPasses> kQuadPasses{{
-    {.image_level = 3, .tile_level = 5, .min_px = 96, .max_px = 1 << 13},
-    {.image_level = 2, .tile_level = 4, .min_px = 44, .max_px = 400},
-    {.image_level = 1, .tile_level = 3, .min_px = 22, .max_px = 200},
-    {.image_level = 0, .tile_level = 2, .min_px = 7, .max_px = 90},
+constexpr PlaneBorders::Passes kQuadPasses{{
+    {.image_level = 3, .tile_level = 5, .min_px = 96, .max_px = 1 << 13, .least_extent = 12},
+    {.image_level = 2, .tile_level = 4, .min_px = 44, .max_px = 400, .least_extent = 11},
+    {.image_level = 1, .tile_level = 3, .min_px = 22, .max_px = 200, .least_extent = 11},
+    {.image_level = 0, .tile_level = 2, .min_px = 7, .max_px = 90, .least_extent = 7},
 }};
 
-// The threshold also looks at boxes four times as large.
-constexpr int kLastTileLevel = kQuadPasses[0].tile_level + 2;
+constexpr std::size_t kMostQuads = 160;
 
-constexpr int kMostPoints = 256;  // of a border that are looked at
-constexpr std::size_t kMostBorders = 160;
-
-// Points of a border on the plane across the ray to its middle, at distance 1.
-struct PlanePoints {
-  Eigen::Matrix3d camera_from_plane;  // its columns: the plane's axes and the ray to its middle
-  std::array<Eigen::Vector2d, kMostPoints> points;
-  int count = 0;
-};
+using PlanePoints = std::vector<Eigen::Vector2d>;
 
 struct PlaneLine {
   Eigen::Vector2d normal;
@@ -42,23 +27,13 @@ struct PlaneLine {
   double rms;
 };
 
-Eigen::Matrix3d AxesAcross(const Eigen::Vector3d& ray) {
-  Eigen::Matrix3d axes;
-  axes.col(2) = ray;
-  axes.col(0) = Eigen::Vector3d::UnitY().cross(ray);
-  if (axes.col(0).norm() < 0.1) axes.col(0) = Eigen::Vector3d::UnitX();
-  axes.col(0) = (axes.col(0) - axes.col(0).dot(ray) * ray).normalized();
-  axes.col(1) = ray.cross(axes.col(0));
-  return axes;
-}
-
 // Index of the point for which 'value' is largest.
 template <class Value>
 int Farthest(const PlanePoints& border, const Value& value) {
   int best = 0;
-  double most = value(border.points[0]);
-  for (int i = 1; i < border.count; ++i) {
-    const double here = value(border.points[i]);
+  double most = value(border[0]);
+  for (int i = 1; i < static_cast<int>(border.size()); ++i) {
+    const double here = value(border[i]);
     if (here > most) {
       most = here;
       best = i;
@@ -71,14 +46,14 @@ int Farthest(const PlanePoints& border, const Value& value) {
 // farthest from it on both sides.
 std::array<int, 4> RoughCorners(const PlanePoints& border) {
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
-  for (int i = 0; i < border.count; ++i) middle += border.points[i];
-  middle /= border.count;
+  for (int i = 0; i < static_cast<int>(border.size()); ++i) middle += border[i];
+  middle /= static_cast<double>(border.size());
   const auto from = [](const Eigen::Vector2d& place) {
     return [place](const Eigen::Vector2d& point) { return (point - place).squaredNorm(); };
   };
   const int first = Farthest(border, from(middle));
-  const int opposite = Farthest(border, from(border.points[first]));
-  const Eigen::Vector2d diagonal = border.points[opposite] - border.points[first];
+  const int opposite = Farthest(border, from(border[first]));
+  const Eigen::Vector2d diagonal = border[opposite] - border[first];
   const Eigen::Vector2d across(-diagonal.y(), diagonal.x());
   const int left =
       Farthest(border, [&](const Eigen::Vector2d& point) { return across.dot(point); });
@@ -91,18 +66,19 @@ std::array<int, 4> RoughCorners(const PlanePoints& border) {
 
 // Fits a line to the points between two corners; the ends, which are round, do not count.
 bool FitSide(const PlanePoints& border, int from, int to, PlaneLine* line) {
-  const int length = (to - from + border.count) % border.count;
+  const int around = static_cast<int>(border.size());
+  const int length = (to - from + around) % around;
   const int trim = std::max(1, length / 8);
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   int count = 0;
   for (int i = trim; i <= length - trim; ++i, ++count) {
-    mean += border.points[(from + i) % border.count];
+    mean += border[(from + i) % around];
   }
   if (count < 3) return false;
   mean /= count;
   double xx = 0, xy = 0, yy = 0;
   for (int i = trim; i <= length - trim; ++i) {
-    const Eigen::Vector2d d = border.points[(from + i) % border.count] - mean;
+    const Eigen::Vector2d d = border[(from + i) % around] - mean;
     xx += d.x() * d.x();
     xy += d.x() * d.y();
     yy += d.y() * d.y();
@@ -139,87 +115,41 @@ bool MayBeQuad(const Border& border, cv::Size image) {
 
 }  // namespace
 
-bool TagQuadFinder::Covers(int pass, double least_px, double most_px) {
-  return most_px >= kQuadPasses[pass].min_px && least_px <= kQuadPasses[pass].max_px;
-}
+TagQuadFinder::TagQuadFinder(const CameraModel& camera)
+    : borders_(camera, kQuadPasses), focal_px_(camera.intrinsics().fx_px) {}
 
 void TagQuadFinder::Begin(const cv::Mat& image, const cv::Rect& part,
                           TagQuadBuffers* buffers) const {
-  if (buffers->width_px != image.cols || buffers->height_px != image.rows) {
-    buffers->width_px = image.cols;
-    buffers->height_px = image.rows;
-    buffers->tracer.Reserve(image.cols, image.rows);
-    buffers->quads.reserve(kMostBorders);
-    // Runs the parts whose memory depends on the size alone.
-    const cv::Rect whole(0, 0, image.cols, image.rows);
-    buffers->pyramid.Build(image);
-    for (int pass = 0; pass < kPasses; ++pass) Find(whole, pass, buffers);
-  }
-  buffers->pyramid.Build(image(part), kLastTileLevel);
+  buffers->quads.reserve(kMostQuads);
+  borders_.Begin(image, part, &buffers->borders);
 }
 
-void TagQuadFinder::Find(const cv::Rect& part, int pass_index, TagQuadBuffers* buffers) const {
+void TagQuadFinder::Find(const cv::Rect& part, int pass, TagQuadBuffers* buffers) const {
   buffers->quads.clear();
-  buffers->borders = 0;
-  const QuadPass& pass = kQuadPasses[pass_index];
-  const cv::Mat at_level = buffers->pyramid.ImageAt(pass.image_level);
-  if (at_level.empty() || std::min(part.width, part.height) < pass.min_px) return;
-  buffers->threshold.Measure(buffers->pyramid, pass.image_level, pass.tile_level);
-  constexpr int kLeastContrast = 10, kMostContrast = 28;
-  const int contrast =
-      std::clamp(buffers->threshold.ContrastQuantile(0.7), kLeastContrast, kMostContrast);
-  buffers->threshold.Binarize(at_level, contrast, &buffers->binary);
-  BorderLimits limits;
-  limits.min_extent = std::max(6, pass.min_px >> pass.image_level);
-  limits.min_count = 4 * static_cast<std::size_t>(limits.min_extent);
-  limits.max_extent = pass.max_px >> pass.image_level;
-  limits.narrow = true;
-  BorderTracer& tracer = buffers->tracer;
-  tracer.Trace(buffers->binary, cv::Rect(0, 0, at_level.cols, at_level.rows), limits);
-  const Level level{static_cast<double>(1 << pass.image_level), part.tl()};
-  for (const Border& border : tracer.borders()) {
+  const std::span<const Border> borders = borders_.Trace(part, pass, &buffers->borders);
+  buffers->examined = borders.size();
+  const cv::Size size = borders_.LevelSize(pass, buffers->borders);
+  for (const Border& border : borders) {
+    if (buffers->quads.size() == kMostQuads) return;
     TagQuad quad;
-    ++buffers->borders;
-    if (buffers->quads.size() < kMostBorders && MayBeQuad(border, at_level.size()) &&
-        FitQuad(tracer, border, level, &quad)) {
+    if (MayBeQuad(border, size) && FitQuad(border, part, pass, &buffers->borders, &quad)) {
       buffers->quads.push_back(quad);
     }
   }
 }
 
-bool TagQuadFinder::FitQuad(const BorderTracer& tracer, const Border& border, const Level& level,
-                            TagQuad* quad) const {
-  const auto on_image = [&level](double x, double y) {
-    return Eigen::Vector2f(level.scale * x - 0.5 + level.origin.x,
-                           level.scale * y - 0.5 + level.origin.y);
-  };
-  const Eigen::Vector2f middle =
-      on_image(0.5 * (border.min.x + border.max.x), 0.5 * (border.min.y + border.max.y));
-  const Eigen::Vector3d ray = rays_.Ray(middle.x(), middle.y()).cast<double>();
-  if (ray.isZero()) return false;
-  PlanePoints on_plane;
-  on_plane.camera_from_plane = AxesAcross(ray);
-  const Eigen::Matrix3d plane_from_camera = on_plane.camera_from_plane.transpose();
-  const GridPoint* const points = tracer.begin(border);
-  const int count = static_cast<int>(border.count);
-  const int step = (count + kMostPoints - 1) / kMostPoints;
-  for (int i = 0; i < count; i += step) {
-    const GridPoint& a = points[i];
-    const GridPoint& b = points[(i + 1) % count];
-    const Eigen::Vector2f pixel = on_image(0.5 * (a.x + b.x), 0.5 * (a.y + b.y));
-    const Eigen::Vector3d local =
-        plane_from_camera * rays_.Ray(pixel.x(), pixel.y()).cast<double>();
-    constexpr double kLeastForward = 0.2;
-    if (local.z() < kLeastForward) return false;
-    on_plane.points[on_plane.count++] = local.hnormalized();
-  }
+bool TagQuadFinder::FitQuad(const Border& border, const cv::Rect& part, int pass,
+                            BorderBuffers* buffers, TagQuad* quad) const {
+  Eigen::Matrix3d camera_from_plane;
+  if (!borders_.OnPlane(border, part, pass, &camera_from_plane, buffers)) return false;
+  const PlanePoints& on_plane = buffers->points;
   const std::array<int, 4> rough = RoughCorners(on_plane);
   std::array<PlaneLine, 4> sides;
-  const double allowed = 0.6 * level.scale / focal_px_;
+  const double allowed = 0.6 * borders_.Scale(pass) / focal_px_;
   for (int k = 0; k < 4; ++k) {
     if (!FitSide(on_plane, rough[k], rough[(k + 1) % 4], &sides[k])) return false;
     constexpr double kBend = 0.02;  // of the length
-    const double length = (on_plane.points[rough[(k + 1) % 4]] - on_plane.points[rough[k]]).norm();
+    const double length = (on_plane[rough[(k + 1) % 4]] - on_plane[rough[k]]).norm();
     if (sides[k].rms > std::max(allowed, kBend * length)) return false;
   }
   std::array<Eigen::Vector2d, 4> corners;
@@ -240,7 +170,7 @@ bool TagQuadFinder::FitQuad(const BorderTracer& tracer, const Border& border, co
   quad->dark_inside = border.signed_area > 0;
   for (int k = 0; k < 4; ++k) {
     const Eigen::Vector2d& corner = corners[quad->dark_inside ? k : 3 - k];
-    quad->corners[k] = (on_plane.camera_from_plane * corner.homogeneous()).normalized();
+    quad->corners[k] = (camera_from_plane * corner.homogeneous()).normalized();
   }
   return true;
 }

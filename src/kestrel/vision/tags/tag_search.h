@@ -1,44 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
-#include <optional>
-
 #include <opencv2/core.hpp>
 
-#include "kestrel/core/camera/camera_model.h"
-#include "kestrel/vision/tags/board_alignment.h"
 #include "kestrel/vision/tags/board_model.h"
-#include "kestrel/vision/tags/board_samples.h"
+#include "kestrel/vision/tags/board_search.h"
 #include "kestrel/vision/tags/tag_board_detector.h"
 #include "kestrel/vision/tags/tag_quads.h"
-#include "kestrel/vision/target/landing_detection.h"
 
 namespace kestrel {
 
-// What a search works with; constant, of one detector.
+// Constants of the searches of one detector.
 struct TagSearchModels {
-  const CameraModel& camera;
+  BoardSearchModels search;
   const BoardModel& board;
-  const TagBoardDetectorOptions& options;
   const TagQuadFinder& finder;
-  const BoardAlignment& alignment;
+  double min_quality;
 };
 
 // Memory of one thread's searches.
 struct TagSearchBuffers {
   TagQuadBuffers quads;
-  BoardSamples cells;
-  BoardAlignmentBuffers alignment;
+  BoardSearchBuffers board;
 };
 
-// The search of one image. Does not allocate once the buffers have warmed up.
-class TagSearch {
+// The search of one image for a board of tags.
+class TagSearch final : public BoardSearch {
  public:
   TagSearch(const TagSearchModels& models, const cv::Mat& image, const LandingHint& hint,
             TagSearchBuffers* buffers);
-
-  LandingReport Run();
 
  private:
   // A pose with what speaks for it.
@@ -48,28 +38,21 @@ class TagSearch {
     SeenParts parts;
   };
 
-  void Follow();
-  void Search();
-  void SearchPass(const cv::Rect& part, int pass);
-  std::optional<RigidTransform> ShiftedPose(const RigidTransform& expected, const TagModel& tag);
+  void Follow(const RigidTransform& expected) override;
+  void Begin(const cv::Rect& part) override;
+  void SearchPass(const cv::Rect& part, int pass) override;
+  bool MayHaveSize(int pass, double distance_m, double error) const override;
+
   const TagModel* LeadingTag(const RigidTransform& pose);
-  cv::Rect SearchedPart() const;
-  bool MayHaveSize(int pass) const;
+  void Try(const TagQuad& quad);
   // Aligns all tags, and reports the pose if it is likelier than what was found before.
   // 'prior': logarithm of the odds against a board at any of the places that were tried.
   void Take(const RigidTransform& pose, double prior, DetectionMethod method);
   Finding Judge(const AlignedBoard& aligned);
-  void Report(const Finding& finding, double logit, DetectionMethod method);
-  void ResolveMirror(Finding* finding, std::optional<RigidTransform>* mirror);
-  void Reached(LandingStage stage, std::string_view reason);
-  bool is_found() const { return report_.detection.has_value(); }
+  void Report(const Finding& finding, double quality, DetectionMethod method);
 
-  const TagSearchModels& models_;
-  const cv::Mat& image_;
-  const LandingHint& hint_;
-  TagSearchBuffers& buffers_;
-  LevelPrior prior_;
-  LandingReport report_;
+  const TagSearchModels& tags_;
+  TagQuadBuffers& quads_;
 };
 
 }  // namespace kestrel

@@ -22,7 +22,7 @@
 
 namespace kestrel {
 
-// How an image of a board is taken.
+// Conditions under which an image of a board is taken.
 struct TagImageOptions {
   double blur_px = 0.5;  // sigma of the lens
   double motion_px = 0;  // length of the blur by motion, along the rows

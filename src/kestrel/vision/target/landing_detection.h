@@ -17,8 +17,8 @@
 
 namespace kestrel {
 
-// How a pad was recognised. The first four are of the ring with a cross: the method that verified
-// the cross, which depends on the size of the ring (paper, section 2.4).
+// Means by which a pad was recognised. The first four are of the ring with a cross: the method that
+// verified the cross, which depends on the size of the ring (paper, section 2.4).
 enum class DetectionMethod {
   kQuadrants,
   kThinning,

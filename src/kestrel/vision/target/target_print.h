@@ -27,7 +27,7 @@ struct PrintShape {
   double gray = 0;  // 0 black, 1 white
 };
 
-// What is printed on the board of a pad. All that draws pads, on paper or in a simulated world,
+// The print on the board of a pad. All that draws pads, on paper or in a simulated world,
 // knows a pad by this alone. In metres, in frame P of the pad (TargetShape).
 struct TargetPrint {
   double board_size_m = 0;           // side of the square board, centred on the origin of P
@@ -35,7 +35,7 @@ struct TargetPrint {
   double board_heading = 0;          // rad, of P's x axis on the board, counter-clockwise as seen
   std::vector<PrintShape> shapes{};  // each is drawn over those before it
   std::vector<std::string> dimensions{};  // in words, a line each
-  // Whether `kestrel print --check` can measure a photograph of it.
+  // True when `kestrel print --check` can measure a photograph of it.
   bool can_be_checked = false;
 };
 

@@ -7,7 +7,7 @@
 
 namespace kestrel {
 
-// What a pad looks like, as far as it matters to those who draw it, look at its place in the image
+// Appearance of a pad, as far as it matters to those who draw it, look at its place in the image
 // or tell its size. Frame P of the pad: origin in the middle of what is detected, z up out of the
 // printed face; what x is, its detector says.
 struct TargetShape {

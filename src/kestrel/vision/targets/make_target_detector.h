@@ -27,7 +27,7 @@ struct NestedTargetOptions {
   }
 };
 
-// What the target is. The options of the ring with a cross are LandingPatternDetectorOptions.
+// The target. The options of the ring with a cross are LandingPatternDetectorOptions.
 struct TargetOptions {
   std::string kind = "ring-cross";
   TagTargetOptions apriltag;

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "kestrel/vision/landing/landing_pattern_detector.h"
-#include "kestrel/vision/landing/search/search_log.h"
 #include "kestrel/vision/landing/verification/print_finding.h"
+#include "kestrel/vision/target/search_log.h"
 
 namespace kestrel {
 

@@ -11,12 +11,12 @@
 #include "kestrel/vision/landing/search/landing_models.h"
 #include "kestrel/vision/landing/search/prior_knowledge.h"
 #include "kestrel/vision/landing/search/search_context.h"
-#include "kestrel/vision/landing/search/search_log.h"
 #include "kestrel/vision/landing/search/search_plan.h"
 #include "kestrel/vision/landing/search/searched_image.h"
 #include "kestrel/vision/landing/verification/near_print_verifier.h"
 #include "kestrel/vision/landing/verification/partial_pattern.h"
 #include "kestrel/vision/landing/verification/small_print_verifier.h"
+#include "kestrel/vision/target/search_log.h"
 
 namespace kestrel {
 

@@ -4,8 +4,8 @@
 #include "kestrel/vision/landing/location/detection_choice.h"
 #include "kestrel/vision/landing/search/landing_models.h"
 #include "kestrel/vision/landing/search/prior_knowledge.h"
-#include "kestrel/vision/landing/search/search_log.h"
 #include "kestrel/vision/landing/search/searched_image.h"
+#include "kestrel/vision/target/search_log.h"
 
 namespace kestrel {
 

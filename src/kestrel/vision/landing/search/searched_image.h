@@ -11,8 +11,8 @@
 #include "kestrel/core/image/border_tracing.h"
 #include "kestrel/core/image/local_threshold.h"
 #include "kestrel/vision/landing/search/image_region.h"
-#include "kestrel/vision/landing/search/search_log.h"
 #include "kestrel/vision/landing/search/search_plan.h"
+#include "kestrel/vision/target/search_log.h"
 
 namespace kestrel {
 

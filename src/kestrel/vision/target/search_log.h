@@ -2,9 +2,10 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <string_view>
 
-#include "kestrel/vision/landing/landing_pattern_detector.h"
+#include "kestrel/vision/target/landing_detection.h"
 
 namespace kestrel {
 

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/tags/plane_borders.h"
+
+#include <algorithm>
+
+#include <Eigen/Geometry>
+
+namespace kestrel {
+namespace {
+
+constexpr std::size_t kMostPoints = 320;  // of a border that are looked at
+constexpr int kLargerTiles = 2;           // the threshold also looks at boxes four times as large
+
+Eigen::Matrix3d AxesAcross(const Eigen::Vector3d& ray) {
+  Eigen::Matrix3d axes;
+  axes.col(2) = ray;
+  axes.col(0) = Eigen::Vector3d::UnitY().cross(ray);
+  if (axes.col(0).norm() < 0.1) axes.col(0) = Eigen::Vector3d::UnitX();
+  axes.col(0) = (axes.col(0) - axes.col(0).dot(ray) * ray).normalized();
+  axes.col(1) = ray.cross(axes.col(0));
+  return axes;
+}
+
+}  // namespace
+
+bool PlaneBorders::Covers(int pass, double least_px, double most_px) const {
+  return most_px >= passes_[pass].min_px && least_px <= passes_[pass].max_px;
+}
+
+void PlaneBorders::Begin(const cv::Mat& image, const cv::Rect& part, BorderBuffers* buffers) const {
+  if (buffers->width_px != image.cols || buffers->height_px != image.rows) {
+    buffers->width_px = image.cols;
+    buffers->height_px = image.rows;
+    buffers->tracer.Reserve(image.cols, image.rows);
+    buffers->points.reserve(kMostPoints);
+    // Runs the parts whose memory depends on the size alone.
+    const cv::Rect whole(0, 0, image.cols, image.rows);
+    buffers->pyramid.Build(image);
+    for (int pass = 0; pass < kPasses; ++pass) Trace(whole, pass, buffers);
+  }
+  buffers->pyramid.Build(image(part), passes_[0].tile_level + kLargerTiles);
+}
+
+std::span<const Border> PlaneBorders::Trace(const cv::Rect& part, int pass_index,
+                                            BorderBuffers* buffers) const {
+  const BorderPass& pass = passes_[pass_index];
+  const cv::Mat at_level = buffers->pyramid.ImageAt(pass.image_level);
+  if (at_level.empty() || std::max(part.width, part.height) < pass.min_px) return {};
+  buffers->threshold.Measure(buffers->pyramid, pass.image_level, pass.tile_level);
+  constexpr int kLeastContrast = 10, kMostContrast = 28;
+  const int contrast =
+      std::clamp(buffers->threshold.ContrastQuantile(0.7), kLeastContrast, kMostContrast);
+  buffers->threshold.Binarize(at_level, contrast, &buffers->binary);
+  BorderLimits limits;
+  limits.min_extent = pass.least_extent;
+  limits.min_count = 4 * static_cast<std::size_t>(limits.min_extent);
+  limits.max_extent = pass.max_px >> pass.image_level;
+  limits.narrow = true;
+  buffers->tracer.Trace(buffers->binary, cv::Rect(0, 0, at_level.cols, at_level.rows), limits);
+  return buffers->tracer.borders();
+}
+
+bool PlaneBorders::OnPlane(const Border& border, const cv::Rect& part, int pass,
+                           Eigen::Matrix3d* camera_from_plane, BorderBuffers* buffers) const {
+  const auto ray_at = [this, &part, scale = Scale(pass)](double x, double y) {
+    const Eigen::Vector2f pixel(scale * x - 0.5 + part.x, scale * y - 0.5 + part.y);
+    return rays_.Ray(pixel.x(), pixel.y()).cast<double>().eval();
+  };
+  const Eigen::Vector3d middle =
+      ray_at(0.5 * (border.min.x + border.max.x), 0.5 * (border.min.y + border.max.y));
+  if (middle.isZero()) return false;
+  *camera_from_plane = AxesAcross(middle);
+  const Eigen::Matrix3d plane_from_camera = camera_from_plane->transpose();
+  const GridPoint* const points = buffers->tracer.begin(border);
+  const std::size_t step = (border.count + kMostPoints - 1) / kMostPoints;
+  buffers->points.clear();
+  for (std::size_t i = 0; i < border.count; i += step) {
+    const GridPoint& a = points[i];
+    const GridPoint& b = points[(i + 1) % border.count];
+    const Eigen::Vector3d local = plane_from_camera * ray_at(0.5 * (a.x + b.x), 0.5 * (a.y + b.y));
+    constexpr double kLeastForward = 0.2;
+    if (local.z() < kLeastForward) return false;
+    buffers->points.push_back(local.hnormalized());
+  }
+  return true;
+}
+
+}  // namespace kestrel

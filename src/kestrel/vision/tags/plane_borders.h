@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "kestrel/core/camera/camera_model.h"
+#include "kestrel/core/camera/ray_table.h"
+#include "kestrel/core/image/border_tracing.h"
+#include "kestrel/core/image/local_threshold.h"
+
+namespace kestrel {
+
+// One of the passes of a search, each over the image at another resolution.
+struct BorderPass {
+  int image_level;  // the image at 1 / 2^level
+  int tile_level;   // tiles of 2^tile_level pixels make the threshold's box
+  int min_px;       // least and largest extent of a figure, full resolution
+  int max_px;
+  int least_extent;  // of a traced border, pixels of the level
+};
+
+// Memory of one thread's borders.
+struct BorderBuffers {
+  int width_px = 0;  // size of the image that it was reserved for
+  int height_px = 0;
+  TilePyramid pyramid;
+  LocalThreshold threshold;
+  BinaryImage binary;
+  BorderTracer tracer;
+  std::vector<Eigen::Vector2d> points;  // of one border, on the plane
+};
+
+// Traces borders in the raw image. A lens bends lines, so borders are examined as rays: on a plane
+// across the ray to their middle a straight edge is straight, however far from the axis.
+class PlaneBorders {
+ public:
+  static constexpr int kPasses = 4;  // from the image at an eighth, for near pads, to all of it
+
+  using Passes = std::array<BorderPass, kPasses>;
+
+  PlaneBorders(const CameraModel& camera, const Passes& passes) : rays_(camera), passes_(passes) {}
+
+  // Returns whether figures of these extents (px) are among those of a pass.
+  bool Covers(int pass, double least_px, double most_px) const;
+
+  // Prepares a search of 'part', whole pixels in the image; Trace does not allocate afterwards once
+  // it has seen an image of this size.
+  void Begin(const cv::Mat& image, const cv::Rect& part, BorderBuffers* buffers) const;
+
+  // Returns the borders of one pass, in pixels of its level.
+  std::span<const Border> Trace(const cv::Rect& part, int pass, BorderBuffers* buffers) const;
+
+  // Writes points of a traced border, in its order, to 'buffers->points': on the plane at distance
+  // 1 across the ray to its middle. The columns of 'camera_from_plane' become the plane's axes and
+  // that ray. False where the border leaves the sight of the lens or of the plane.
+  bool OnPlane(const Border& border, const cv::Rect& part, int pass,
+               Eigen::Matrix3d* camera_from_plane, BorderBuffers* buffers) const;
+
+  // Pixels of the image per pixel of a pass.
+  double Scale(int pass) const { return 1 << passes_[pass].image_level; }
+
+  // Returns the size of the searched part in pixels of a pass.
+  cv::Size LevelSize(int pass, const BorderBuffers& buffers) const {
+    return buffers.pyramid.ImageAt(passes_[pass].image_level).size();
+  }
+
+ private:
+  RayTable rays_;
+  Passes passes_;
+};
+
+}  // namespace kestrel
