@@ -40,6 +40,7 @@ const dds_topic_descriptor_t* const kTypes[] = {
     &visualization_msgs_msg_dds__MarkerArray__desc,
     &diagnostic_msgs_msg_dds__DiagnosticArray__desc,
     &vision_msgs_msg_dds__Detection3DArray__desc,
+    &apriltag_msgs_msg_dds__AprilTagDetectionArray__desc,
     &rmw_dds_common_msg_dds__ParticipantEntitiesInfo__desc,
 };
 

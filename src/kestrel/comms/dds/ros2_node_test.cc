@@ -13,6 +13,7 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/io/bags/result_messages.h"
 #include "kestrel/io/bags/serialization.h"
+#include "kestrel/io/bags/tag_messages.h"
 
 namespace kestrel {
 namespace {
@@ -57,6 +58,13 @@ std::vector<std::pair<std::string_view, std::string>> SomeMessages() {
   CameraInfoMessage info;
   info.distortion_model = "plumb_bob";
   info.d = {1, 2, 3, 4, 5};
+  TagArrayMessage tags;
+  TagMessage& tag = tags.detections.emplace_back();
+  tag.family = "tag36h11";
+  tag.id = 7;
+  tag.decision_margin = 99;
+  tag.corners[3] = {12.5, 13.5};
+  tag.homography[8] = 1;
   return {{target.kType, BytesOf(target)},
           {odometry.kType, BytesOf(odometry)},
           {detections.kType, BytesOf(detections)},
@@ -66,7 +74,8 @@ std::vector<std::pair<std::string_view, std::string>> SomeMessages() {
           {info.kType, BytesOf(info)},
           {TfMessage::kType, BytesOf(transforms)},
           {PathMessage::kType, BytesOf(path)},
-          {CompressedImageMessage::kType, BytesOf(compressed)}};
+          {CompressedImageMessage::kType, BytesOf(compressed)},
+          {TagArrayMessage::kType, BytesOf(tags)}};
 }
 
 // Returns the first message that comes within 'timeout'.

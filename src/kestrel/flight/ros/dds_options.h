@@ -12,6 +12,7 @@ struct RosResultOptions {
   std::string pattern_frame = "landing_pattern";  // of tf, for the detected pattern
   std::string target_frame = "landing_target";    // frame of the track's velocity
   bool publish_tf = true;
+  bool apriltag_topics = false;
   double prediction_s = 2;
   double prediction_step_s = 0.1;
 
@@ -21,6 +22,9 @@ struct RosResultOptions {
     visitor("pattern_frame", self.pattern_frame, "", "frame of the detected pattern");
     visitor("target_frame", self.target_frame, "", "frame that moves with the target");
     visitor("publish_tf", self.publish_tf, "", "pattern, UAV and mount are published on tf");
+    visitor("apriltag_topics", self.apriltag_topics, "",
+            "tags are also published as apriltag_ros publishes them: on /detections (ROS 2) or "
+            "/tag_detections (ROS 1), and on tf");
     visitor("prediction_s", self.prediction_s, "s", "horizon of the prediction");
     visitor("prediction_step_s", self.prediction_step_s, "s",
             "interval between the poses of the prediction");

@@ -2,6 +2,7 @@
 #include "kestrel/flight/ros/landing_messages.h"
 
 #include <algorithm>
+#include <string>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -102,6 +103,7 @@ Detection3DArrayMessage DetectionsOf(const LandingObservation& observation,
   Detection3DMessage& found = message.detections.emplace_back();
   found.header = message.header;
   found.source_cloud.header = message.header;
+  if (detection->id) found.id = std::to_string(*detection->id);
   found.box_center = PoseMessageOf(detection->camera_from_pattern);
   found.box_size = {shape.board_size_m, shape.board_size_m, kBoardThickness_m};
   ObjectHypothesisMessage& result = found.results.emplace_back();

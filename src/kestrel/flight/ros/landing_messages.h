@@ -20,7 +20,7 @@ namespace kestrel {
 // 103: the camera's is an optical one, the world's z is up.
 
 // The detection in the camera's frame; an empty list when there is none. The box is the board's,
-// the score is the detection's quality.
+// the score is the detection's quality, the id (ROS 2) the pad's where it has one.
 Detection3DArrayMessage DetectionsOf(const LandingObservation& observation,
                                      const std::string& camera_frame, const TargetShape& shape);
 

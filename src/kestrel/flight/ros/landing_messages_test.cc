@@ -56,6 +56,16 @@ TEST(LandingMessages, OfATargetThatStandsTheHeadingIsNotKnown) {
   EXPECT_GT(TrackOf(target, "map", "target").pose_covariance[35], 3);
 }
 
+TEST(LandingMessages, ADetectionSaysWhichPadItIs) {
+  LandingObservation observation;
+  LandingDetection detection{};
+  observation.report.detection = detection;
+  const TargetShape shape = ShapeOf(LandingPattern());
+  EXPECT_EQ(DetectionsOf(observation, "camera", shape).detections.at(0).id, "");
+  observation.report.detection->id = 12;
+  EXPECT_EQ(DetectionsOf(observation, "camera", shape).detections.at(0).id, "12");
+}
+
 TEST(LandingMessages, NothingFoundIsAnEmptyListAndDeletesTheMarker) {
   LandingObservation observation;
   observation.time = kTrackTime;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "kestrel/flight/ros/landing_messages.h"
+#include "kestrel/flight/ros/tag_messages.h"
 #include "kestrel/io/recording/landing_overlay.h"
 
 namespace kestrel {
@@ -11,9 +12,11 @@ namespace kestrel {
 LandingResults::LandingResults(LandingResultsOptions options, ResultConnection* connection)
     : options_(std::move(options)), connection_(connection) {}
 
-void LandingResults::PublishDetection(const LandingObservation& observation) {
+void LandingResults::PublishDetection(const CameraModel& camera,
+                                      const LandingObservation& observation) {
   Publish(ResultTopic::kDetections,
           DetectionsOf(observation, options_.camera_frame, options_.shape));
+  if (options_.apriltag_topics) PublishTags(camera, observation);
   const auto& detection = observation.report.detection;
   if (!detection) return;
   Publish(ResultTopic::kTargetPose,
@@ -22,6 +25,20 @@ void LandingResults::PublishDetection(const LandingObservation& observation) {
   Publish(ResultTopic::kTransforms,
           PatternTransformOf(*detection, observation.time, options_.camera_frame,
                              options_.pattern_frame));
+}
+
+void LandingResults::PublishTags(const CameraModel& camera, const LandingObservation& observation) {
+  if (options_.format == WireFormat::kRos1) {
+    Publish(ResultTopic::kTagPoses,
+            TagPosesOf(observation, options_.shape, options_.camera_frame));
+  } else {
+    Publish(ResultTopic::kTags,
+            TagsOf(observation, camera, options_.shape, options_.camera_frame));
+  }
+  if (!options_.publish_tf) return;
+  const TfMessage transforms =
+      TagTransformsOf(observation, options_.shape, options_.camera_frame, options_.format);
+  if (!transforms.transforms.empty()) Publish(ResultTopic::kTransforms, transforms);
 }
 
 void LandingResults::PublishTrack(const LandingObservation& observation) {

@@ -24,6 +24,7 @@ struct LandingResultsOptions {
   std::string pattern_frame;
   std::string target_frame;
   bool publish_tf = true;
+  bool apriltag_topics = false;
   Duration horizon{};  // of the prediction
   Duration step{};     // between its poses, above 0
   TargetShape shape;
@@ -37,7 +38,8 @@ class LandingResults {
   // 'connection' must outlive this.
   LandingResults(LandingResultsOptions options, ResultConnection* connection);
 
-  void PublishDetection(const LandingObservation& observation);
+  // 'camera' made the image.
+  void PublishDetection(const CameraModel& camera, const LandingObservation& observation);
   // Also publishes markers.
   void PublishTrack(const LandingObservation& observation);
   // The image with the results drawn on it.
@@ -45,6 +47,8 @@ class LandingResults {
                     const LandingObservation& observation);
 
  private:
+  void PublishTags(const CameraModel& camera, const LandingObservation& observation);
+
   template <class Message>
   void Publish(ResultTopic topic, const Message& message) {
     connection_->Publish(topic, SerializeMessage(message, options_.format));

@@ -16,11 +16,12 @@ namespace {
 
 // Options, or groups of them, that a running node can change. The pattern is not among them, as
 // another pattern is another target.
-constexpr std::array<std::string_view, 26> kChangeable = {
+constexpr std::array<std::string_view, 27> kChangeable = {
     "config",
     "pattern_frame",
     "target_frame",
     "publish_tf",
+    "apriltag_topics",
     "altitude_m",
     "prediction_s",
     "prediction_step_s",

@@ -9,6 +9,7 @@
 
 #include "kestrel/io/bags/messages.h"
 #include "kestrel/io/bags/result_messages.h"
+#include "kestrel/io/bags/tag_messages.h"
 
 namespace kestrel {
 
@@ -27,6 +28,8 @@ enum class ResultTopic : std::size_t {
   kTeamMap,
   kTeamMarkers,
   kStaticTransforms,
+  kTags,      // of ROS 2
+  kTagPoses,  // of ROS 1
 };
 
 struct ResultTopicInfo {
@@ -50,6 +53,8 @@ inline constexpr std::array kResultTopics = {
     ResultTopicInfo{"team_map", Detection3DArrayMessage::kType, true},
     ResultTopicInfo{"team_markers", MarkerArrayMessage::kType, true},
     ResultTopicInfo{"/tf_static", TfMessage::kType, true},
+    ResultTopicInfo{"/detections", TagArrayMessage::kType},
+    ResultTopicInfo{"/tag_detections", TagPoseArrayMessage::kType},
 };
 
 constexpr const ResultTopicInfo& InfoOf(ResultTopic topic) {

@@ -20,6 +20,7 @@ LandingResultsOptions ResultsOf(WireFormat format, const RosResultOptions& optio
           .pattern_frame = options.pattern_frame,
           .target_frame = options.target_frame,
           .publish_tf = options.publish_tf,
+          .apriltag_topics = options.apriltag_topics,
           .horizon = DurationFromSeconds(options.prediction_s),
           .step = DurationFromSeconds(options.prediction_step_s),
           .shape = ShapeOfTarget(landing.target, landing.detector),
@@ -92,7 +93,7 @@ void RosResults::Publish(const Frame& frame, const LandingObservation& observati
   stamped.time += frames_.to_stamps;
   if (stamped.target) stamped.target->time += frames_.to_stamps;
   PublishBody(stamped.world_from_camera, stamped.time);
-  landing_.PublishDetection(stamped);
+  landing_.PublishDetection(camera_, stamped);
   Count(observation.report.detection.has_value(), frame.time, observation.detect_time);
   landing_.PublishTrack(stamped);
   landing_.PublishImage(frame.image, camera_, stamped);

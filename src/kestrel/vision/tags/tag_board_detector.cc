@@ -47,6 +47,9 @@ TargetShape ShapeOf(const TagBoard& board) {
     shape.board_size_m =
         std::max(shape.board_size_m, 2 * (tag.center.lpNorm<Eigen::Infinity>() + reach));
   }
+  for (const BoardTag& tag : board.tags) {
+    shape.tags.push_back({tag.family, tag.id, tag.size_m, tag.board_from_tag});
+  }
   const auto size = [](const std::vector<Eigen::Vector3d>& outline) {
     return (outline[1] - outline[0]).norm();
   };

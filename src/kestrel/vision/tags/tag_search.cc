@@ -89,7 +89,8 @@ void TagSearch::Try(const TagQuad& quad) {
 TagSearch::Finding TagSearch::Judge(const AlignedBoard& aligned) {
   Finding finding;
   finding.aligned = aligned;
-  for (const TagModel& tag : tags_.board.tags) {
+  for (std::size_t index = 0; index < tags_.board.tags.size(); ++index) {
+    const TagModel& tag = tags_.board.tags[index];
     const double cell_px = CellPx(models_.camera, aligned.camera_from_board, tag);
     if (cell_px < kLeastCellPx) continue;
     SampleAt(aligned.camera_from_board, tag.cell_centers);
@@ -97,7 +98,7 @@ TagSearch::Finding TagSearch::Judge(const AlignedBoard& aligned) {
         CompareCells(tag, buffers_.samples.ReadCells(image_, tag.grid().width, cell_px));
     if (agreement.wrong > tag.most_wrong || agreement.evidence <= 0) continue;
     finding.evidence += agreement.evidence;
-    finding.parts.Add({"tag", tag.id, cell_px * tag.grid().border_width});
+    finding.parts.Add({"tag", index, cell_px * tag.grid().border_width});
   }
   return finding;
 }

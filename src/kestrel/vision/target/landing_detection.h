@@ -74,7 +74,7 @@ struct LandingHint {
 // A part of a pad that was recognised.
 struct SeenPart {
   std::string_view name;           // static text: "ring", "tag"
-  std::optional<std::int32_t> id;  // of a tag
+  std::optional<std::size_t> tag;  // index in TargetShape::tags
   double size_px;                  // the longer side or axis
 };
 

@@ -27,10 +27,10 @@ TEST(LandingStage, TheWordsAreThoseOfTheTables) {
 TEST(SeenParts, KeepsAsManyAsThereIsRoomFor) {
   SeenParts parts;
   EXPECT_TRUE(parts.all().empty());
-  for (int id = 0; id < 2 * static_cast<int>(SeenParts::kMost); ++id) parts.Add({"tag", id, 10});
+  for (std::size_t tag = 0; tag < 2 * SeenParts::kMost; ++tag) parts.Add({"tag", tag, 10});
   ASSERT_EQ(parts.all().size(), SeenParts::kMost);
-  EXPECT_EQ(parts.all().front().id, 0);
-  EXPECT_EQ(parts.all().back().id, static_cast<int>(SeenParts::kMost) - 1);
+  EXPECT_EQ(parts.all().front().tag, 0);
+  EXPECT_EQ(parts.all().back().tag, SeenParts::kMost - 1);
 }
 
 }  // namespace

@@ -1,11 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "kestrel/core/geometry/rigid_transform.h"
+
 namespace kestrel {
+
+// A tag of a pad that others know by its family and id.
+struct TargetTag {
+  std::string family;  // as its library names it
+  std::int32_t id = 0;
+  double size_m = 0;               // side of the square whose corners finders report
+  RigidTransform pattern_from_tag;  // the tag's frame: origin in its middle, x right, y up
+};
 
 // Appearance of a pad, as far as it matters to those who draw it, look at its place in the image
 // or tell its size. Frame P of the pad: origin in the middle of what is detected, z up out of the
@@ -16,6 +28,7 @@ struct TargetShape {
   // The edges of the print in frame P, m. The first one is the outermost. A lens bends lines:
   // straight edges therefore have points in between.
   std::vector<std::vector<Eigen::Vector3d>> outlines;
+  std::vector<TargetTag> tags{};  // that it has, if any
 
   double radius_m() const { return 0.5 * diameter_m; }
 };
