@@ -2,3 +2,7 @@
 add_executable(tag_accuracy tag_accuracy.cc)
 target_link_libraries(tag_accuracy PRIVATE kestrel::tags CLI11::CLI11 apriltag::apriltag
                                            fmt::fmt ${KESTREL_ARUCO} opencv_imgproc)
+
+add_executable(tag_photograph_accuracy tag_photograph_accuracy.cc apriltag_peer.cc)
+target_link_libraries(tag_photograph_accuracy PRIVATE kestrel::tags kestrel::recording CLI11::CLI11
+                                              apriltag::apriltag fmt::fmt)

@@ -145,8 +145,9 @@ TEST_F(TagMessagesTest, InRos1ABundleIsOneDetection) {
   EXPECT_THAT(found[0].sizes, ElementsAre(kSize, kSize));
   EXPECT_NEAR(found[0].pose.pose.position.z, pose_.translation.z(), 0.05);
   EXPECT_GT(found[0].pose.covariance[0], 0);
-  EXPECT_THAT(TagTransformsOf(Seen(bundle), ShapeOf(bundle), "camera", WireFormat::kRos1).transforms,
-              IsEmpty());
+  EXPECT_THAT(
+      TagTransformsOf(Seen(bundle), ShapeOf(bundle), "camera", WireFormat::kRos1).transforms,
+      IsEmpty());
 
   const TagBoard single = BoardOf({7});
   const auto transforms =

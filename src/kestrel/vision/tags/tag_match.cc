@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/vision/tags/tag_match.h"
 
-#include <array>
 #include <cmath>
 #include <span>
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 
 #include "kestrel/core/geometry/angles.h"
+#include "kestrel/vision/tags/square_pose.h"
 
 namespace kestrel {
 namespace {
@@ -68,17 +67,17 @@ TurnedMatch Compare(const TagModel& tag, int turn, std::span<const float> gray) 
   return {seen > 0 ? static_cast<double>(wrong) / seen : 1, white - black};
 }
 
-// Samples the cells of a grid that a quad is the square of.
+// Samples the cells of a grid that a quad is the square of. The homography meets the quad's corners
+// exactly; a pose does not, for a small quad or a lens that is not quite as described.
 std::span<const float> ReadGrid(const cv::Mat& image, const CameraModel& camera,
-                                const RigidTransform& camera_from_square, double side_px,
+                                const Eigen::Matrix3d& homography, double side_px,
                                 const TagGrid& grid, BoardSamples* samples) {
   samples->Clear();
   const double middle = 0.5 * grid.width;
   for (int row = 0; row < grid.width; ++row) {
     for (int column = 0; column < grid.width; ++column) {
-      samples->Add(camera_from_square * Eigen::Vector3d((column + 0.5 - middle) / grid.border_width,
-                                                        (middle - row - 0.5) / grid.border_width,
-                                                        0));
+      samples->Add(homography * Eigen::Vector3d((column + 0.5 - middle) / grid.border_width,
+                                                (middle - row - 0.5) / grid.border_width, 1));
     }
   }
   samples->Project(camera);
@@ -87,50 +86,11 @@ std::span<const float> ReadGrid(const cv::Mat& image, const CameraModel& camera,
 
 }  // namespace
 
-std::optional<RigidTransform> PoseOfUnitSquare(const TagQuad& quad) {
-  Eigen::Matrix3d camera_from_plane;
-  Eigen::Vector3d sight = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& corner : quad.corners) sight += corner;
-  camera_from_plane.col(2) = sight.normalized();
-  camera_from_plane.col(0) = camera_from_plane.col(2).unitOrthogonal();
-  camera_from_plane.col(1) = camera_from_plane.col(2).cross(camera_from_plane.col(0));
-  // The homography from the square to the plane across the sight, by its four corners.
-  constexpr std::array<std::array<double, 2>, 4> kSquare{
-      {{-0.5, 0.5}, {0.5, 0.5}, {0.5, -0.5}, {-0.5, -0.5}}};
-  Eigen::Matrix<double, 8, 8> equations;
-  Eigen::Matrix<double, 8, 1> seen;
-  for (int i = 0; i < 4; ++i) {
-    const Eigen::Vector3d corner = camera_from_plane.transpose() * quad.corners[i];
-    if (corner.z() <= 0) return std::nullopt;
-    const Eigen::Vector2d p = corner.hnormalized();
-    const auto [x, y] = kSquare[i];
-    equations.row(2 * i) << x, y, 1, 0, 0, 0, -p.x() * x, -p.x() * y;
-    equations.row(2 * i + 1) << 0, 0, 0, x, y, 1, -p.y() * x, -p.y() * y;
-    seen.segment<2>(2 * i) = p;
-  }
-  const Eigen::Matrix<double, 8, 1> h = equations.partialPivLu().solve(seen);
-  if (!h.allFinite()) return std::nullopt;
-  const Eigen::Vector3d first(h[0], h[3], h[6]);
-  const Eigen::Vector3d second(h[1], h[4], h[7]);
-  const double scale = 2 / (first.norm() + second.norm());
-  // The rotation nearest to the two columns: their bisectors are at right angles.
-  const Eigen::Vector3d sum = (first.normalized() + second.normalized()).normalized();
-  const Eigen::Vector3d difference = (first.normalized() - second.normalized()).normalized();
-  Eigen::Matrix3d rotation;
-  rotation.col(0) = (sum + difference) * M_SQRT1_2;
-  rotation.col(1) = (sum - difference) * M_SQRT1_2;
-  rotation.col(2) = rotation.col(0).cross(rotation.col(1));
-  const Eigen::Vector3d place = scale * Eigen::Vector3d(h[2], h[5], 1);
-  if (!rotation.allFinite() || rotation.col(2).dot(place) >= 0) return std::nullopt;
-  return RigidTransform{Eigen::Quaterniond(camera_from_plane * rotation),
-                        camera_from_plane * place};
-}
-
 std::optional<TagMatch> MatchTag(const cv::Mat& image, const CameraModel& camera,
                                  const BoardModel& board, const TagQuad& quad,
                                  BoardSamples* samples) {
-  const std::optional<RigidTransform> square = PoseOfUnitSquare(quad);
-  if (!square) return std::nullopt;
+  const std::optional<Eigen::Matrix3d> homography = HomographyOfSquare(quad.corners);
+  if (!homography) return std::nullopt;
   const TagModel* best = nullptr;
   int best_turn = 0;
   TurnedMatch best_match{.wrong_share = kMostWrongShare};
@@ -140,7 +100,7 @@ std::optional<TagMatch> MatchTag(const cv::Mat& image, const CameraModel& camera
     if (tag.dark_inside != quad.dark_inside) continue;
     const TagGrid& grid = tag.grid();
     if (read == nullptr || read->width != grid.width || read->border_width != grid.border_width) {
-      gray = ReadGrid(image, camera, *square, quad.side_px, grid, samples);
+      gray = ReadGrid(image, camera, *homography, quad.side_px, grid, samples);
       read = &grid;
     }
     for (int turn = 0; turn < 4; ++turn) {
@@ -155,6 +115,8 @@ std::optional<TagMatch> MatchTag(const cv::Mat& image, const CameraModel& camera
     }
   }
   if (best == nullptr) return std::nullopt;
+  const std::optional<RigidTransform> square = PoseOfSquare(quad.corners, *homography);
+  if (!square) return std::nullopt;
   const RigidTransform square_from_tag{
       Eigen::Quaterniond(Eigen::AngleAxisd(-best_turn * kPi / 2, Eigen::Vector3d::UnitZ())),
       Eigen::Vector3d::Zero()};

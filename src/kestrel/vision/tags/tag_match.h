@@ -19,11 +19,6 @@ struct TagMatch {
   RigidTransform camera_from_board;  // by the corners of the quad alone
 };
 
-// Returns the pose of a square of side 1 with these corners: origin in its middle, x from the first
-// corner to the second, y from the fourth to the first, z out of its face. Nothing when no square
-// looks like this.
-std::optional<RigidTransform> PoseOfUnitSquare(const TagQuad& quad);
-
 // Returns the tag of the board whose bits are most like what a quad shows, in the best of four
 // turns; nothing when none is. 'samples': room for the cells of a tag. Does not allocate.
 std::optional<TagMatch> MatchTag(const cv::Mat& image, const CameraModel& camera,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -10,12 +9,13 @@
 
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/vision/tags/plane_borders.h"
+#include "kestrel/vision/tags/square_pose.h"
 
 namespace kestrel {
 
 // A border whose sides are straight in space: perhaps the square of a tag.
 struct TagQuad {
-  std::array<Eigen::Vector3d, 4> corners;  // unit rays, clockwise in the image
+  SquareCorners corners;
   bool dark_inside;
   double side_px;  // mean length of its sides
 };

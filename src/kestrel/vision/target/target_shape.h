@@ -15,7 +15,7 @@ namespace kestrel {
 struct TargetTag {
   std::string family;  // as its library names it
   std::int32_t id = 0;
-  double size_m = 0;               // side of the square whose corners finders report
+  double size_m = 0;                // side of the square whose corners finders report
   RigidTransform pattern_from_tag;  // the tag's frame: origin in its middle, x right, y up
 };
 
