@@ -23,6 +23,7 @@
 #include <opencv2/aruco.hpp>
 #endif
 
+#include "for_each_index.h"
 #include "kestrel/core/base/random.h"
 #include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/core/camera/paper_camera.h"
@@ -195,9 +196,10 @@ std::string Shown(Score score) {
 
 // --- Frames ---
 
-Frame MakeFrame(const TagRenderer& renderer, const std::vector<PrintedTag>& tags, double height,
-                Random* random) {
+Frame MakeFrame(const TagRenderer& renderer, const std::vector<PrintedTag>& tags, double least_m,
+                double most_m, Random* random) {
   Frame frame;
+  const double height = random->Uniform(least_m, most_m);
   TagImageOptions taken;
   taken.noise = random->Uniform(1, 6);
   taken.blur_px = random->Uniform(0.3, 0.9);
@@ -248,7 +250,13 @@ class Undistortion {
   cv::Mat u_, v_;
 };
 
-int Run(int frames_per_bin, std::uint64_t seed) {
+struct Settings {
+  int frames_per_bin = 20;
+  std::uint64_t seed = 1;
+  bool with_peers = true;
+};
+
+int Run(const Settings& settings) {
   cv::setNumThreads(1);
   const CameraModel camera(PaperCamera());
   CameraIntrinsics flat = PaperCamera();
@@ -286,7 +294,9 @@ int Run(int frames_per_bin, std::uint64_t seed) {
       finders.push_back({name + ", undistorted", &pinhole,
                          [peer, &undistort](const Frame& f) { return peer(undistort(f.image)); }});
     };
-    if (is_april) {
+    if (!settings.with_peers) {
+      // Kestrel alone.
+    } else if (is_april) {
       add_peer("libapriltag", AprilTagPeer(1));
       add_peer("libapriltag, decimate 2", AprilTagPeer(2));
       add_peer("OpenCV", ArucoPeer(cv::aruco::DICT_APRILTAG_36h11, 2));
@@ -297,12 +307,18 @@ int Run(int frames_per_bin, std::uint64_t seed) {
         "{}, {} m\n\n| altitude | finder | found | false | corners px | ms "
         "|\n|---|---|---|---|---|---|\n",
         family, kTagSize);
-    Random random(seed);
+    Random random(settings.seed);
     for (std::size_t bin = 0; bin + 1 < kBinEdges.size(); ++bin) {
       std::vector<Score> scores(finders.size());
-      for (int i = 0; i < frames_per_bin; ++i) {
-        const double height = random.Uniform(kBinEdges[bin], kBinEdges[bin + 1]);
-        const Frame frame = MakeFrame(renderer, board.Printed(), height, &random);
+      std::vector<std::uint64_t> seeds(settings.frames_per_bin);
+      for (std::uint64_t& seed : seeds) seed = random.Bits();
+      std::vector<Frame> frames(seeds.size());
+      ForEachIndex(frames.size(), [&](std::size_t i) {
+        Random of_frame(seeds[i]);
+        frames[i] =
+            MakeFrame(renderer, board.Printed(), kBinEdges[bin], kBinEdges[bin + 1], &of_frame);
+      });
+      for (const Frame& frame : frames) {
         for (std::size_t k = 0; k < finders.size(); ++k) Measure(finders[k], frame, &scores[k]);
       }
       for (std::size_t k = 0; k < finders.size(); ++k) {
@@ -320,10 +336,12 @@ int Run(int frames_per_bin, std::uint64_t seed) {
 
 int main(int argc, char** argv) {
   CLI::App app("What is found of tags by altitude, beside libapriltag and OpenCV");
-  int frames = 20;
-  std::uint64_t seed = 1;
-  app.add_option("--frames", frames, "frames per range of altitudes");
-  app.add_option("--seed", seed, "of the rendered frames");
+  kestrel::Settings settings;
+  bool kestrel_only = false;
+  app.add_option("--frames", settings.frames_per_bin, "frames per range of altitudes");
+  app.add_option("--seed", settings.seed, "of the rendered frames");
+  app.add_flag("--kestrel-only", kestrel_only, "leave libapriltag and OpenCV out");
   CLI11_PARSE(app, argc, argv);
-  return kestrel::ReportMain([&] { return kestrel::Run(frames, seed); });
+  settings.with_peers = !kestrel_only;
+  return kestrel::ReportMain([&] { return kestrel::Run(settings); });
 }
