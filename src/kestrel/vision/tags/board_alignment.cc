@@ -22,16 +22,18 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 constexpr int kProfile = 11;        // gray values across an edge
 constexpr double kReach = 0.5;      // of the cell, on either side of an edge
 constexpr double kMostReachPx = 6;  // at last; four times as far at first
-constexpr int kFarSteps = 2;        // steps in which the reach is halved
+constexpr int kHalvings = 2;        // of the reach, each once the edges move by less than a fourth
 constexpr double kLeastReachPx = 1.2;
 constexpr double kFineCellPx = 8;  // cells with more than one point at an edge
 constexpr float kLeastStep = 6;    // gray values across an edge
 constexpr std::size_t kLeastEdges = 12;
-constexpr double kFloorPx = 0.06;    // noise of an edge's place that stays however sharp it is
-constexpr double kOutlier = 4;       // standard deviations
+constexpr double kFloorPx = 0.06;  // noise of an edge's place that stays however sharp it is
+constexpr double kOutlier = 4;     // standard deviations
+// Edges found anywhere within the reach are 0.4 to 0.58 of it off: such a pose explains none.
+constexpr double kMostRmsPx = 0.35 * kMostReachPx;
 constexpr double kMostTurn = 0.3;    // of a step, rad
 constexpr double kConverged = 1e-5;  // rad
-constexpr int kIterations = 8;
+constexpr int kIterations = 12;
 
 // Returns the place of a rising edge in a profile over -reach to reach: the centroid of the
 // gradient around its steepest place. NaN where there is none.
@@ -79,6 +81,18 @@ void AddPrior(const RigidTransform& pose, const LevelPrior& prior, NormalEquatio
     derivative.tail<3>() = face.cross(axis).transpose();
     equations->Add(derivative, -axis.dot(face), weight);
   }
+}
+
+// Returns how far (px) a step moves the edge that it moves farthest.
+double MostMoved(const std::vector<BoardAlignmentBuffers::Equation>& equations,
+                 const Vector6& step) {
+  double most = 0;
+  for (const BoardAlignmentBuffers::Equation& equation : equations) {
+    if (!std::isnan(equation.residual_px)) {
+      most = std::max(most, std::abs(equation.derivative.dot(step)));
+    }
+  }
+  return most;
 }
 
 }  // namespace
@@ -180,9 +194,11 @@ std::optional<AlignedBoard> BoardAlignment::Align(const cv::Mat& image, const Ri
   AlignedBoard aligned;
   aligned.camera_from_board = start;
   CollectEdges(start, only, buffers);
+  int halvings = 0;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     RigidTransform& pose = aligned.camera_from_board;
-    Predict(pose, kMostReachPx * (1 << std::max(0, kFarSteps - iteration)), buffers);
+    const double most_reach_px = kMostReachPx * (1 << (kHalvings - halvings));
+    Predict(pose, most_reach_px, buffers);
     Measure(image, buffers);
     if (buffers->magnitudes.size() < kLeastEdges) return std::nullopt;
     const double sigma = std::max(kFloorPx, RobustSigmaInPlace(buffers->magnitudes));
@@ -210,8 +226,13 @@ std::optional<AlignedBoard> BoardAlignment::Align(const cv::Mat& image, const Ri
     aligned.covariance = solver.solve(Matrix6::Identity());
     pose = Moved(pose, step.head<3>(), step.tail<3>());
     const double moved = step.head<3>().norm() / pose.translation.norm() + step.tail<3>().norm();
-    if (moved < kConverged && iteration >= kFarSteps) break;
+    if (halvings == kHalvings && moved < kConverged) break;
+    // An edge out of reach is not seen: the reach stays while the edges still move far.
+    if (halvings < kHalvings && MostMoved(buffers->equations, step) < 0.25 * most_reach_px) {
+      ++halvings;
+    }
   }
+  if (halvings < kHalvings || aligned.rms_px > kMostRmsPx) return std::nullopt;
   return aligned;
 }
 

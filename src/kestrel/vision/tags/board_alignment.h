@@ -60,7 +60,8 @@ class BoardAlignment {
       : camera_(camera), board_(board) {}
 
   // Aligns from 'start', by the edges of all tags whose cells are large enough, or of 'only' one.
-  // Nothing when too few edges are found. Does not allocate.
+  // Nothing when too few edges are found, or no pose brings
+  // them together. Does not allocate.
   std::optional<AlignedBoard> Align(const cv::Mat& image, const RigidTransform& start,
                                     const LevelPrior& prior, const TagModel* only,
                                     BoardAlignmentBuffers* buffers) const;

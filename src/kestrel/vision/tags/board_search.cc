@@ -12,7 +12,7 @@ namespace kestrel {
 namespace {
 
 constexpr double kSigmas = 3;        // of the expected place that are searched
-constexpr double kMostShiftPx = 30;  // of a pad that is followed
+constexpr double kMostShiftPx = 30;  // of a pad that is followed, or so many steps:
 constexpr int kMostShiftSteps = 10;  // to either side
 constexpr double kMirrorCost = 4.5;  // below it the image cannot tell two poses apart: 3 sigma
 constexpr double kMisfitBoundPx = 1;
@@ -104,7 +104,8 @@ void BoardSearch::SampleAt(const RigidTransform& pose, std::span<const Eigen::Ve
 BoardSearch::ShiftGrid BoardSearch::GridOf(const RigidTransform& expected, double step_px) const {
   const double sigma_px =
       hint_.center_sigma_m * models_.camera.intrinsics().fx_px / expected.translation.norm();
-  const double radius = std::min(kMostShiftPx, kSigmas * sigma_px);
+  const double most = std::max(kMostShiftPx, kMostShiftSteps * step_px);
+  const double radius = std::min(most, kSigmas * sigma_px);
   const double step = std::max(step_px, radius / kMostShiftSteps);
   return {step, static_cast<int>(std::ceil(radius / step))};
 }

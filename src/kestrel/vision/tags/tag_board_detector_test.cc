@@ -207,6 +207,31 @@ TEST_F(TagBoardDetectorTest, AQuarterOfATagIsFollowed) {
   EXPECT_GE(found, kFrames - 2);
 }
 
+TEST_F(TagBoardDetectorTest, ANearTagThatIsFarFromItsExpectedPlaceIsFoundRightOrNotAtAll) {
+  Use({{OneTag("tag36h11", 7, 0.5)}});
+  Random random(17);
+  int found = 0;
+  std::vector<double> squared;
+  constexpr int kFrames = 60;
+  for (int i = 0; i < kFrames; ++i) {
+    const double height = random.Uniform(0.3, 0.6);
+    const RigidTransform pose = RandomBoardBelow(height, 0.5, 0.2, &random);
+    LandingHint hint = Expected(pose, 0.04, &random);
+    hint.rotation_in_camera = pose.rotation;
+    const LandingReport report = Detect(Image(pose, random.Bits()), hint);
+    if (!report.detection) continue;
+    ++found;
+    const PoseError error = ErrorOf(*report.detection, pose);
+    EXPECT_LT(error.place, 0.01) << i;
+    EXPECT_LT(error.angle, 0.01) << i;
+    squared.push_back(error.squared);
+  }
+  EXPECT_GE(found, kFrames * 9 / 10);
+  const double nees = std::accumulate(squared.begin(), squared.end(), 0.0) / (6 * squared.size());
+  EXPECT_GT(nees, 0.1);
+  EXPECT_LT(nees, 1.5);
+}
+
 TEST_F(TagBoardDetectorTest, ATagIsFollowedThroughBlurAndAShadow) {
   Use({{OneTag("tag36h11", 7, 0.5)}});
   Random random(9);
