@@ -45,8 +45,12 @@ mavlink::SetPositionTargetLocalNed SetPointMessage(const SetPoint& set_point, Au
   message.afy = acceleration.y();
   message.afz = acceleration.z();
   if (set_point.yaw) {
-    message.type_mask |= mavlink::kIgnoreYawRate;
     message.yaw = HeadingOfYaw(*set_point.yaw);
+    if (set_point.yaw_rate) {
+      message.yaw_rate = static_cast<float>(-*set_point.yaw_rate);
+    } else {
+      message.type_mask |= mavlink::kIgnoreYawRate;
+    }
   } else {
     message.type_mask |= mavlink::kIgnoreYaw;
     if (kind != AutopilotKind::kArduPilot) message.type_mask |= mavlink::kIgnoreYawRate;
@@ -71,7 +75,7 @@ bool SendSetPoint(const SetPoint& set_point, const Autopilot& autopilot, Time no
                   Connection* connection) {
   constexpr std::int64_t kNsPerMs = 1'000'000;
   if (!set_point.velocity.allFinite() || !set_point.acceleration.allFinite() ||
-      !std::isfinite(set_point.yaw.value_or(0)) ||
+      !std::isfinite(set_point.yaw.value_or(0)) || !std::isfinite(set_point.yaw_rate.value_or(0)) ||
       !set_point.place.value_or(Eigen::Vector3d::Zero()).allFinite()) {
     return false;
   }

@@ -32,6 +32,18 @@ TEST(SetPointMessageTest, IsInLocalNed) {
   EXPECT_FLOAT_EQ(message.yaw, std::numbers::pi / 2);
 }
 
+TEST(SetPointMessageTest, ATurnGoesWithTheYaw) {
+  SetPoint set_point;
+  set_point.yaw = 0;
+  set_point.yaw_rate = 0.5;  // from east to north
+  for (const AutopilotKind kind : {AutopilotKind::kArduPilot, AutopilotKind::kPx4}) {
+    const auto message = SetPointMessage(set_point, kind, 1, 1, 0);
+    EXPECT_EQ(message.type_mask, 0x007) << "velocity, acceleration, yaw and its rate";
+    EXPECT_FLOAT_EQ(message.yaw, std::numbers::pi / 2);
+    EXPECT_FLOAT_EQ(message.yaw_rate, -0.5F) << "clockwise";
+  }
+}
+
 TEST(SetPointMessageTest, TheNoseStaysWithoutAYaw) {
   EXPECT_EQ(SetPointMessage({}, AutopilotKind::kPx4, 1, 1, 0).type_mask, 0xc07);
   const auto message = SetPointMessage({}, AutopilotKind::kArduPilot, 1, 1, 0);

@@ -1,9 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/flight/guidance/guidance_options.h"
 
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "kestrel/core/base/parse_number.h"
 #include "kestrel/core/base/violations.h"
+#include "kestrel/core/geometry/angles.h"
 
 namespace kestrel {
+namespace {
+
+constexpr char kAnyHeading[] = "any";
+
+}  // namespace
 
 std::vector<std::string> GuidanceOptions::Validate() const {
   std::vector<std::string> violations;
@@ -27,6 +38,13 @@ std::vector<std::string> GuidanceOptions::Validate() const {
   RequireIn(cone_m, 0.01, 10, "cone_m", &violations);
   RequireIn(cone_slope, 0, 10, "cone_slope", &violations);
   RequireIn(commit_height_m, 0, 1, "commit_height_m", &violations);
+  if (touchdown_heading != kAnyHeading && !HeadingOverPad()) {
+    violations.push_back(fmt::format(
+        "touchdown_heading is '{}', expected degrees from -360 to 360, or any", touchdown_heading));
+  }
+  RequireIn(heading_tolerance_deg, 0.5, 45, "heading_tolerance_deg", &violations);
+  RequireIn(heading_wait_s, 1, 3600, "heading_wait_s", &violations);
+  RequireIn(max_turn_dps, 1, 360, "max_turn_dps", &violations);
   RequireIn(max_sigma_m, 0.01, 10, "max_sigma_m", &violations);
   RequireIn(sight_s, 0.05, 3, "sight_s", &violations);
   RequireIn(sight_height_m, commit_height_m, 100, "sight_height_m", &violations);
@@ -47,6 +65,13 @@ std::vector<std::string> GuidanceOptions::Validate() const {
     violations.push_back("search_altitude_m is not between limits.floor_m and limits.ceiling_m");
   }
   return violations;
+}
+
+std::optional<double> GuidanceOptions::HeadingOverPad() const {
+  constexpr double kMostDegrees = 360;
+  const auto degrees = ParseNumber<double>(touchdown_heading);
+  if (!degrees || !(std::abs(*degrees) <= kMostDegrees)) return std::nullopt;
+  return Radians(*degrees);
 }
 
 }  // namespace kestrel

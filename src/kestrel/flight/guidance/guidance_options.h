@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,14 @@ struct GuidanceOptions {
   double cone_slope = 0.35;
   // Below this height it commits: it goes down the last bit without the cone.
   double commit_height_m = 0.35;
+  // Heading of the nose at touchdown: degrees from the pad's x axis, counterclockwise as seen from
+  // above, or "any": the nose keeps its heading. Of the headings under which the pad looks the same
+  // the nearest is taken. Until the nose has it within the tolerance the UAV does not commit; after
+  // heading_wait_s above the target it gives up.
+  std::string touchdown_heading = "any";
+  double heading_tolerance_deg = 2;
+  double heading_wait_s = 20;
+  double max_turn_dps = 30;  // against the pad
   // While the target's standard deviation per axis is above this it does not descend; above twice
   // this it climbs.
   double max_sigma_m = 0.25;
@@ -119,6 +128,14 @@ struct GuidanceOptions {
     visitor("cone_m", self.cone_m, "m", "how far off it may be at the board to go down");
     visitor("cone_slope", self.cone_slope, "m/m", "and more, per metre of height");
     visitor("commit_height_m", self.commit_height_m, "m", "below it goes through with it");
+    visitor("touchdown_heading", self.touchdown_heading, "deg",
+            "of the nose over the pad, from the pad's x axis, counterclockwise from above; or any");
+    visitor("heading_tolerance_deg", self.heading_tolerance_deg, "deg",
+            "how far off it the nose may be to go through with the landing");
+    visitor("heading_wait_s", self.heading_wait_s, "s",
+            "gives up after so long above the target without that heading");
+    visitor("max_turn_dps", self.max_turn_dps, "deg/s",
+            "fastest turn to that heading, against the pad");
     visitor("max_sigma_m", self.max_sigma_m, "m", "known no better it does not go down");
     visitor("sight_s", self.sight_s, "s", "in sight is what a frame showed so recently");
     visitor("sight_height_m", self.sight_height_m, "m",
@@ -148,6 +165,9 @@ struct GuidanceOptions {
     visitor.Group("model", self.model);
   }
   std::vector<std::string> Validate() const;
+
+  // Returns touchdown_heading in rad; nothing for "any", and for a text that is not valid.
+  std::optional<double> HeadingOverPad() const;
 };
 
 }  // namespace kestrel

@@ -104,6 +104,7 @@ LandingGuidance::LandingGuidance(const GuidanceOptions& options,
       search_(options),
       demand_(options.limits),
       contact_(options.contact),
+      heading_(options),
       reason_(kWaits),
       may_stream_(options.stream_before_start),
       place_(place.value_or(Vector2d::Zero())) {}
@@ -190,7 +191,7 @@ void LandingGuidance::Start(const GuidanceInput& input) {
   }
   has_given_up_ = false;
   is_active_ = true;
-  yaw_ = HeadingOf(input.uav->world_from_body.rotation);
+  heading_.Start(HeadingOf(input.uav->world_from_body.rotation));
   last_ = input.now;
   go_arounds_ = 0;
   poses_lost_.reset();
@@ -239,6 +240,7 @@ GuidanceOutput LandingGuidance::Blind(const GuidanceInput& input) {
   }
   SetPoint on = sent_.value_or(SetPoint());
   on.acceleration.setZero();
+  on.yaw_rate.reset();
   if (phase_ != GuidancePhase::kLanded) on = stale_.Level(on);
   if (IsLongerThan(options_.hold_pose_s, poses_lost_, input.now)) {
     on.velocity.setZero();
@@ -257,6 +259,8 @@ GuidanceOutput LandingGuidance::Fly(const GuidanceInput& input) {
   if (input.deck) {
     timing_.Observe(input.deck->time, input.deck->height_m, input.deck->normal);
   }
+  heading_.Update(input.now, HeadingOf(input.uav->world_from_body.rotation), input.target,
+                  input.link_delay_s);
   const Situation now = Look(input);
   ChoosePhase(input, now);
   if (!is_active_) return Idle(input);
@@ -266,7 +270,10 @@ GuidanceOutput LandingGuidance::Fly(const GuidanceInput& input) {
   } else {
     wanted = input.target ? Pursue(input, now) : Search(input, now);
   }
-  if (!wanted.yaw) wanted.yaw = yaw_;
+  if (!wanted.yaw) {
+    wanted.yaw = heading_.yaw();
+    if (heading_.is_known()) wanted.yaw_rate = heading_.yaw_rate();
+  }
   const Vector3d& position = input.uav->world_from_body.translation;
   const bool is_flying = phase_ != GuidancePhase::kLanded;
   SetPoint limited = limits_.Limited(wanted, position, input.target.has_value() || !is_flying);
@@ -285,6 +292,8 @@ bool LandingGuidance::GivesUp(const GuidanceInput& input) {
   }
   if (phase_ == GuidancePhase::kLanded) return false;
   const char* reason = nullptr;
+  const bool waits_for_heading =
+      phase_ == GuidancePhase::kFollow || phase_ == GuidancePhase::kDescend;
   Remember(!input.is_camera_up, input.now, &camera_lost_);
   if (IsLongerThan(options_.lose_camera_s, camera_lost_, input.now)) {
     reason = "no new images: gave up";
@@ -296,6 +305,10 @@ bool LandingGuidance::GivesUp(const GuidanceInput& input) {
   if (options_.cannot_follow_s > 0 &&
       IsLongerThan(options_.cannot_follow_s, beyond_since_, input.now)) {
     reason = "cannot keep up with the target: gave up";
+  }
+  if (heading_.IsOverdue(input.now, waits_for_heading)) {
+    reason = heading_.is_known() ? "the nose does not come to the heading over the pad: gave up"
+                                 : "the pad's heading is not known: gave up";
   }
   if (!reason) return false;
   has_given_up_ = true;
@@ -391,10 +404,17 @@ void LandingGuidance::ChooseAbove(const Situation& now) {
   if (phase_ != GuidancePhase::kFollow) return;
   if (now.off_m > kFollowCones * cone_m) {
     Enter(GuidancePhase::kApproach, "too far from the target");
-  } else if (now.is_known && now.is_credible && now.is_in_sight && now.off_m < cone_m &&
-             now.slip_mps < kMaxClosing_mps) {
-    Enter(GuidancePhase::kDescend, "above the target, which is in sight");
+  } else if (now.off_m < cone_m && MayDescend(now)) {
+    if (heading_.is_wanted() && !heading_.is_known()) {
+      reason_ = "waits above the target: the pad's heading is not known";
+    } else {
+      Enter(GuidancePhase::kDescend, "above the target, which is in sight");
+    }
   }
+}
+
+bool LandingGuidance::MayDescend(const Situation& now) const {
+  return now.is_known && now.is_credible && now.is_in_sight && now.slip_mps < kMaxClosing_mps;
 }
 
 // Chooses within the descent: on down to the deck, or up again.
@@ -407,7 +427,7 @@ void LandingGuidance::ChooseDescent(const GuidanceInput& input, const Situation&
     if (!now.is_in_sight && now.height_m < options_.sight_height_m) {
       return GoAround("low, and the target is not in sight");
     }
-    if (now.height_m < options_.commit_height_m && now.off_m < cone_m) {
+    if (now.height_m < options_.commit_height_m && now.off_m < cone_m && heading_.is_reached()) {
       Enter(GuidancePhase::kCommit, "near the deck, within the cone");
     }
   }
@@ -510,14 +530,23 @@ double LandingGuidance::ClimbRate(const GuidanceInput& input, const Situation& n
   }
   if (phase_ == GuidancePhase::kDescend) {
     if (now.off_m >= Cone(now.height_m)) return 0;
-    if (!timing_.Waits(input.now, now.height_m)) return -sink;
-    return std::max(-sink, kHeightGain * (TouchdownTiming::kWaitHeight_m - now.height_m));
+    const auto wait_m = WaitHeight(input.now, now.height_m);
+    return wait_m ? std::max(-sink, kHeightGain * (*wait_m - now.height_m)) : -sink;
   }
   const double top_m = options_.search_altitude_m - input.target->motion.position().z();
   const bool is_unknown = input.target->position_sigma_m() > 2 * options_.max_sigma_m;
   const double wanted_m =
       is_unknown ? top_m : std::max(options_.follow_height_m, options_.glide * now.off_m);
   return kHeightGain * (std::min(wanted_m, top_m) - now.height_m);
+}
+
+// Height below which the UAV does not go yet: before the deck is level, or without the heading.
+std::optional<double> LandingGuidance::WaitHeight(Time now, double height_m) {
+  const bool waits_for_deck = timing_.Waits(now, height_m);
+  if (!heading_.is_reached()) {
+    return std::max(TouchdownTiming::kWaitHeight_m, 2 * options_.commit_height_m);
+  }
+  return waits_for_deck ? std::optional(TouchdownTiming::kWaitHeight_m) : std::nullopt;
 }
 
 void LandingGuidance::Enter(GuidancePhase phase, const char* reason) {

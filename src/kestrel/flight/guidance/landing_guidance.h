@@ -21,6 +21,7 @@
 #include "kestrel/flight/guidance/stale_safety.h"
 #include "kestrel/flight/guidance/target_pursuit.h"
 #include "kestrel/flight/guidance/target_search.h"
+#include "kestrel/flight/guidance/touchdown_heading.h"
 #include "kestrel/flight/guidance/touchdown_timing.h"
 #include "kestrel/vision/tracking/target_tracker.h"
 
@@ -140,6 +141,7 @@ class LandingGuidance {
   SetPoint Pursue(const GuidanceInput& input, const Situation& now);
   SetPoint Rest(const GuidanceInput& input, const Situation& now);
   double ClimbRate(const GuidanceInput& input, const Situation& now);
+  std::optional<double> WaitHeight(Time now, double height_m);
   GuidanceRequest RequestInContact(const GuidanceInput& input) const;
   GuidanceOutput Output(const std::optional<SetPoint>& set_point, GuidanceRequest request) const;
 
@@ -147,6 +149,7 @@ class LandingGuidance {
   Situation Look(const GuidanceInput& input) const;
   void ChoosePhase(const GuidanceInput& input, const Situation& now);
   void ChooseAbove(const Situation& now);
+  bool MayDescend(const Situation& now) const;
   void ChooseDescent(const GuidanceInput& input, const Situation& now);
   bool FindContact(const GuidanceInput& input, const Situation& now);
   void Enter(GuidancePhase phase, const char* reason);
@@ -167,6 +170,7 @@ class LandingGuidance {
   ContactDetector contact_;
   DeckRide ride_;
   TouchdownTiming timing_;
+  TouchdownHeading heading_;
 
   GuidancePhase phase_ = GuidancePhase::kIdle;
   const char* reason_;
@@ -186,7 +190,6 @@ class LandingGuidance {
   Eigen::Vector3d velocity_trend_{0, 0, 0};  // the UAV's velocity through a low pass
   std::optional<Time> contact_since_;
   Eigen::Vector2d place_{0, 0};  // where the vehicle was last, or should pass
-  double yaw_ = 0;               // heading that the nose keeps, rad
   std::optional<SetPoint> sent_;
 };
 

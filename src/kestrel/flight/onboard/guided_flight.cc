@@ -163,7 +163,7 @@ std::optional<TargetEstimate> GuidedFlight::Target(Time now, const TrackSnapshot
   }
   const double ahead_s = ToSeconds(now - track.captured);
   return TargetEstimate{now, Propagate(track.target->motion, std::max(ahead_s, 0.0), noise_),
-                        track.target->has_yaw};
+                        track.target->yaw_period};
 }
 
 void GuidedFlight::Ask(Time now, GuidanceRequest request) {

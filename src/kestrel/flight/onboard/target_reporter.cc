@@ -58,7 +58,7 @@ bool TargetReporter::PredictTarget(const TrackSnapshot& track, TargetReport* rep
   report->position_in_world = target.position();
   report->velocity_in_world = target.velocity();
   report->covariance = target.covariance.topLeftCorner<3, 3>();
-  if (track.target->has_yaw) {
+  if (track.target->has_yaw()) {
     report->yaw = target.yaw();
     report->yaw_sigma = std::sqrt(target.covariance(TurnState::kYaw, TurnState::kYaw));
   }

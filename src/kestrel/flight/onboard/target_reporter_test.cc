@@ -76,7 +76,7 @@ TEST(TargetReporterTest, TellsTheHeadingThatTheTrackKnows) {
   track.target->motion.mean(TurnState::kYaw) = 2.5;
   track.target->motion.covariance(TurnState::kYaw, TurnState::kYaw) = 0.0004;
   EXPECT_FALSE(reporter.Report(At(1), kAtOnce, track, Uav().PosesUntil(1))->yaw);
-  track.target->has_yaw = true;
+  track.target->yaw_period = kFullTurn;
   const auto report = reporter.Report(At(1), kAtOnce, track, Uav().PosesUntil(1));
   ASSERT_TRUE(report && report->yaw);
   EXPECT_NEAR(*report->yaw, 2.5, 1e-9);

@@ -14,6 +14,10 @@ namespace kestrel {
 namespace {
 
 using Eigen::Vector2d;
+// ATC_ANG_YAW_P and ATC_SLEW_YAW as they come.
+constexpr double kArduPilotYawGain = 4.5;
+constexpr double kArduPilotTurn = Radians(60);
+
 using Vector1d = ShapedPath<1>::Vector;
 
 bool IsFrameOfGuided(std::uint8_t frame) {
@@ -24,6 +28,9 @@ bool IsFrameOfGuided(std::uint8_t frame) {
 }
 
 }  // namespace
+
+ArduPilotGuided::ArduPilotGuided(const AutopilotParameters& parameters)
+    : parameters_(parameters), heading_(kArduPilotYawGain, kArduPilotTurn) {}
 
 // A set-point that it does not accept stops it.
 void ArduPilotGuided::Handle(const mavlink::SetPositionTargetLocalNed& message,
@@ -57,6 +64,7 @@ void ArduPilotGuided::Handle(const mavlink::SetAttitudeTarget& message, const Fl
 void ArduPilotGuided::Start(const FlightState& state) {
   told_.reset();
   attitude_.reset();
+  heading_.Reset();
   limit_ = {};
   horizontal_.Start(state.position().head<2>(), state.velocity().head<2>());
   vertical_.Start(state.position().tail<1>(), state.velocity().tail<1>());
@@ -79,15 +87,25 @@ FlightCommand ArduPilotGuided::Fly(const FlightState& state) {
       vertical_.velocity().x() + parameters_["PSC_D_POS_P"] * climb;
   command.set_point.acceleration << horizontal_.acceleration(), vertical_.acceleration().x();
   limit_ = LimitOf(way, command.set_point.velocity.head<2>() - state.velocity().head<2>());
-  if (wanted_.yaw) {
-    command.set_point.yaw = wanted_.yaw;
-  } else if (turn_rate_) {
-    if (*turn_rate_ != 0) command.set_point.yaw = HeadingOf(state) + *turn_rate_;  // a second ahead
-  } else if (wanted_.velocity.head<2>().norm() > 1) {
-    // With WP_YAW_BEHAVIOR the heading follows the velocity.
-    command.set_point.yaw = std::atan2(wanted_.velocity.y(), wanted_.velocity.x());
-  }
+  command.set_point.yaw = Heading(state);
   return command;
+}
+
+// A yaw that turns is turned on between the messages.
+std::optional<double> ArduPilotGuided::Heading(const FlightState& state) {
+  if (wanted_.yaw) {
+    const double rate = turn_rate_.value_or(0);
+    *wanted_.yaw += rate * state.step_s;
+    return heading_.Step(*wanted_.yaw, rate, state);
+  }
+  heading_.Reset();
+  if (turn_rate_) {
+    if (*turn_rate_ == 0) return std::nullopt;
+    return HeadingOf(state) + *turn_rate_;  // a second ahead
+  }
+  // With WP_YAW_BEHAVIOR the heading follows the velocity.
+  if (wanted_.velocity.head<2>().norm() <= 1) return std::nullopt;
+  return std::atan2(wanted_.velocity.y(), wanted_.velocity.x());
 }
 
 // Without messages it is level, and neither climbs nor sinks.

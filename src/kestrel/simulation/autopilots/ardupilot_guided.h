@@ -6,6 +6,7 @@
 #include "kestrel/comms/autopilot_rules/autopilot_parameters.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/simulation/autopilots/guided_rules.h"
+#include "kestrel/simulation/autopilots/heading_control.h"
 #include "kestrel/simulation/autopilots/set_point_reading.h"
 #include "kestrel/simulation/autopilots/shaped_path.h"
 
@@ -17,7 +18,7 @@ namespace kestrel {
 class ArduPilotGuided : public GuidedRules {
  public:
   // The parameters must outlive this.
-  explicit ArduPilotGuided(const AutopilotParameters& parameters) : parameters_(parameters) {}
+  explicit ArduPilotGuided(const AutopilotParameters& parameters);
 
   void Handle(const mavlink::SetPositionTargetLocalNed& message, const FlightState& state,
               bool is_guided) override;
@@ -36,13 +37,15 @@ class ArduPilotGuided : public GuidedRules {
                                const Eigen::Vector2d& velocity_error) const;
   void Follow(const FlightState& state);
 
+  std::optional<double> Heading(const FlightState& state);
   FlightCommand FlyAttitude(const FlightState& state);
 
   const AutopilotParameters& parameters_;
   std::optional<AttitudeOrder> attitude_;  // nothing: it flies by velocities
   SetPoint wanted_;
   std::optional<double> turn_rate_;  // ENU, rad/s
-  std::optional<Time> told_;         // time of the last one; nothing: it has to stop
+  HeadingControl heading_;
+  std::optional<Time> told_;  // time of the last one; nothing: it has to stop
   ShapedPath<2> horizontal_;
   ShapedPath<2>::Limit limit_;
   ShapedPath<1> vertical_;

@@ -20,14 +20,17 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kStream_s = 0.6;    // duration of a stream before it is trusted (measured)
-constexpr double kSlowest_s = 0.5;   // longest time between two set-points of a stream
+constexpr double kStream_s = 0.6;   // duration of a stream before it is trusted (measured)
+constexpr double kSlowest_s = 0.5;  // longest time between two set-points of a stream
+// MC_YAW_P and MC_YAWRATE_MAX as they come.
+constexpr double kPx4YawGain = 2.8;
+constexpr double kPx4Turn = Radians(200);
 constexpr double kReaction_s = 0.3;  // of its failsafe, after the time-out (measured)
 
 }  // namespace
 
 Px4Offboard::Px4Offboard(const AutopilotParameters& parameters, Announce announce)
-    : parameters_(parameters), announce_(std::move(announce)) {}
+    : parameters_(parameters), announce_(std::move(announce)), heading_(kPx4YawGain, kPx4Turn) {}
 
 void Px4Offboard::Handle(const mavlink::SetPositionTargetLocalNed& message,
                          const FlightState& state, bool /*is_guided*/) {
@@ -54,6 +57,7 @@ bool Px4Offboard::IsAvailable(const FlightState& state) const {
 }
 
 void Px4Offboard::Start(const FlightState& state) {
+  heading_.Reset();
   integral_.setZero();
   change_.setZero();
   last_velocity_ = state.velocity();
@@ -83,8 +87,12 @@ FlightCommand Px4Offboard::Fly(const FlightState& state) {
   command.set_point.velocity = WithinLimits(WantedVelocity(state));
   command.set_point.acceleration =
       wanted_.acceleration + ControlVelocity(state, command.set_point.velocity);
-  command.set_point.yaw = wanted_.yaw;
-  if (!wanted_.yaw && turn_rate_) command.set_point.yaw = HeadingOf(state) + *turn_rate_;
+  if (wanted_.yaw) {
+    command.set_point.yaw = heading_.Step(*wanted_.yaw, turn_rate_.value_or(0), state);
+  } else {
+    heading_.Reset();
+    if (turn_rate_) command.set_point.yaw = HeadingOf(state) + *turn_rate_;
+  }
   return command;
 }
 

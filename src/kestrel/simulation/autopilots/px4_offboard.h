@@ -8,6 +8,7 @@
 #include "kestrel/comms/autopilot_rules/autopilot_parameters.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/simulation/autopilots/guided_rules.h"
+#include "kestrel/simulation/autopilots/heading_control.h"
 
 namespace kestrel {
 
@@ -39,8 +40,9 @@ class Px4Offboard : public GuidedRules {
   Announce announce_;
   SetPoint wanted_;
   std::optional<double> turn_rate_;  // ENU, rad/s
-  std::optional<Time> first_told_;   // beginning of the present stream
-  Time told_{};                      // time of the last one
+  HeadingControl heading_;
+  std::optional<Time> first_told_;  // beginning of the present stream
+  Time told_{};                     // time of the last one
   Eigen::Vector3d integral_{0, 0, 0};
   Eigen::Vector3d last_velocity_{0, 0, 0};
   Eigen::Vector3d change_{0, 0, 0};  // derivative of the velocity, m/s^2

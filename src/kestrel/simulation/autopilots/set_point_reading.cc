@@ -65,7 +65,8 @@ std::optional<FlightOrder> FlightOrderOf(const mavlink::SetPositionTargetLocalNe
   }
   if ((message.type_mask & mavlink::kIgnoreYaw) == 0) {
     order.set_point.yaw = is_of_body ? HeadingOf(state) - message.yaw : kNorth - message.yaw;
-  } else if ((message.type_mask & mavlink::kIgnoreYawRate) == 0) {
+  }
+  if ((message.type_mask & mavlink::kIgnoreYawRate) == 0) {
     order.turn_rate = -message.yaw_rate;
   }
   if (!order.set_point.velocity.allFinite() ||

@@ -15,7 +15,7 @@ namespace kestrel {
 // The velocity or the place in a SET_POSITION_TARGET_LOCAL_NED, in the world (ENU).
 struct FlightOrder {
   SetPoint set_point;
-  std::optional<double> turn_rate;  // rad/s, from east to north
+  std::optional<double> turn_rate;  // rad/s, from east to north; with a yaw: of that yaw
 };
 
 // Returns nothing when the message has neither a velocity nor a place, or any of its values is not

@@ -2,6 +2,7 @@
 #include "kestrel/simulation/autopilots/simulated_uav.h"
 
 #include <cmath>
+#include <numbers>
 
 #include "kestrel/core/poses/gravity.h"
 #include "kestrel/simulation/vehicle/multicopter_motion.h"
@@ -100,8 +101,11 @@ void SimulatedUav::ComeDown() {
   if (!on_board && feet.z() > 0) return;
   const Vector3d support_velocity =
       on_board ? world_.VelocityAt(pose_.time) : Vector3d(Vector3d::Zero());
+  const double heading =
+      HeadingOf(body.rotation) - HeadingOf(world_.PatternAt(pose_.time).rotation);
   contact_ = Contact{pose_.time, on_board, feet_in_pattern,
-                     pose_.motion->velocity_in_world - support_velocity};
+                     pose_.motion->velocity_in_world - support_velocity,
+                     std::remainder(heading, 2 * std::numbers::pi)};
   StandOn(on_board);
 }
 

@@ -43,6 +43,8 @@ inline TargetEstimate TrueTarget(const VehicleWorld& world, Time now) {
   target.motion.mean(TurnState::kTurnRate) = TurnRateAt(world, now);
   target.motion.mean(TurnState::kTurnChange) =
       (TurnRateAt(world, now + step) - TurnRateAt(world, now - step)) / (2 * kStep_s);
+  target.motion.mean(TurnState::kYaw) = HeadingOf(world.PatternAt(now).rotation);
+  target.yaw_period = kFullTurn;
   target.motion.covariance.diagonal().head<3>().setConstant(kSigma_m * kSigma_m);
   return target;
 }

@@ -478,7 +478,7 @@ TEST_F(OwnDetectorTest, TheHeadingIsKnownAndComesBackAsAHint) {
   ASSERT_TRUE(seen.yaw_in_world);
   EXPECT_NEAR(*seen.yaw_in_world, kYaw, 1e-6);
   ASSERT_TRUE(seen.target);
-  EXPECT_TRUE(seen.target->has_yaw);
+  EXPECT_TRUE(seen.target->has_yaw());
   EXPECT_NEAR(std::remainder(seen.target->motion.yaw() - kYaw, kFullTurn), 0, 0.02);
   ASSERT_TRUE(hint_.rotation_in_camera);
   EXPECT_LT(hint_.rotation_in_camera->angularDistance(CameraFromPattern().rotation), 0.02);
@@ -499,7 +499,7 @@ TEST_F(OwnDetectorTest, AHeadingIsKnownUpToTheTurnsOfThePad) {
   const LandingObservation seen = Fly(&pipeline);
   ASSERT_TRUE(seen.yaw_in_world);
   EXPECT_NEAR(*seen.yaw_in_world, kYaw - std::numbers::pi, 1e-6);
-  EXPECT_FALSE(seen.target->has_yaw);
+  EXPECT_FALSE(seen.target->has_yaw());
   EXPECT_FALSE(hint_.rotation_in_camera);
 }
 
@@ -508,7 +508,7 @@ TEST_F(OwnDetectorTest, ADiscHasNoYaw) {
   const LandingObservation seen = Fly(&pipeline);
   EXPECT_FALSE(seen.yaw_in_world);
   ASSERT_TRUE(seen.target);
-  EXPECT_FALSE(seen.target->has_yaw);
+  EXPECT_FALSE(seen.target->has_yaw());
 }
 
 TEST_F(OwnDetectorTest, OtherOptionsKeepTheDetector) {

@@ -234,7 +234,7 @@ std::optional<TargetEstimate> TargetTracker::Predict(Time time) const {
   if (count == 0) return std::nullopt;
   const Entry& entry = entries_[count - 1];
   if (ToSeconds(time - entry.measurement.time) > options_.lost_after_s) return std::nullopt;
-  TargetEstimate estimate{time, PredictFrom(entry, time), entry.yaw_period == kFullTurn};
+  TargetEstimate estimate{time, PredictFrom(entry, time), entry.yaw_period};
   estimate.motion.covariance.topLeftCorner<3, 3>() += entry.measurement.shared_covariance;
   const bool is_known =
       estimate.motion.mean.allFinite() && estimate.position_sigma_m() <= options_.lost_sigma_m;

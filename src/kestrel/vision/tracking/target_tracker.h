@@ -52,9 +52,12 @@ const char* ToString(TrackState state);  // "searching", "tracking", "predicting
 struct TargetEstimate {
   Time time;
   TurnState motion;
-  // True when motion.yaw() is the target's heading in the world, not only modulo the turn after
-  // which it looks the same.
-  bool has_yaw = false;
+  // Turn (rad) after which the target looks the same, modulo which motion.yaw() is the heading of
+  // its x axis in the world; 0: no yaw was measured.
+  double yaw_period = 0;
+
+  // True when motion.yaw() is the target's heading in the world, without such a turn.
+  bool has_yaw() const { return yaw_period == kFullTurn; }
 
   double heading() const;  // of the velocity, rad from x (east) to y
   double speed() const;    // horizontal, m/s

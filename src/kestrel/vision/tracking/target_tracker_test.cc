@@ -212,8 +212,8 @@ TEST(TargetTracker, TheHeadingIsKnownOnceItWasSeen) {
       EXPECT_LE(tracker.Add(measurement), MeasurementFate::kAccepted);
       const auto target = tracker.Predict(At(t));
       ASSERT_TRUE(target);
-      EXPECT_EQ(target->has_yaw, i >= 20) << i;
-      if (!target->has_yaw) continue;
+      EXPECT_EQ(target->has_yaw(), i >= 20) << i;
+      if (!target->has_yaw()) continue;
       EXPECT_NEAR(std::remainder(target->motion.yaw() - true_yaw, kFullTurn), 0, 0.02)
           << true_yaw << " " << i;
     }
