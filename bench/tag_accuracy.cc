@@ -13,8 +13,6 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <apriltag/apriltag.h>
-#include <apriltag/tag36h11.h>
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 #if __has_include(<opencv2/objdetect/aruco_detector.hpp>)
@@ -23,6 +21,7 @@
 #include <opencv2/aruco.hpp>
 #endif
 
+#include "apriltag_peer.h"
 #include "for_each_index.h"
 #include "kestrel/core/base/random.h"
 #include "kestrel/core/base/robust_statistics.h"
@@ -69,44 +68,25 @@ Corners CornersOf(const CameraModel& camera, const RigidTransform& pose) {
 
 // --- The peers ---
 
-// AprilTag 3, family 36h11, one thread.
-class AprilTagPeer {
+// libapriltag on the raw corners, in the order of CornersOf.
+class AprilTagFinder {
  public:
-  explicit AprilTagPeer(float decimate)
-      : family_(tag36h11_create(), tag36h11_destroy),
-        detector_(apriltag_detector_create(), apriltag_detector_destroy) {
-    apriltag_detector_add_family(detector_.get(), family_.get());
-    detector_->nthreads = 1;
-    detector_->quad_decimate = decimate;
-  }
+  explicit AprilTagFinder(float decimate) : peer_("tag36h11", decimate) {}
   Found operator()(const cv::Mat& image) const {
-    image_u8_t view = {.width = image.cols,
-                       .height = image.rows,
-                       .stride = static_cast<int>(image.step[0]),
-                       .buf = image.data};
-    zarray_t* const all = apriltag_detector_detect(detector_.get(), &view);
     Found found;
-    for (int i = 0; i < zarray_size(all); ++i) {
-      apriltag_detection_t* detection = nullptr;
-      zarray_get(all, i, static_cast<void*>(&detection));
-      if (detection->id != kTagId) {
+    for (const AprilTagPeer::Tag& tag : peer_.Find(image)) {
+      if (tag.id != kTagId) {
         found.wrong_id = true;
         continue;
       }
-      // From the lower left anticlockwise; half a pixel because its pixels have integer borders.
-      Corners corners;
-      for (int k = 0; k < 4; ++k) {
-        corners[k] = Eigen::Vector2d(detection->p[3 - k][0] - 0.5, detection->p[3 - k][1] - 0.5);
-      }
-      found.corners = corners;
+      found.corners.emplace();
+      std::reverse_copy(tag.corners.begin(), tag.corners.end(), found.corners->begin());
     }
-    apriltag_detections_destroy(all);
     return found;
   }
 
  private:
-  std::shared_ptr<apriltag_family_t> family_;
-  std::shared_ptr<apriltag_detector_t> detector_;
+  AprilTagPeer peer_;
 };
 
 // OpenCV's ArUco with corners refined to sub-pixel.
@@ -297,8 +277,8 @@ int Run(const Settings& settings) {
     if (!settings.with_peers) {
       // Kestrel alone.
     } else if (is_april) {
-      add_peer("libapriltag", AprilTagPeer(1));
-      add_peer("libapriltag, decimate 2", AprilTagPeer(2));
+      add_peer("libapriltag", AprilTagFinder(1));
+      add_peer("libapriltag, decimate 2", AprilTagFinder(2));
       add_peer("OpenCV", ArucoPeer(cv::aruco::DICT_APRILTAG_36h11, 2));
     } else {
       add_peer("OpenCV", ArucoPeer(cv::aruco::DICT_4X4_50, 0));
