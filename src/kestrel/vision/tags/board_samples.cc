@@ -2,6 +2,7 @@
 #include "kestrel/vision/tags/board_samples.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -13,30 +14,47 @@ namespace {
 constexpr int kNeighbors = 2;             // cells around a cell that it is held against
 constexpr double kLeastCellContrast = 5;  // gray values, between white and black cells
 
+// Sums over the cells of one colour.
+struct ColorSum {
+  double gray = 0, log = 0;
+  int count = 0;
+};
+
+// Where 'value' lies between the cells of the other colour (-1) and of its own (1).
+double PlaceBetween(double value, double black, double white, bool is_white) {
+  const double place = (value - 0.5 * (white + black)) / (0.5 * (white - black));
+  return std::clamp(is_white ? place : -place, -1.0, 1.0);
+}
+
 // Returns where a cell's gray value lies between that of the cells of the other colour (-1) and of
-// its own colour (1) around it; 0 where there are none.
-double CellAgreement(const TagGrid& grid, std::span<const float> gray, int column, int row) {
-  double sum[2] = {0, 0};  // of black and of white cells
-  int count[2] = {0, 0};
+// its own colour (1) around it; 0 where there are none. Lens and pixels mix gray values, a shadow
+// multiplies them: of the places by gray values and by their logarithms the better one counts.
+double CellAgreement(const TagGrid& grid, std::span<const float> gray, std::span<const float> log,
+                     int column, int row) {
+  ColorSum sums[2];  // of black and of white cells
   for (int y = std::max(0, row - kNeighbors); y <= std::min(grid.width - 1, row + kNeighbors);
        ++y) {
     for (int x = std::max(0, column - kNeighbors);
          x <= std::min(grid.width - 1, column + kNeighbors); ++x) {
       const int i = y * grid.width + x;
       if (grid.cells[i] == TagCell::kNone || gray[i] < 0 || (x == column && y == row)) continue;
-      const int color = grid.cells[i] == TagCell::kWhite;
-      sum[color] += gray[i];
-      ++count[color];
+      ColorSum& sum = sums[grid.cells[i] == TagCell::kWhite];
+      sum.gray += gray[i];
+      sum.log += log[i];
+      ++sum.count;
     }
   }
-  if (count[0] == 0 || count[1] == 0) return 0;
-  const double black = sum[0] / count[0];
-  const double white = sum[1] / count[1];
-  if (white - black < kLeastCellContrast) return -1;
-  const double place =
-      (gray[row * grid.width + column] - 0.5 * (white + black)) / (0.5 * (white - black));
-  const double sign = grid.at(column, row) == TagCell::kWhite ? 1 : -1;
-  return std::clamp(sign * place, -1.0, 1.0);
+  const auto& [black, white] = sums;
+  if (black.count == 0 || white.count == 0) return 0;
+  if (white.gray / white.count - black.gray / black.count < kLeastCellContrast) return -1;
+  const int i = row * grid.width + column;
+  const bool is_white = grid.cells[i] == TagCell::kWhite;
+  const double by_gray =
+      PlaceBetween(gray[i], black.gray / black.count, white.gray / white.count, is_white);
+  const double log_contrast = white.log / white.count - black.log / black.count;
+  if (!(log_contrast > 0)) return by_gray;
+  return std::max(by_gray,
+                  PlaceBetween(log[i], black.log / black.count, white.log / white.count, is_white));
 }
 
 // A clear match is one bit; a clear mismatch weighs more, as print and light are seldom that wrong.
@@ -114,12 +132,18 @@ double CellPx(const CameraModel& camera, const RigidTransform& camera_from_board
 TagAgreement CompareCells(const TagModel& tag, std::span<const float> gray) {
   constexpr double kBorderWeight = 0.1;  // border cells are alike in all tags and in windows
   const TagGrid& grid = tag.grid();
+  constexpr std::size_t kMostCells = 256;  // no family has more
+  constexpr float kFloor = 4;              // gray values: what darkness and noise leave
+  std::array<float, kMostCells> log;
+  for (std::size_t i = 0; i < std::min(gray.size(), kMostCells); ++i) {
+    log[i] = std::log(std::max(0.0f, gray[i]) + kFloor);
+  }
   TagAgreement agreement;
   for (int row = 0; row < grid.width; ++row) {
     for (int column = 0; column < grid.width; ++column) {
       const int i = row * grid.width + column;
       if (grid.cells[i] == TagCell::kNone || gray[i] < 0) continue;
-      const double here = CellAgreement(grid, gray, column, row);
+      const double here = CellAgreement(grid, gray, log, column, row);
       agreement.evidence += (tag.is_data[i] ? 1 : kBorderWeight) * CellEvidence(here);
       if (!tag.is_data[i]) continue;
       ++agreement.seen;

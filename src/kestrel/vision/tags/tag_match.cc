@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/vision/tags/tag_match.h"
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -58,13 +59,18 @@ TurnedMatch Compare(const TagModel& tag, int turn, std::span<const float> gray) 
   if (count[0] == 0 || count[1] == 0) return {};
   const double black = sum[0] / count[0];
   const double white = sum[1] / count[1];
-  int wrong = 0, seen = 0;
+  // The second threshold is right under the edge of a shadow, whose white is darker than the
+  // middle.
+  const double thresholds[] = {0.5 * (black + white), std::sqrt(std::max(0.0, black * white))};
+  int wrong[] = {0, 0};
+  int seen = 0;
   for_each_cell([&](int cell, bool is_white, float value) {
     if (!tag.is_data[cell]) return;
     ++seen;
-    wrong += (value > 0.5 * (black + white)) != is_white;
+    for (int i = 0; i < 2; ++i) wrong[i] += (value > thresholds[i]) != is_white;
   });
-  return {seen > 0 ? static_cast<double>(wrong) / seen : 1, white - black};
+  const int fewest = std::min(wrong[0], wrong[1]);
+  return {seen > 0 ? static_cast<double>(fewest) / seen : 1, white - black};
 }
 
 // Samples the cells of a grid that a quad is the square of. The homography meets the quad's corners
