@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/vision/helipad/helipad_candidates.h"
 
+#include <array>
 #include <cmath>
 #include <span>
 
@@ -15,6 +16,13 @@ constexpr PlaneBorders::Passes kHelipadPasses{{
 }};
 
 constexpr std::size_t kMostCandidates = 64;
+
+// Levels of the image at which a pass looks for narrow strokes, from 'first' down to 'last'.
+struct NarrowLevels {
+  int first, last;
+};
+constexpr std::array<NarrowLevels, PlaneBorders::kPasses> kNarrowLevels{
+    {{5, 3}, {2, 2}, {1, 1}, {0, 0}}};
 
 // True when a border may be an H's by its area: the H fills about half of its box when that is
 // upright, and less when it is turned.
@@ -34,28 +42,56 @@ HelipadFinder::HelipadFinder(const CameraModel& camera, const HelipadModel& mode
 void HelipadFinder::Begin(const cv::Mat& image, const cv::Rect& part,
                           HelipadCandidateBuffers* buffers) const {
   buffers->candidates.reserve(kMostCandidates);
-  borders_.Begin(image, part, &buffers->borders);
+  BorderBuffers& borders = buffers->borders;
+  if (borders.width_px != image.cols || borders.height_px != image.rows) {
+    buffers->narrow.Reserve(image, &borders);
+  }
+  borders_.Begin(image, part, &borders);
 }
 
 void HelipadFinder::Find(const cv::Rect& part, int pass, HelipadCandidateBuffers* buffers) const {
+  const auto borders = borders_.Trace(part, pass, &buffers->borders);
   buffers->candidates.clear();
   buffers->examined = 0;
-  for (const Border& border : borders_.Trace(part, pass, &buffers->borders)) {
-    // A border goes clockwise around a dark area, and anticlockwise around a hole in it.
-    if ((border.signed_area < 0) != model_.white) continue;
+  // A border goes clockwise around a dark area, and anticlockwise around a hole in it.
+  Add(borders, !model_.white, part, kHelipadPasses[pass].image_level, buffers);
+}
+
+void HelipadFinder::FindNarrow(const cv::Rect& part, int pass,
+                               HelipadCandidateBuffers* buffers) const {
+  constexpr int kLeastExtent = 6, kMostExtent = 50;  // pixels of a level, of an H
+  buffers->candidates.clear();
+  buffers->examined = 0;
+  for (int level = kNarrowLevels[pass].first; level >= kNarrowLevels[pass].last; --level) {
+    BorderLimits limits;
+    limits.min_extent = level == 0 ? kLeastExtent : 2 * kLeastExtent;
+    limits.min_count = 4 * static_cast<std::size_t>(limits.min_extent);
+    limits.max_extent = kMostExtent;
+    limits.narrow = true;
+    Add(TraceNarrow(level, model_.white, limits, &buffers->borders, &buffers->narrow), true, part,
+        level, buffers);
+  }
+}
+
+void HelipadFinder::Add(std::span<const Border> borders, bool around_ink, const cv::Rect& part,
+                        int level, HelipadCandidateBuffers* buffers) const {
+  for (const Border& border : borders) {
+    if ((border.signed_area > 0) != around_ink) continue;
     ++buffers->examined;
     if (buffers->candidates.size() == kMostCandidates) return;
     HelipadCandidate candidate;
-    if (Examine(border, part, pass, &buffers->borders, &candidate)) {
+    if (Examine(border, part, level, &buffers->borders, &candidate)) {
       buffers->candidates.push_back(candidate);
     }
   }
 }
 
-bool HelipadFinder::Examine(const Border& border, const cv::Rect& part, int pass,
+bool HelipadFinder::Examine(const Border& border, const cv::Rect& part, int level,
                             BorderBuffers* buffers, HelipadCandidate* candidate) const {
   if (!FillsAsAnH(border)) return false;
-  if (!borders_.OnPlane(border, part, pass, &candidate->camera_from_plane, buffers)) return false;
+  if (!borders_.OnPlaneOfLevel(border, part, level, &candidate->camera_from_plane, buffers)) {
+    return false;
+  }
   candidate->moments = MomentsOf(buffers->points);
   constexpr double kTolerance = 0.3;
   const double ratio = candidate->moments.Compactness() / model_.moments.Compactness();

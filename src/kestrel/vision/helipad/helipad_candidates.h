@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -9,6 +10,7 @@
 
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/vision/helipad/helipad_model.h"
+#include "kestrel/vision/helipad/narrow_borders.h"
 #include "kestrel/vision/tags/plane_borders.h"
 
 namespace kestrel {
@@ -23,6 +25,7 @@ struct HelipadCandidate {
 // Memory of one thread's search for candidates.
 struct HelipadCandidateBuffers {
   BorderBuffers borders;
+  NarrowBorderBuffers narrow;
   std::vector<HelipadCandidate> candidates;
   std::size_t examined = 0;  // number of borders
 };
@@ -42,8 +45,14 @@ class HelipadFinder {
   // Writes what one pass finds to 'buffers->candidates'.
   void Find(const cv::Rect& part, int pass, HelipadCandidateBuffers* buffers) const;
 
+  // The same for strokes across which the edge of a shadow may run.
+  void FindNarrow(const cv::Rect& part, int pass, HelipadCandidateBuffers* buffers) const;
+
  private:
-  bool Examine(const Border& border, const cv::Rect& part, int pass, BorderBuffers* buffers,
+  // Adds those of the borders, in pixels of a level, that are candidates.
+  void Add(std::span<const Border> borders, bool around_ink, const cv::Rect& part, int level,
+           HelipadCandidateBuffers* buffers) const;
+  bool Examine(const Border& border, const cv::Rect& part, int level, BorderBuffers* buffers,
                HelipadCandidate* candidate) const;
 
   PlaneBorders borders_;

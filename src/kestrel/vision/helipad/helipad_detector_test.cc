@@ -16,79 +16,12 @@
 #include "kestrel/core/camera/paper_camera.h"
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/vision/helipad/test_helipad_images.h"
+#include "kestrel/vision/helipad/test_helipad_lookalikes.h"
 
 namespace kestrel {
 namespace {
 
-using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-// A straight stroke of a letter, in half heights of the letter.
-struct Stroke {
-  Vector2d from, to;
-};
-
-// Letters, arrows, crosses, road markings, a window.
-const std::vector<std::vector<Stroke>>& Figures() {
-  static const std::vector<std::vector<Stroke>> figures = {
-      {{{-.5, -1}, {-.5, 1}}, {{-.5, 1}, {.5, -1}}, {{.5, -1}, {.5, 1}}},                   // N
-      {{{-.6, -1}, {-.6, 1}}, {{-.6, 1}, {0, 0}}, {{0, 0}, {.6, 1}}, {{.6, 1}, {.6, -1}}},  // M
-      {{{-.5, -1}, {0, 1}}, {{0, 1}, {.5, -1}}, {{-.3, -.2}, {.3, -.2}}},                   // A
-      {{{-.5, -1}, {-.5, 1}},
-       {{-.5, 1}, {.5, 1}},
-       {{-.5, 0}, {.4, 0}},
-       {{-.5, -1}, {.5, -1}}},                                              // E
-      {{{-.5, -1}, {-.5, 1}}, {{-.5, 1}, {.5, 1}}, {{-.5, 0}, {.4, 0}}},    // F
-      {{{-.5, -1}, {-.5, 1}}, {{-.5, 0}, {.5, 1}}, {{-.5, 0}, {.5, -1}}},   // K
-      {{{0, -1}, {0, 1}}, {{-.6, 1}, {.6, 1}}},                             // T
-      {{{-.5, -1}, {.5, 1}}, {{-.5, 1}, {.5, -1}}},                         // X
-      {{{-.5, 1}, {.5, 1}}, {{.5, 1}, {-.5, -1}}, {{-.5, -1}, {.5, -1}}},   // Z
-      {{{-.5, 1}, {-.5, -1}}, {{-.5, -1}, {.5, -1}}, {{.5, -1}, {.5, 1}}},  // U
-      {{{0, -1}, {0, 1}}, {{-.5, .5}, {0, 1}}, {{0, 1}, {.5, .5}}},         // arrow
-      {{{0, -1}, {0, 1}}, {{-1, 0}, {1, 0}}},                               // cross
-      {{{-.5, -1}, {-.5, 1}}, {{.5, -1}, {.5, 1}}},                         // lines
-      {{{-.5, -1}, {-.5, 1}},
-       {{.5, -1}, {.5, 1}},
-       {{-.5, 1}, {.5, 1}},
-       {{-.5, -1}, {.5, -1}},
-       {{-.5, 0}, {.5, 0}}},  // window
-      {{{-.5, -1}, {-.5, 1}}, {{.5, -1}, {.5, 1}}, {{-.5, .6}, {.5, .6}}, {{-.5, -.6}, {.5, -.6}}},
-      {{{0, -1}, {0, 1}}, {{-.5, 1}, {.5, 1}}, {{-.5, -1}, {.5, -1}}},   // I
-      {{{-.5, 1}, {-.5, 0}}, {{-.5, 0}, {.5, 0}}, {{.5, 1}, {.5, -1}}},  // 4
-  };
-  return figures;
-}
-
-PrintPolygon StrokeArea(const Stroke& stroke, double width) {
-  const Vector2d along = (stroke.to - stroke.from).normalized();
-  const Vector2d side = 0.5 * width * Vector2d(-along.y(), along.x());
-  const Vector2d end = 0.5 * width * along;
-  return {{{stroke.from - end + side, stroke.to + end + side, stroke.to + end - side,
-            stroke.from - end - side}}};
-}
-
-// Nine figures of random sizes, widths, slants and turns on one board.
-TargetPrint LookalikeBoard(bool white, Random* random) {
-  TargetPrint print;
-  print.board_size_m = 4.5;
-  print.board_gray = white ? 0 : 1;
-  for (int cell = 0; cell < 9; ++cell) {
-    const Vector2d place(1.5 * (cell % 3 - 1), 1.5 * (cell / 3 - 1));
-    const int last = static_cast<int>(Figures().size()) - 1;
-    const auto& figure = Figures()[random->Integer(0, last)];
-    const double half = random->Uniform(0.25, 0.55);
-    const double width = random->Uniform(0.18, 0.34);
-    const double wide = random->Uniform(0.8, 1.2);
-    const double turn = random->Uniform(0, 2 * kPi);
-    for (const Stroke& stroke : figure) {
-      const Vector2d scale(half * wide, half);
-      const Stroke sized{scale.cwiseProduct(stroke.from), scale.cwiseProduct(stroke.to)};
-      const PrintShape shape{StrokeArea(sized, width * half), white ? 1.0 : 0.0};
-      print.shapes.push_back(Moved(shape, turn, place));
-    }
-  }
-  return print;
-}
 
 class HelipadDetectorTest : public ::testing::Test {
  protected:
@@ -96,18 +29,6 @@ class HelipadDetectorTest : public ::testing::Test {
     options_ = options;
     detector_ = std::make_unique<HelipadDetector>(camera_, options);
     workspace_ = detector_->MakeWorkspace();
-  }
-  // A camera that looks down from 'altitude' with some tilt, the pad somewhere near its middle.
-  static RigidTransform RandomPose(double altitude, Random* random) {
-    const double yaw = random->Uniform(0, 2 * kPi);
-    const double tilt = random->Uniform(0, Radians(15));
-    const double way = random->Uniform(0, 2 * kPi);
-    const double x = random->Uniform(-0.3, 0.3) * altitude;
-    const double y = random->Uniform(-0.2, 0.2) * altitude;
-    const Eigen::Quaterniond down(Eigen::AngleAxisd(kPi, Vector3d::UnitX()));
-    const Vector3d axis(std::cos(way), std::sin(way), 0);
-    const Eigen::AngleAxisd tilted(tilt, axis), turned(yaw, Vector3d::UnitZ());
-    return {tilted * down * turned, tilted * Vector3d(x, y, altitude)};
   }
   cv::Mat Image(const RigidTransform& pose, std::uint64_t seed) const {
     return renderer_.Render(PrintOf(options_), pose, taken_, seed);
@@ -121,7 +42,7 @@ class HelipadDetectorTest : public ::testing::Test {
     int found = 0;
     Random random(seed);
     for (int i = 0; i < count; ++i) {
-      const RigidTransform pose = RandomPose(altitude, &random);
+      const RigidTransform pose = RandomPadBelow(altitude, &random);
       LandingHint hint;
       hint.up_in_camera = pose.rotation * Vector3d::UnitZ();
       if (sigma_m > 0) {
@@ -185,6 +106,21 @@ TEST_F(HelipadDetectorTest, StandsMotionAndDust) {
   EXPECT_EQ(Found(5, 3, 0, 5), 3) << "dust";
 }
 
+TEST_F(HelipadDetectorTest, StandsTheEdgeOfAShadow) {
+  Use({});
+  Random random(6);
+  constexpr int kShadows = 8;
+  int found = 0, followed = 0;
+  for (int i = 0; i < kShadows; ++i) {
+    taken_.shadow = RandomShadow(&random);
+    const double altitude = random.Uniform(1, 6);
+    found += Found(altitude, 1, 0, i);
+    followed += Found(altitude, 1, 0.05, i);
+  }
+  EXPECT_GE(found, kShadows - 3);
+  EXPECT_GE(followed, kShadows - 2);
+}
+
 TEST_F(HelipadDetectorTest, TheCovarianceIsThatOfTheErrors) {
   Use({});
   Random random(9);
@@ -192,7 +128,7 @@ TEST_F(HelipadDetectorTest, TheCovarianceIsThatOfTheErrors) {
   constexpr int kViews = 12;
   for (int i = 0; i < kViews; ++i) {
     const double altitude = random.Uniform(1.5, 5);
-    const RigidTransform pose = RandomPose(altitude, &random);
+    const RigidTransform pose = RandomPadBelow(altitude, &random);
     LandingHint hint;
     hint.up_in_camera = pose.rotation * Vector3d::UnitZ();
     const LandingReport report = Detect(Image(pose, 100 + i), hint);
@@ -215,7 +151,7 @@ TEST_F(HelipadDetectorTest, TheCovarianceIsThatOfTheErrors) {
 TEST_F(HelipadDetectorTest, TheHintTellsTheHeading) {
   Use({});
   Random random(4);
-  const RigidTransform pose = RandomPose(2, &random);
+  const RigidTransform pose = RandomPadBelow(2, &random);
   const cv::Mat image = Image(pose, 1);
   for (const bool turned : {false, true}) {
     LandingHint hint;
@@ -249,10 +185,10 @@ TEST_F(HelipadDetectorTest, NoLookalikeIsAccepted) {
     Use(options);
     Random random(3);
     for (int i = 0; i < kBoards; ++i) {
-      const TargetPrint board = LookalikeBoard(white, &random);
+      const LookalikeBoard board = RandomLookalikeBoard(white, &random);
       const double altitude = random.Uniform(1.5, 8);
-      const RigidTransform pose = RandomPose(altitude, &random);
-      const LandingReport report = Detect(renderer_.Render(board, pose, taken_, i));
+      const RigidTransform pose = RandomPadBelow(altitude, &random);
+      const LandingReport report = Detect(renderer_.Render(board.print, pose, taken_, i));
       EXPECT_FALSE(report.detection) << "board " << i << ", white " << white;
     }
   }

@@ -2,20 +2,21 @@
 #include "kestrel/vision/helipad/helipad_model.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
 #include <Eigen/LU>
 
-#include "kestrel/vision/tags/board_samples.h"
+#include "kestrel/core/base/robust_statistics.h"
 
 namespace kestrel {
 namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kNeighborhood = 2.6;  // strokes, around a sample
+constexpr double kBeside = 1.7;     // strokes, between a sample and those that it is held against
 constexpr double kFineStep = 0.33;  // strokes between the points of an edge; every third is coarse
 
 // Adds points along a straight edge whose ink lies on the right.
@@ -77,42 +78,82 @@ TagModel ModelOfFrame(const Helipad& helipad) {
   return model;
 }
 
-bool IsClear(const Helipad& helipad, const Vector2d& place) {
-  const double margin = 0.3 * helipad.stroke_m;
-  const double square = place.lpNorm<Eigen::Infinity>();
-  const double frame = 0.5 * helipad.frame_size_m - helipad.frame_width_m - margin;
-  if (helipad.frame == "circle") return place.norm() < frame;
-  if (helipad.frame == "square") return square < frame;
-  return square < 0.5 * helipad.board_size_m - margin;
+// Returns the distance of a place from the middle, along the frame's radius or its sides.
+double FrameReach(const Helipad& helipad, const Vector2d& place) {
+  return helipad.frame == "circle" ? place.norm() : place.lpNorm<Eigen::Infinity>();
 }
 
-// Collects the samples: rows of points, some of them mirrored.
-class SampleRows {
+// Collects the samples.
+class Samples {
  public:
-  explicit SampleRows(const Helipad& helipad) : helipad_(helipad) {}
+  explicit Samples(const Helipad& helipad) : helipad_(helipad) {}
 
-  // 'count' points evenly from 'from' to 'to'.
-  void Add(HelipadPart part, bool ink, const Vector2d& from, const Vector2d& to, int count) {
+  // 'count' points evenly from 'from' to 'to'; those of the ground only where the frame is not.
+  void AddRow(HelipadPart part, bool ink, const Vector2d& from, const Vector2d& to, int count) {
     for (int i = 0; i < count; ++i) {
       const Vector2d place = count == 1 ? from : Vector2d(from + (to - from) * i / (count - 1));
-      if (ink || IsClear(helipad_, place)) samples_.push_back({place, part, ink, {}});
+      if (ink || IsClear(place)) samples_.push_back({place, part, ink, {}});
     }
+    Connect(kBeside * helipad_.stroke_m);
   }
 
-  std::vector<HelipadSample> Take() {
-    const double reach = kNeighborhood * helipad_.stroke_m;
-    for (std::size_t i = 0; i < samples_.size(); ++i) {
-      for (std::size_t k = 0; k < samples_.size(); ++k) {
-        const bool near = (samples_[i].place - samples_[k].place).norm() < reach;
-        if (near && i != k) samples_[i].neighbors.push_back(k);
+  // Points on the frame, and on the ground beside it.
+  void AddFrame() {
+    constexpr int kAround = 32;
+    const double width = helipad_.frame_width_m;
+    const double middle = 0.5 * (helipad_.frame_size_m - width);
+    for (int i = 0; i < kAround; ++i) {
+      const double angle = 2 * std::numbers::pi * (i + 0.5) / kAround;
+      const Vector2d way(std::cos(angle), std::sin(angle));
+      const Vector2d unit = way / FrameReach(helipad_, way);
+      samples_.push_back({middle * unit, HelipadPart::kFrame, true, {}});
+      for (const double reach : {middle - 1.1 * width, middle + 1.1 * width}) {
+        const Vector2d place = reach * unit;
+        const bool on_board = 2 * place.lpNorm<Eigen::Infinity>() < helipad_.board_size_m;
+        if (on_board && !IsNearH(place)) {
+          samples_.push_back({place, HelipadPart::kFrame, false, {}});
+        }
       }
     }
-    return std::move(samples_);
+    Connect(1.7 * width);
   }
 
+  std::vector<HelipadSample> Take() { return std::move(samples_); }
+
  private:
+  bool IsClear(const Vector2d& place) const {
+    const double margin = 0.3 * helipad_.stroke_m;
+    if (helipad_.frame == "none") {
+      return place.lpNorm<Eigen::Infinity>() < 0.5 * helipad_.board_size_m - margin;
+    }
+    const double inner = 0.5 * helipad_.frame_size_m - helipad_.frame_width_m;
+    return FrameReach(helipad_, place) < inner - margin;
+  }
+
+  bool IsNearH(const Vector2d& place) const {
+    const double margin = 0.4 * helipad_.stroke_m;
+    return std::abs(place.x()) < 0.5 * helipad_.width_m + margin &&
+           std::abs(place.y()) < 0.5 * helipad_.height_m + margin;
+  }
+
+  // Holds the samples that were added last against each other.
+  void Connect(double reach) {
+    for (std::size_t i = connected_; i < samples_.size(); ++i) {
+      for (std::size_t k = 0; k < i; ++k) {
+        HelipadSample& a = samples_[i];
+        HelipadSample& b = samples_[k];
+        if (a.ink == b.ink || (a.place - b.place).norm() > reach) continue;
+        if ((a.part == HelipadPart::kFrame) != (b.part == HelipadPart::kFrame)) continue;
+        a.opposite.push_back(k);
+        b.opposite.push_back(i);
+      }
+    }
+    connected_ = samples_.size();
+  }
+
   const Helipad& helipad_;
   std::vector<HelipadSample> samples_;
+  std::size_t connected_ = 0;
 };
 
 std::vector<HelipadSample> MakeSamples(const Helipad& helipad) {
@@ -123,18 +164,22 @@ std::vector<HelipadSample> MakeSamples(const Helipad& helipad) {
   const double above = 0.5 * helipad.height_m + 0.5 * stroke;
   const int rows = std::clamp(static_cast<int>(1.3 * helipad.height_m / stroke), 6, 16);
   const double gap = leg - 1.1 * stroke;  // the farthest place between the legs
-  SampleRows all(helipad);
-  all.Add(HelipadPart::kLeftLeg, true, {-leg, top}, {-leg, -top}, rows);
-  all.Add(HelipadPart::kRightLeg, true, {leg, top}, {leg, -top}, rows);
-  all.Add(HelipadPart::kBar, true, {-gap, 0}, {gap, 0}, 5);
+  Samples all(helipad);
+  all.AddRow(HelipadPart::kLeftLeg, true, {-leg, top}, {-leg, -top}, rows);
+  all.AddRow(HelipadPart::kRightLeg, true, {leg, top}, {leg, -top}, rows);
+  all.AddRow(HelipadPart::kBar, true, {-gap, 0}, {gap, 0}, 5);
   for (const double x : {-gap, 0.0, gap}) {
-    all.Add(HelipadPart::kUpperGap, false, {x, top}, {x, 1.05 * stroke}, 4);
-    all.Add(HelipadPart::kLowerGap, false, {x, -top}, {x, -1.05 * stroke}, 4);
+    all.AddRow(HelipadPart::kUpperGap, false, {x, top}, {x, 1.05 * stroke}, 4);
+    all.AddRow(HelipadPart::kLowerGap, false, {x, -top}, {x, -1.05 * stroke}, 4);
   }
-  all.Add(HelipadPart::kOutside, false, {-beside, top}, {-beside, -top}, rows);
-  all.Add(HelipadPart::kOutside, false, {beside, top}, {beside, -top}, rows);
-  all.Add(HelipadPart::kOutside, false, {-leg, above}, {leg, above}, 5);
-  all.Add(HelipadPart::kOutside, false, {-leg, -above}, {leg, -above}, 5);
+  all.AddRow(HelipadPart::kLeft, false, {-beside, top}, {-beside, -top}, rows);
+  all.AddRow(HelipadPart::kRight, false, {beside, top}, {beside, -top}, rows);
+  all.AddRow(HelipadPart::kAbove, false, {-leg, above}, {leg, above}, 5);
+  all.AddRow(HelipadPart::kBelow, false, {-leg, -above}, {leg, -above}, 5);
+  for (const double x : {-beside, beside}) {
+    all.AddRow(HelipadPart::kBarEnds, false, {x, 0.3 * stroke}, {x, -0.3 * stroke}, 3);
+  }
+  if (helipad.frame != "none") all.AddFrame();
   return all.Take();
 }
 
@@ -174,32 +219,49 @@ HelipadModel::HelipadModel(const Helipad& helipad)
   edges.radius_m = 0.5 * std::hypot(helipad.height_m, helipad.width_m);
 }
 
+HelipadModel::Contrast HelipadModel::ContrastAt(std::span<const float> gray, std::size_t i) const {
+  if (gray[i] < 0) return {NAN, NAN};
+  const float sign = samples[i].ink == white ? 1.0F : -1.0F;
+  const float here = log_(gray[i]);
+  float sum = 0, largest = -1;
+  int count = 0;
+  for (const std::size_t k : samples[i].opposite) {
+    if (gray[k] < 0) continue;
+    const float contrast = sign * (here - log_(gray[k]));
+    sum += contrast;
+    largest = std::max(largest, contrast);
+    ++count;
+  }
+  if (count == 0) return {NAN, NAN};
+  return {sum / static_cast<float>(count), largest};
+}
+
 HelipadAgreement HelipadModel::Compare(std::span<const float> gray) const {
-  constexpr double kLeastContrast = 5;  // gray values
-  constexpr double kClear = 0.5;
+  constexpr double kLeastContrast = 0.02;
+  constexpr double kLeast = 0.45;                // of the usual contrast, of a sample that agrees
   constexpr double kMatch = 0.5, kMismatch = 3;  // neighbouring samples are not independent
   HelipadAgreement agreement;
+  std::array<float, kMostHelipadSamples> means, largest;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const Contrast contrast = ContrastAt(gray, i);
+    largest[i] = contrast.largest;
+    if (!std::isnan(contrast.mean)) means[count++] = contrast.mean;
+  }
+  if (count == 0) return agreement;
+  const double usual = MedianInPlace(std::span(means.data(), count));
+  if (usual < kLeastContrast) return agreement;
   std::array<int, kHelipadParts> seen{}, right{};
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (gray[i] < 0) continue;
-    double sum[2] = {0, 0};
-    int count[2] = {0, 0};
-    for (const std::size_t k : samples[i].neighbors) {
-      if (gray[k] < 0) continue;
-      sum[samples[k].ink == white] += gray[k];
-      ++count[samples[k].ink == white];
-    }
-    if (count[0] == 0 || count[1] == 0) continue;
-    const double dark = sum[0] / count[0];
-    const double bright = sum[1] / count[1];
-    const double place = (gray[i] - 0.5 * (bright + dark)) / (0.5 * (bright - dark));
-    const double here =
-        bright - dark < kLeastContrast ? -1 : (samples[i].ink == white ? place : -place);
-    const double clearness = std::min(1.0, std::abs(here) / kClear);
-    agreement.evidence += (here > 0 ? kMatch : -kMismatch) * clearness;
+    if (std::isnan(largest[i])) continue;
+    // In one light with it: where the edge of a shadow runs, the others say little.
+    const double share = largest[i] / usual;
+    const bool agrees = share > kLeast;
+    const double clearness = std::min(1.0, std::abs(share - kLeast) / kLeast);
+    agreement.evidence += (agrees ? kMatch : -kMismatch) * clearness;
     const auto part = static_cast<std::size_t>(samples[i].part);
     ++seen[part];
-    right[part] += here > 0;
+    right[part] += agrees;
   }
   for (std::size_t part = 0; part < kHelipadParts; ++part) {
     constexpr int kFewest = 3;
@@ -212,8 +274,19 @@ HelipadAgreement HelipadModel::Compare(std::span<const float> gray) const {
 }
 
 double HelipadModel::LikenessOf(std::span<const float> gray) const {
-  return Likeness(gray,
-                  [this](std::size_t i) { return static_cast<int>(samples[i].ink == white); });
+  constexpr double kLeastSpread = 0.01;
+  double sum = 0, squares = 0;
+  int count = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const float contrast = ContrastAt(gray, i).mean;
+    if (std::isnan(contrast)) continue;
+    sum += contrast;
+    squares += contrast * contrast;
+    ++count;
+  }
+  constexpr int kFewest = 8;
+  if (count < kFewest) return -1;
+  return sum / count / std::max(kLeastSpread, std::sqrt(squares / count));
 }
 
 }  // namespace kestrel

@@ -9,20 +9,34 @@
 #include <Eigen/Core>
 
 #include "kestrel/vision/helipad/helipad.h"
+#include "kestrel/vision/helipad/log_gray.h"
 #include "kestrel/vision/tags/board_model.h"
 
 namespace kestrel {
 
 // The parts of an H and of its surroundings that are examined one by one: no part may be wrong.
-enum class HelipadPart { kLeftLeg, kRightLeg, kBar, kUpperGap, kLowerGap, kOutside };
-inline constexpr std::size_t kHelipadParts = 6;
+enum class HelipadPart {
+  kLeftLeg,
+  kRightLeg,
+  kBar,
+  kUpperGap,
+  kLowerGap,
+  kLeft,
+  kRight,
+  kAbove,
+  kBelow,
+  kBarEnds,
+  kFrame
+};
+inline constexpr std::size_t kHelipadParts = 11;
+inline constexpr std::size_t kMostHelipadSamples = 256;
 
 // A point whose gray value is examined.
 struct HelipadSample {
   Eigen::Vector2d place;  // frame P
   HelipadPart part;
-  bool ink;                            // on the H
-  std::vector<std::size_t> neighbors;  // indices of the samples that it is held against
+  bool ink;                           // on the H or its frame
+  std::vector<std::size_t> opposite;  // indices of the samples of the other colour beside it
 };
 
 // Area and second moments of a plane figure about its centroid.
@@ -49,10 +63,11 @@ struct HelipadModel {
   explicit HelipadModel(const Helipad& helipad);
 
   // Compares gray values of all samples, negative where out of view, with the H. A sample is held
-  // against the ink and the ground around it, so that the edge of a shadow does not matter.
+  // against those of the other colour beside it, so that the edge of a shadow does not matter.
   HelipadAgreement Compare(std::span<const float> gray) const;
 
-  // Returns how much gray values of all samples look like the H, see Likeness.
+  // Returns how much gray values of all samples, negative where out of view, look like the H: the
+  // mean contrast of a sample over its root mean square, 1 where all have the same.
   double LikenessOf(std::span<const float> gray) const;
 
   bool white = true;  // the ink
@@ -60,6 +75,16 @@ struct HelipadModel {
   std::vector<HelipadSample> samples;
   std::vector<Eigen::Vector2d> places;  // of the samples
   FigureMoments moments;                // of the H
+
+ private:
+  // Contrast of a sample with those of the other colour beside it, positive as it should be; NaN
+  // where it or they are out of view.
+  struct Contrast {
+    float mean, largest;
+  };
+  Contrast ContrastAt(std::span<const float> gray, std::size_t i) const;
+
+  LogGrays log_;
 };
 
 }  // namespace kestrel

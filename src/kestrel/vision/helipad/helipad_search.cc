@@ -81,13 +81,16 @@ bool HelipadSearch::MayHaveSize(int pass, double distance_m, double error) const
 }
 
 void HelipadSearch::SearchPass(const cv::Rect& part, int pass) {
-  {
-    const SearchLog::Timer timer = log_.Time(LandingStage::kAreas);
-    helipad_.finder.Find(part, pass, &candidates_);
+  for (const auto find : {&HelipadFinder::Find, &HelipadFinder::FindNarrow}) {
+    if (is_found()) return;
+    {
+      const SearchLog::Timer timer = log_.Time(LandingStage::kAreas);
+      (helipad_.finder.*find)(part, pass, &candidates_);
+    }
+    ExamineBorders(candidates_.examined, "no border has the moments of an H");
+    const SearchLog::Timer timer = log_.Time(LandingStage::kCross);
+    for (const HelipadCandidate& candidate : candidates_.candidates) Try(candidate);
   }
-  ExamineBorders(candidates_.examined, "no border has the moments of an H");
-  const SearchLog::Timer timer = log_.Time(LandingStage::kCross);
-  for (const HelipadCandidate& candidate : candidates_.candidates) Try(candidate);
 }
 
 std::optional<Eigen::Matrix2d> HelipadSearch::BestTurn(const HelipadCandidate& candidate) {
@@ -98,7 +101,7 @@ std::optional<Eigen::Matrix2d> HelipadSearch::BestTurn(const HelipadCandidate& c
       helipad_.pad.moments.covariance.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::Matrix2d from_pad = Eigen::Vector2d(unit.x(), -unit.y()).asDiagonal();
   std::optional<Eigen::Matrix2d> best;
-  constexpr double kLeastLikeness = 1;
+  constexpr double kLeastLikeness = 0.5;
   double most = kLeastLikeness;
   for (int i = 0; i < kTurns; ++i) {
     const Eigen::Matrix2d map = seen.matrixL().toDenseMatrix() *

@@ -8,6 +8,7 @@
 #include <variant>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -15,10 +16,55 @@
 #include "kestrel/core/base/random.h"
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/core/camera/ray_table.h"
+#include "kestrel/core/geometry/angles.h"
 #include "kestrel/core/geometry/rigid_transform.h"
 #include "kestrel/vision/target/target_print.h"
 
 namespace kestrel {
+
+// A shadow on the ground.
+struct PadShadow {
+  enum class Shape { kNone, kHalfPlane, kBar, kFourArms };
+  Shape shape = Shape::kNone;
+  double light = 0.35;  // share of the light that remains
+  Eigen::Vector2d center = Eigen::Vector2d::Zero();
+  double turn = 0;       // rad
+  double size_m = 0.3;   // half of the bar's width; radius of the body between the arms
+  double soft_m = 0.01;  // width of its edge
+
+  // Returns the share of the light at a place.
+  double LightAt(const Eigen::Vector2d& place) const {
+    if (shape == Shape::kNone) return 1;
+    const Eigen::Vector2d local = Eigen::Rotation2Dd(-turn) * (place - center);
+    return light + (1 - light) * std::clamp(0.5 + Outside(local) / soft_m, 0.0, 1.0);
+  }
+
+ private:
+  // Distance from the shadow, about; negative within it.
+  double Outside(const Eigen::Vector2d& local) const {
+    if (shape == Shape::kHalfPlane) return local.x();
+    const Eigen::Vector2d away = local.cwiseAbs();
+    if (shape == Shape::kBar) return away.x() - size_m;
+    constexpr double kArmLength = 3, kArmWidth = 0.2;  // of the body's radius
+    const double arms =
+        std::max(away.minCoeff() - kArmWidth * size_m, away.maxCoeff() - kArmLength * size_m);
+    return std::min(local.norm() - size_m, arms);
+  }
+};
+
+// Returns a shadow whose edge runs across the pad's middle, or near it.
+inline PadShadow RandomShadow(Random* random) {
+  PadShadow shadow = {};
+  shadow.shape = static_cast<PadShadow::Shape>(random->Integer(1, 3));
+  shadow.light = random->Uniform(0.2, 0.6);
+  const double x = random->Uniform(-0.35, 0.35);
+  const double y = random->Uniform(-0.35, 0.35);
+  shadow.center = {x, y};
+  shadow.turn = random->Uniform(0, 2 * kPi);
+  shadow.size_m = random->Uniform(0.08, 0.4);
+  shadow.soft_m = random->Chance(0.5) ? 0.005 : random->Uniform(0.02, 0.2);
+  return shadow;
+}
 
 // Conditions under which an image of a pad is taken.
 struct PadImageOptions {
@@ -26,7 +72,7 @@ struct PadImageOptions {
   double motion_px = 0;  // length of the blur by motion, along the rows
   double noise = 3;      // sigma, gray values
   double contrast = 1;   // of all that is seen
-  bool shadow = false;   // the edge of a shadow runs through the pad's middle
+  PadShadow shadow = {};
 };
 
 // Renders prints on a textured ground through any lens, by the area at each of 16 places in a
@@ -98,9 +144,7 @@ class PadRenderer {
       gray = kBlack + ink * (kWhite - kBlack);
     }
     gray = kMiddle + options.contrast * (gray - kMiddle);
-    constexpr double kShade = 0.35;
-    if (options.shadow && place->x() + 0.3 * place->y() > 0) gray *= kShade;
-    return gray;
+    return gray * options.shadow.LightAt(*place);
   }
 
   // Blotches of several sizes.
@@ -136,5 +180,18 @@ class PadRenderer {
   const CameraModel& camera_;
   RayTable rays_;
 };
+
+// A camera that looks down from 'altitude' with some tilt, the pad somewhere near its middle.
+inline RigidTransform RandomPadBelow(double altitude, Random* random) {
+  const double yaw = random->Uniform(0, 2 * kPi);
+  const double tilt = random->Uniform(0, Radians(15));
+  const double way = random->Uniform(0, 2 * kPi);
+  const double x = random->Uniform(-0.3, 0.3) * altitude;
+  const double y = random->Uniform(-0.2, 0.2) * altitude;
+  const Eigen::Quaterniond down(Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitX()));
+  const Eigen::Vector3d axis(std::cos(way), std::sin(way), 0);
+  const Eigen::AngleAxisd tilted(tilt, axis), turned(yaw, Eigen::Vector3d::UnitZ());
+  return {tilted * down * turned, tilted * Eigen::Vector3d(x, y, altitude)};
+}
 
 }  // namespace kestrel

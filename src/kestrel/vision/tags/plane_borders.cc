@@ -62,7 +62,13 @@ std::span<const Border> PlaneBorders::Trace(const cv::Rect& part, int pass_index
 
 bool PlaneBorders::OnPlane(const Border& border, const cv::Rect& part, int pass,
                            Eigen::Matrix3d* camera_from_plane, BorderBuffers* buffers) const {
-  const auto ray_at = [this, &part, scale = Scale(pass)](double x, double y) {
+  return OnPlaneOfLevel(border, part, passes_[pass].image_level, camera_from_plane, buffers);
+}
+
+bool PlaneBorders::OnPlaneOfLevel(const Border& border, const cv::Rect& part, int level,
+                                  Eigen::Matrix3d* camera_from_plane,
+                                  BorderBuffers* buffers) const {
+  const auto ray_at = [this, &part, scale = 1 << level](double x, double y) {
     const Eigen::Vector2f pixel(scale * x - 0.5 + part.x, scale * y - 0.5 + part.y);
     return rays_.Ray(pixel.x(), pixel.y()).cast<double>().eval();
   };

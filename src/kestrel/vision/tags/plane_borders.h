@@ -62,6 +62,10 @@ class PlaneBorders {
   bool OnPlane(const Border& border, const cv::Rect& part, int pass,
                Eigen::Matrix3d* camera_from_plane, BorderBuffers* buffers) const;
 
+  // The same for a border in pixels of any 'level' of the pyramid.
+  bool OnPlaneOfLevel(const Border& border, const cv::Rect& part, int level,
+                      Eigen::Matrix3d* camera_from_plane, BorderBuffers* buffers) const;
+
   // Pixels of the image per pixel of a pass.
   double Scale(int pass) const { return 1 << passes_[pass].image_level; }
 

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "kestrel/core/image/black_top_hat.h"
+#include "kestrel/vision/tags/plane_borders.h"
+
+namespace kestrel {
+
+// Memory of one thread's narrow borders.
+struct NarrowBorderBuffers {
+  BlackTopHat top_hat;
+  std::vector<std::uint8_t> gray;  // of a level, dark where there is ink
+
+  void Reserve(const cv::Mat& image, BorderBuffers* borders);
+};
+
+// Traces borders around strokes of ink that are narrow at a level of an image's pyramid, in any
+// light: the edge of a shadow that crosses a stroke is no border of it. Gray values are taken by
+// their logarithm, in which light is a term that the top-hat removes. 'level': from 0;
+// 'buffers->pyramid' must have it. A border goes around the ink. Does not allocate after Reserve.
+std::span<const Border> TraceNarrow(int level, bool white_ink, const BorderLimits& limits,
+                                    BorderBuffers* borders, NarrowBorderBuffers* buffers);
+
+}  // namespace kestrel
