@@ -2,6 +2,7 @@
 // Guidance lands simulated autopilots on decks that carry them, and they disarm there by
 // themselves. It knows the truth of the deck, and of the UAV what its autopilot estimates.
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 #include <variant>
@@ -12,6 +13,7 @@
 #include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/comms/mavlink/ned.h"
 #include "kestrel/comms/mavlink/set_point_message.h"
+#include "kestrel/core/geometry/angles.h"
 #include "kestrel/flight/guidance/landing_guidance.h"
 #include "kestrel/simulation/autopilots/test_autopilot.h"
 #include "kestrel/simulation/autopilots/test_guidance.h"
@@ -34,15 +36,21 @@ AutopilotModelOptions ModelFor(AutopilotFirmware firmware, double guide_after_s)
   return options;
 }
 
+GuidanceOptions GuidanceTo(AutopilotFirmware firmware, const char* touchdown_heading) {
+  GuidanceOptions options = GuidanceFor(firmware);
+  options.touchdown_heading = touchdown_heading;
+  return options;
+}
+
 class GuidedLanding : public TestAutopilot {
  public:
   GuidedLanding(AutopilotFirmware firmware, const AutopilotModelOptions& options, const Deck& deck,
-                std::uint64_t seed, bool says_carried)
+                std::uint64_t seed, bool says_carried, const char* touchdown_heading = "any")
       : TestAutopilot(firmware, options, TestVehicle(deck.path, deck.speed_mps), seed),
         kind_(firmware == AutopilotFirmware::kPx4 ? AutopilotKind::kPx4
                                                   : AutopilotKind::kArduPilot),
         says_carried_(says_carried && firmware == AutopilotFirmware::kArduPilot),
-        guidance_(GuidanceFor(firmware)) {
+        guidance_(GuidanceTo(firmware, touchdown_heading)) {
     for (const std::uint32_t id :
          {mavlink::Attitude::kId, mavlink::AttitudeQuaternion::kId, mavlink::LocalPositionNed::kId,
           mavlink::ExtendedSysState::kId}) {
@@ -175,6 +183,21 @@ TEST_P(GuidedLandingTest, StaysThoughTheEstimateClimbsAtRest) {
     const Disarmed disarmed = Fly(GetParam(), deck, {.rest_climb_mps = error_mps});
     EXPECT_EQ(disarmed.flights, 20) << error_mps;
     EXPECT_EQ(disarmed.go_arounds, go_arounds) << error_mps;
+  }
+}
+
+// From every heading of the pilot to one over a pad that turns with the car on the eight.
+TEST_P(GuidedLandingTest, ComesDownWithTheHeadingThatIsWanted) {
+  constexpr double kWanted_deg = 120, kMostOff_deg = 3.5;
+  for (int seed = 1; seed <= 8; ++seed) {
+    GuidedLanding landing(GetParam(), ModelFor(GetParam(), 1 + 0.9 * seed), Deck{"figure8", 4.2},
+                          seed, /*says_carried=*/true, "120");
+    EXPECT_TRUE(landing.Land(90)) << seed;
+    const auto& contact = landing.model.result().contact;
+    ASSERT_TRUE(contact && contact->on_board) << seed;
+    const double error = contact->heading_in_pattern - Radians(kWanted_deg);
+    EXPECT_LT(std::abs(Degrees(std::remainder(error, kFullTurn))), kMostOff_deg) << seed;
+    EXPECT_LT(contact->feet_in_pattern.head<2>().norm(), 0.4) << seed;
   }
 }
 

@@ -48,6 +48,7 @@ std::vector<std::string> TouchdownOptions::Validate() const {
   RequireIn(processing_delay_s, 0.02, 1, "processing_delay_s", &violations);
   RequireIn(leg_m, 0.05, 2, "leg_m", &violations);
   RequireIn(feet_radius_m, 0, 2, "feet_radius_m", &violations);
+  RequireIn(deck_m, 0, 100, "deck_m", &violations);
   RequireIn(max_slip_mps, 0.1, 10, "max_slip_mps", &violations);
   RequireIn(max_sink_mps, 0.1, 10, "max_sink_mps", &violations);
   return violations;
@@ -252,7 +253,8 @@ TouchdownOutcome TouchdownSimulation::OutcomeOf(const Vector3d& feet_on_board,
                                                 const TouchdownResult& result) const {
   const TouchdownOptions& options = options_.touchdown;
   const double to_side_m = ReachOnBoard(landing_.print(), feet_on_board.head<2>());
-  if (to_side_m > 0.5 * landing_.print().board_size_m - options.feet_radius_m) {
+  const double deck_m = std::max(landing_.print().board_size_m, options.deck_m);
+  if (to_side_m > 0.5 * deck_m - options.feet_radius_m) {
     return TouchdownOutcome::kBesideBoard;
   }
   const bool is_slow =

@@ -41,8 +41,10 @@ struct TouchdownOptions {
   // detection.
   double processing_delay_s = 0.06;
   double leg_m = 0.35;  // distance from the body's origin down to its feet
-  double feet_radius_m =
-      0.25;  // its feet stand on the board when their middle is this far inside of its edge
+  // Its feet stand on the board when their middle is this far inside of its edge. A board that is
+  // smaller than the deck lies on it, and the feet may stand beside the board.
+  double feet_radius_m = 0.25;
+  double deck_m = 1.5;
   double max_slip_mps = 1.5;  // largest horizontal speed against the board for it to stay there
   double max_sink_mps = 2;    // largest vertical speed
 
@@ -59,6 +61,7 @@ struct TouchdownOptions {
             "delay from the middle of an exposure to the result");
     visitor("leg_m", self.leg_m, "m", "length from the body's origin down to its feet");
     visitor("feet_radius_m", self.feet_radius_m, "m", "room that the feet need on the board");
+    visitor("deck_m", self.deck_m, "m", "side of the deck under a smaller board");
     visitor("max_slip_mps", self.max_slip_mps, "m/s", "horizontal speed at which it stays there");
     visitor("max_sink_mps", self.max_sink_mps, "m/s", "largest vertical speed that the legs stand");
   }
