@@ -24,12 +24,12 @@ struct NarrowLevels {
 constexpr std::array<NarrowLevels, PlaneBorders::kPasses> kNarrowLevels{
     {{5, 3}, {2, 2}, {1, 1}, {0, 0}}};
 
-// True when a border may be an H's by its area: the H fills about half of its box when that is
-// upright, and less when it is turned.
-bool FillsAsAnH(const Border& border) {
+// True when a border may be an H's or a frame's by its area: the H fills about half of its box when
+// that is upright, and less when it is turned; a frame fills at most all of it.
+bool FillsItsBox(const Border& border) {
   const double box =
       static_cast<double>(border.max.x - border.min.x) * (border.max.y - border.min.y);
-  constexpr double kLeastFill = 0.2, kMostFill = 0.85;
+  constexpr double kLeastFill = 0.2, kMostFill = 1;
   const double fill = std::abs(border.signed_area) / box;
   return fill >= kLeastFill && fill <= kMostFill;
 }
@@ -59,7 +59,7 @@ void HelipadFinder::Find(const cv::Rect& part, int pass, HelipadCandidateBuffers
 
 void HelipadFinder::FindNarrow(const cv::Rect& part, int pass,
                                HelipadCandidateBuffers* buffers) const {
-  constexpr int kLeastExtent = 6, kMostExtent = 50;  // pixels of a level, of an H
+  constexpr int kLeastExtent = 6, kMostExtent = 64;  // pixels of a level
   buffers->candidates.clear();
   buffers->examined = 0;
   for (int level = kNarrowLevels[pass].first; level >= kNarrowLevels[pass].last; --level) {
@@ -88,14 +88,19 @@ void HelipadFinder::Add(std::span<const Border> borders, bool around_ink, const 
 
 bool HelipadFinder::Examine(const Border& border, const cv::Rect& part, int level,
                             BorderBuffers* buffers, HelipadCandidate* candidate) const {
-  if (!FillsAsAnH(border)) return false;
+  if (!FillsItsBox(border)) return false;
   if (!borders_.OnPlaneOfLevel(border, part, level, &candidate->camera_from_plane, buffers)) {
     return false;
   }
   candidate->moments = MomentsOf(buffers->points);
-  constexpr double kTolerance = 0.3;
-  const double ratio = candidate->moments.Compactness() / model_.moments.Compactness();
-  return ratio >= 1 - kTolerance && ratio <= 1 + kTolerance;
+  const auto is_like = [candidate](const FigureMoments& printed, double tolerance) {
+    const double ratio = candidate->moments.Compactness() / printed.Compactness();
+    candidate->printed = &printed;
+    return std::abs(ratio - 1) <= tolerance;
+  };
+  constexpr double kLetterTolerance = 0.3, kFrameTolerance = 0.08;
+  return is_like(model_.letter_moments, kLetterTolerance) ||
+         (model_.frame_moments.area > 0 && is_like(model_.frame_moments, kFrameTolerance));
 }
 
 }  // namespace kestrel

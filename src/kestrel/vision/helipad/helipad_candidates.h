@@ -15,11 +15,12 @@
 
 namespace kestrel {
 
-// A border that is an H as far as its moments tell, on the plane across the ray to its middle, at
-// distance 1.
+// A border that is an H or its frame as far as its moments tell, on the plane across the ray to its
+// middle, at distance 1.
 struct HelipadCandidate {
   Eigen::Matrix3d camera_from_plane;  // its columns: the plane's axes and that ray
   FigureMoments moments;
+  const FigureMoments* printed;  // of the pad's figure that it may be
 };
 
 // Memory of one thread's search for candidates.
@@ -30,7 +31,7 @@ struct HelipadCandidateBuffers {
   std::size_t examined = 0;  // number of borders
 };
 
-// Finds borders with the moments of an H in the raw image.
+// Finds borders with the moments of an H, or of all that is within its frame, in the raw image.
 class HelipadFinder {
  public:
   // Keeps the model by reference.

@@ -33,10 +33,11 @@ struct HelipadDetectorOptions : Helipad {
 // Finds a helipad by its H in the raw image of any lens.
 //
 // A border of the image is a candidate when its moments, on a plane across the ray to its middle,
-// are those of an H under an affine map. Gray values along rays then tell how the H is turned and
-// whether it is one; all its edges, and those of the frame, give the pose by least squares in the
-// image. Where the hint has the orientation, the pad is first looked for by its appearance at the
-// expected place, which works on a part of it as well. The heading is known up to half a turn.
+// are those of an H or of its frame under an affine map. Gray values along rays then tell how the H
+// is turned and whether it is one; all its edges, and those of the frame, give the pose by least
+// squares in the image. Where the hint has the orientation, the pad is first looked for by its
+// appearance at the expected place, which works on a part of it as well. The heading is known up to
+// half a turn.
 class HelipadDetector final : public TargetDetector {
  public:
   // Throws InputError when the options or the camera are not valid.

@@ -75,7 +75,7 @@ class HelipadDetectorTest : public ::testing::Test {
 
 TEST_F(HelipadDetectorTest, IsFoundWithoutAHint) {
   Use({});
-  for (const double altitude : {0.7, 2.0, 4.0, 11.0})
+  for (const double altitude : {0.7, 2.0, 4.0, 11.0, 14.0})
     EXPECT_EQ(Found(altitude, 3, 0, 1), 3) << altitude;
 }
 

@@ -10,6 +10,7 @@
 #include <Eigen/LU>
 
 #include "kestrel/core/base/robust_statistics.h"
+#include "kestrel/core/geometry/angles.h"
 
 namespace kestrel {
 namespace {
@@ -183,6 +184,16 @@ std::vector<HelipadSample> MakeSamples(const Helipad& helipad) {
   return all.Take();
 }
 
+FigureMoments MomentsOfFrame(const Helipad& helipad) {
+  FigureMoments moments;
+  if (helipad.frame == "none") return moments;
+  const double square = helipad.frame_size_m * helipad.frame_size_m;
+  const bool round = helipad.frame == "circle";
+  moments.area = round ? kPi / 4 * square : square;
+  moments.covariance = square / (round ? 16 : 12) * Eigen::Matrix2d::Identity();
+  return moments;
+}
+
 }  // namespace
 
 double FigureMoments::Compactness() const {
@@ -211,7 +222,10 @@ FigureMoments MomentsOf(std::span<const Vector2d> corners) {
 }
 
 HelipadModel::HelipadModel(const Helipad& helipad)
-    : white(helipad.white), samples(MakeSamples(helipad)), moments(MomentsOf(CornersOf(helipad))) {
+    : white(helipad.white),
+      samples(MakeSamples(helipad)),
+      letter_moments(MomentsOf(CornersOf(helipad))),
+      frame_moments(MomentsOfFrame(helipad)) {
   for (const HelipadSample& sample : samples) places.push_back(sample.place);
   edges.tags.push_back(ModelOfH(helipad));
   if (helipad.frame != "none") edges.tags.push_back(ModelOfFrame(helipad));

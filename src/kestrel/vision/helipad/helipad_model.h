@@ -74,7 +74,8 @@ struct HelipadModel {
   BoardModel edges;   // its first tag is the H, its second one the frame where there is one
   std::vector<HelipadSample> samples;
   std::vector<Eigen::Vector2d> places;  // of the samples
-  FigureMoments moments;                // of the H
+  FigureMoments letter_moments;         // of the H
+  FigureMoments frame_moments;          // of all within the frame's outer edge; no area without one
 
  private:
   // Contrast of a sample with those of the other colour beside it, positive as it should be; NaN

@@ -87,7 +87,7 @@ void HelipadSearch::SearchPass(const cv::Rect& part, int pass) {
       const SearchLog::Timer timer = log_.Time(LandingStage::kAreas);
       (helipad_.finder.*find)(part, pass, &candidates_);
     }
-    ExamineBorders(candidates_.examined, "no border has the moments of an H");
+    ExamineBorders(candidates_.examined, "no border has the moments of an H or its frame");
     const SearchLog::Timer timer = log_.Time(LandingStage::kCross);
     for (const HelipadCandidate& candidate : candidates_.candidates) Try(candidate);
   }
@@ -97,8 +97,7 @@ std::optional<Eigen::Matrix2d> HelipadSearch::BestTurn(const HelipadCandidate& c
   const Eigen::LLT<Eigen::Matrix2d> seen(candidate.moments.covariance);
   if (seen.info() != Eigen::Success) return std::nullopt;
   // The pad's face looks at the camera, so that its axes are mirrored.
-  const Eigen::Vector2d unit =
-      helipad_.pad.moments.covariance.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::Vector2d unit = candidate.printed->covariance.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::Matrix2d from_pad = Eigen::Vector2d(unit.x(), -unit.y()).asDiagonal();
   std::optional<Eigen::Matrix2d> best;
   constexpr double kLeastLikeness = 0.5;
@@ -121,7 +120,7 @@ std::optional<Eigen::Matrix2d> HelipadSearch::BestTurn(const HelipadCandidate& c
 }
 
 void HelipadSearch::Try(const HelipadCandidate& candidate) {
-  log_.Reach(LandingStage::kRing, "no border with the moments of an H looks like one");
+  log_.Reach(LandingStage::kRing, "no border with the moments of an H or its frame is one");
   const std::optional<Eigen::Matrix2d> map = BestTurn(candidate);
   if (!map) return;
   log_.Reach(LandingStage::kCross, "the edges of the H are not where they should be");
