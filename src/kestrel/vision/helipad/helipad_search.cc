@@ -7,9 +7,9 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 
 #include "kestrel/core/geometry/angles.h"
+#include "kestrel/vision/tags/square_pose.h"
 
 namespace kestrel {
 namespace {
@@ -20,28 +20,6 @@ constexpr double kLeastStrokePx = 1.3;
 constexpr double kLeastRight = 0.8;      // of the samples of a part
 constexpr double kLeastExplained = 0.7;  // of the edges of the H
 constexpr int kTurns = 24;               // that are tried, in half a circle
-
-// Returns one of the two poses whose weak perspective is an affine map: 'map' is from the pad (m)
-// to the plane at distance 1, 'center' the place of the pad's middle there.
-RigidTransform PoseOfAffine(const HelipadCandidate& candidate, const Eigen::Matrix2d& map,
-                            double sign) {
-  const Eigen::JacobiSVD<Eigen::Matrix2d> svd(map);
-  const double scale = svd.singularValues()(0);
-  const Eigen::Matrix2d flat = map / scale;
-  const double first = std::sqrt(std::max(0.0, 1 - flat.col(0).squaredNorm()));
-  double second = std::sqrt(std::max(0.0, 1 - flat.col(1).squaredNorm()));
-  if (flat.col(0).dot(flat.col(1)) > 0) second = -second;
-  Eigen::Matrix3d rotation;
-  rotation.col(0) << flat.col(0), sign * first;
-  rotation.col(1) << flat.col(1), sign * second;
-  rotation.col(0).normalize();
-  rotation.col(1) -= rotation.col(0).dot(rotation.col(1)) * rotation.col(0);
-  rotation.col(1).normalize();
-  rotation.col(2) = rotation.col(0).cross(rotation.col(1));
-  const Eigen::Matrix3d& axes = candidate.camera_from_plane;
-  return {Eigen::Quaterniond(Eigen::Matrix3d(axes * rotation)),
-          axes * candidate.moments.centroid.homogeneous() / scale};
-}
 
 // Half a turn, under which the H looks the same.
 RigidTransform HalfTurned(const RigidTransform& pose) {
@@ -126,7 +104,8 @@ void HelipadSearch::Try(const HelipadCandidate& candidate) {
   log_.Reach(LandingStage::kCross, "the edges of the H are not where they should be");
   for (const double sign : {1.0, -1.0}) {
     const std::optional<AlignedBoard> letter =
-        Align(PoseOfAffine(candidate, *map, sign), &helipad_.pad.edges.tags[0]);
+        Align(PoseOfAffineMap(candidate.camera_from_plane, *map, candidate.moments.centroid, sign),
+              &helipad_.pad.edges.tags[0]);
     if (letter) Take(letter->camera_from_board, kSearchPrior, DetectionMethod::kLetter);
   }
 }
