@@ -60,7 +60,8 @@ class Lookalikes {
     const std::string family = kOthers[random->Integer(0, static_cast<int>(kOthers.size()) - 1)];
     return BoardOf(family, random->Integer(0, 9)).Printed().front();
   }
-  // As few bits as may not be taken for misread ones, and up to four more.
+  // Half of the bits by which the family's tags differ, so that another tag is as near, and up to four
+  // more.
   PrintedTag WithWrongBits(Random* random) const {
     const TagModel& tag = model_.tags.front();
     std::vector<std::size_t> data;
@@ -68,7 +69,7 @@ class Lookalikes {
       if (tag.is_data[i]) data.push_back(i);
     }
     PrintedTag printed = tag.printed;
-    for (int left = tag.most_wrong + 1 + random->Integer(0, 4); left > 0; --left) {
+    for (int left = (family_.min_distance() + 1) / 2 + random->Integer(0, 4); left > 0; --left) {
       const int last = static_cast<int>(data.size()) - 1;
       const auto chosen = data.begin() + random->Integer(0, last);
       printed.grid.cells[*chosen] = Other(printed.grid.cells[*chosen]);
