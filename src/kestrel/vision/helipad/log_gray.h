@@ -16,8 +16,8 @@ class LogGrays {
       values_[gray] = static_cast<float>(std::log1p(gray / kDarkest) / std::log1p(255 / kDarkest));
     }
   }
-  // 'gray': 0 to 255.
-  float operator()(float gray) const { return values_[static_cast<int>(gray + 0.5F)]; }
+  // 'gray': 0 to 255, rounded down.
+  float operator()(float gray) const { return values_[static_cast<int>(gray)]; }
 
  private:
   std::array<float, 256> values_;
