@@ -60,8 +60,8 @@ class Lookalikes {
     const std::string family = kOthers[random->Integer(0, static_cast<int>(kOthers.size()) - 1)];
     return BoardOf(family, random->Integer(0, 9)).Printed().front();
   }
-  // Half of the bits by which the family's tags differ, so that another tag is as near, and up to four
-  // more.
+  // Half of the bits by which the family's tags differ, so that another tag is as near, and up to
+  // four more.
   PrintedTag WithWrongBits(Random* random) const {
     const TagModel& tag = model_.tags.front();
     std::vector<std::size_t> data;

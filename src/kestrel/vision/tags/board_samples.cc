@@ -130,8 +130,12 @@ double CellPx(const CameraModel& camera, const RigidTransform& camera_from_board
 }
 
 TagAgreement CompareCells(const TagModel& tag, std::span<const float> gray) {
-  constexpr double kBorderWeight = 0.1;  // border cells are alike in all tags and in windows
-  const TagGrid& grid = tag.grid();
+  return CompareCells(tag.grid(), tag.is_data, gray);
+}
+
+TagAgreement CompareCells(const TagGrid& grid, const std::vector<bool>& is_data,
+                          std::span<const float> gray) {
+  constexpr double kBorderWeight = 0.1;    // border cells are alike in all tags and in windows
   constexpr std::size_t kMostCells = 256;  // no family has more
   constexpr float kFloor = 4;              // gray values: what darkness and noise leave
   std::array<float, kMostCells> log;
@@ -144,8 +148,8 @@ TagAgreement CompareCells(const TagModel& tag, std::span<const float> gray) {
       const int i = row * grid.width + column;
       if (grid.cells[i] == TagCell::kNone || gray[i] < 0) continue;
       const double here = CellAgreement(grid, gray, log, column, row);
-      agreement.evidence += (tag.is_data[i] ? 1 : kBorderWeight) * CellEvidence(here);
-      if (!tag.is_data[i]) continue;
+      agreement.evidence += (is_data[i] ? 1 : kBorderWeight) * CellEvidence(here);
+      if (!is_data[i]) continue;
       ++agreement.seen;
       agreement.wrong += here < 0;
     }

@@ -82,5 +82,8 @@ struct TagAgreement {
 // held against the white and the black cells around it, so that the edge of a shadow over the tag
 // does not matter.
 TagAgreement CompareCells(const TagModel& tag, std::span<const float> gray);
+// The same for a tag of these cells. 'is_data': as TagModel's.
+TagAgreement CompareCells(const TagGrid& grid, const std::vector<bool>& is_data,
+                          std::span<const float> gray);
 
 }  // namespace kestrel

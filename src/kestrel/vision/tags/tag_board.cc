@@ -79,13 +79,7 @@ std::string NameOf(const BoardTag& tag) { return fmt::format("{} id {}", tag.fam
 
 PrintedTag Print(const BoardTag& tag) {
   PrintedTag printed;
-  printed.grid = TagFamily(tag.family).Grid(tag.id);
-  if (tag.inverted) {
-    for (TagCell& cell : printed.grid.cells) {
-      if (cell != TagCell::kNone)
-        cell = cell == TagCell::kBlack ? TagCell::kWhite : TagCell::kBlack;
-    }
-  }
+  printed.grid = TagFamily(tag.family).Grid(tag.id, tag.inverted);
   printed.cell_m = tag.size_m / printed.grid.border_width;
   printed.center = tag.board_from_tag.translation.head<2>();
   printed.heading = HeadingOf(tag.board_from_tag.rotation);

@@ -84,6 +84,13 @@ void PaintSquare(int side, TagCell cell, TagGrid* grid) {
   }
 }
 
+void Invert(TagGrid* grid) {
+  for (TagCell& cell : grid->cells) {
+    if (cell == TagCell::kNone) continue;
+    cell = cell == TagCell::kBlack ? TagCell::kWhite : TagCell::kBlack;
+  }
+}
+
 const std::string& NearestFamily(std::string_view name) {
   const std::vector<std::string>& names = TagFamily::Names();
   return *std::min_element(names.begin(), names.end(),
@@ -150,7 +157,7 @@ void TagFamily::ReadAruco(int side, int id_count, int corrected_bits) {
   }
 }
 
-TagGrid TagFamily::Grid(int id) const {
+TagGrid TagFamily::Grid(int id, bool inverted) const {
   if (id < 0 || id >= id_count()) {
     throw InputError(fmt::format("{} has no id {}, expected 0 to {}", name_, id, id_count() - 1));
   }
@@ -161,6 +168,7 @@ TagGrid TagFamily::Grid(int id) const {
     const bool white = codes_[id] >> (bits_.size() - 1 - i) & 1;
     grid.cells[bits_[i].row * width_ + bits_[i].column] = white ? TagCell::kWhite : TagCell::kBlack;
   }
+  if (inverted) Invert(&grid);
   return grid;
 }
 

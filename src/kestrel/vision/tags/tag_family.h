@@ -45,8 +45,9 @@ class TagFamily {
   int width() const { return width_; }
   int border_width() const { return border_width_; }
 
-  // Returns a tag's cells. Throws InputError for an id that the family does not have.
-  TagGrid Grid(int id) const;
+  // Returns a tag's cells. 'inverted': black and white exchanged. Throws InputError for an id that
+  // the family does not have.
+  TagGrid Grid(int id, bool inverted = false) const;
 
  private:
   struct BitPlace {

@@ -6,13 +6,13 @@
 #include <optional>
 #include <span>
 
+#include "kestrel/vision/tags/board_reading.h"
 #include "kestrel/vision/tags/tag_match.h"
 
 namespace kestrel {
 namespace {
 
-constexpr double kSearchOdds = 8;    // against a tag in any quad of an image, natural logarithm
-constexpr double kFollowedOdds = 4;  // against it near the expected place
+constexpr double kSearchOdds = 8;  // against a tag in any quad of an image, natural logarithm
 
 }  // namespace
 
@@ -49,7 +49,7 @@ void TagSearch::Follow(const RigidTransform& expected) {
                    return cell == TagCell::kNone ? -1 : static_cast<int>(cell == TagCell::kWhite);
                  });
                });
-  if (shifted) Take(*shifted, kFollowedOdds, DetectionMethod::kFollowed);
+  if (shifted) Take(*shifted, kExpectedOdds, DetectionMethod::kFollowed);
 }
 
 void TagSearch::Begin(const cv::Rect& part) { tags_.finder.Begin(image_, part, &quads_); }
@@ -86,42 +86,26 @@ void TagSearch::Try(const TagQuad& quad) {
        DetectionMethod::kTags);
 }
 
-TagSearch::Finding TagSearch::Judge(const AlignedBoard& aligned) {
-  Finding finding;
-  finding.aligned = aligned;
-  for (std::size_t index = 0; index < tags_.board.tags.size(); ++index) {
-    const TagModel& tag = tags_.board.tags[index];
-    const double cell_px = CellPx(models_.camera, aligned.camera_from_board, tag);
-    if (cell_px < kLeastCellPx) continue;
-    SampleAt(aligned.camera_from_board, tag.cell_centers);
-    const TagAgreement agreement =
-        CompareCells(tag, buffers_.samples.ReadCells(image_, tag.grid().width, cell_px));
-    if (agreement.wrong > tag.most_wrong || agreement.evidence <= 0) continue;
-    finding.evidence += agreement.evidence;
-    finding.parts.Add({"tag", index, cell_px * tag.grid().border_width});
-  }
-  return finding;
-}
-
 void TagSearch::Take(const RigidTransform& pose, double prior, DetectionMethod method) {
   const std::optional<AlignedBoard> aligned = Align(pose);
   if (!aligned) return;
   log_.Reach(LandingStage::kMatch, "the cells do not look like the tag");
-  const Finding finding = Judge(*aligned);
-  const double quality = 1 / (1 + std::exp(prior - finding.evidence));
+  const BoardReading reading =
+      ReadBoard(image_, models_.camera, tags_.board, aligned->camera_from_board, &buffers_.samples);
+  const double quality = 1 / (1 + std::exp(prior - reading.evidence));
   if (quality < tags_.min_quality) return;
   if (is_found() && quality <= report_.detection->quality) return;
   log_.Reach(LandingStage::kLocate, "no pose explains the edges");
-  Report(finding, quality, method);
+  Report(*aligned, reading.parts, quality, method);
 }
 
-void TagSearch::Report(const Finding& finding, double quality, DetectionMethod method) {
-  AlignedBoard aligned = finding.aligned;
+void TagSearch::Report(AlignedBoard aligned, const SeenParts& parts, double quality,
+                       DetectionMethod method) {
   const std::optional<RigidTransform> mirror = ResolveMirror(&aligned);
   LandingDetection detection = DetectionOf(aligned, quality, method);
   detection.mirror_camera_from_pattern = mirror;
   double largest = 0;
-  for (const SeenPart& part : finding.parts.all()) largest = std::max(largest, part.size_px);
+  for (const SeenPart& part : parts.all()) largest = std::max(largest, part.size_px);
   const RigidTransform& pose = aligned.camera_from_board;
   detection.semi_minor_px = 0.5 * largest;
   detection.semi_major_px =
@@ -130,7 +114,7 @@ void TagSearch::Report(const Finding& finding, double quality, DetectionMethod m
   detection.semi_major_px = std::max(detection.semi_major_px, detection.semi_minor_px);
   detection.id = tags_.board.tags.front().id;
   detection.heading_symmetry = 1;
-  detection.parts = finding.parts;
+  detection.parts = parts;
   report_.detection = detection;
 }
 

@@ -31,13 +31,6 @@ class TagSearch final : public BoardSearch {
             TagSearchBuffers* buffers);
 
  private:
-  // A pose with what speaks for it.
-  struct Finding {
-    AlignedBoard aligned;
-    double evidence = 0;  // natural logarithm of the odds
-    SeenParts parts;
-  };
-
   void Follow(const RigidTransform& expected) override;
   void Begin(const cv::Rect& part) override;
   void SearchPass(const cv::Rect& part, int pass) override;
@@ -48,8 +41,8 @@ class TagSearch final : public BoardSearch {
   // Aligns all tags, and reports the pose if it is likelier than what was found before.
   // 'prior': logarithm of the odds against a board at any of the places that were tried.
   void Take(const RigidTransform& pose, double prior, DetectionMethod method);
-  Finding Judge(const AlignedBoard& aligned);
-  void Report(const Finding& finding, double quality, DetectionMethod method);
+  // 'aligned': a copy, as its mirror pose may replace it.
+  void Report(AlignedBoard aligned, const SeenParts& parts, double quality, DetectionMethod method);
 
   const TagSearchModels& tags_;
   TagQuadBuffers& quads_;

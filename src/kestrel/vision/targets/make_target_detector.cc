@@ -12,6 +12,7 @@
 #include "kestrel/core/base/options.h"
 #include "kestrel/core/base/violations.h"
 #include "kestrel/vision/tags/tag_print.h"
+#include "kestrel/vision/targets/ring_with_tags_detector.h"
 
 namespace kestrel {
 namespace {
@@ -36,11 +37,28 @@ std::unique_ptr<const TargetDetector> MakeRingCross(const CameraModel& camera,
   return std::make_unique<LandingPatternDetector>(camera, options.ring);
 }
 TargetShape ShapeOfRingCross(const KindOptions& options) { return ShapeOf(options.ring.pattern); }
-std::vector<std::string> ValidateRingCross(const TargetOptions& /*target*/) { return {}; }
+
+// Adds a violation where an id is set for a kind that has none.
+void AddIdOfNone(const TargetOptions& target, std::vector<std::string>* violations) {
+  if (target.id == TargetOptions::kOwnId) return;
+  violations->push_back(fmt::format("id is {}, but a {} has no id", target.id, target.kind));
+}
+std::vector<std::string> ValidateRingCross(const TargetOptions& target) {
+  std::vector<std::string> violations;
+  AddIdOfNone(target, &violations);
+  return violations;
+}
+
+TagTargetOptions WithId(TagTargetOptions tag, int id) {
+  if (id != TargetOptions::kOwnId) tag.id = id;
+  return tag;
+}
 
 // The kinds that are boards of tags differ in their group of options.
-TagTargetOptions Apriltag(const TargetOptions& target) { return target.apriltag; }
-TagTargetOptions Aruco(const TargetOptions& target) { return target.aruco; }
+TagTargetOptions Apriltag(const TargetOptions& target) {
+  return WithId(target.apriltag, target.id);
+}
+TagTargetOptions Aruco(const TargetOptions& target) { return WithId(target.aruco, target.id); }
 TagTargetOptions Nested(const TargetOptions& target) { return {.board = target.nested.board}; }
 
 using TagsOf = TagTargetOptions (*)(const TargetOptions&);
@@ -57,7 +75,12 @@ TargetShape ShapeOfTags(const KindOptions& options) {
 }
 template <TagsOf kTagsOf>
 std::vector<std::string> ValidateTags(const TargetOptions& target) {
-  std::vector<std::string> violations = kTagsOf(target).Validate();
+  const TagTargetOptions tags = kTagsOf(target);
+  std::vector<std::string> violations = tags.Validate();
+  if (target.id != TargetOptions::kOwnId && !tags.board.empty()) {
+    violations.push_back(fmt::format(
+        "id is {}, but the ids of the tags are those of the board '{}'", target.id, tags.board));
+  }
   AddViolations("tags", target.tags.Validate(), &violations);
   return violations;
 }
@@ -74,6 +97,14 @@ TargetPrint PrintOfTags(const TargetOptions& target, const LandingPattern& /*rin
   return PrintOf(kTagsOf(target).Board());
 }
 // The tags have their places in the ring's frame.
+std::unique_ptr<const TargetDetector> MakeRingWithTags(const CameraModel& camera,
+                                                       const KindOptions& options) {
+  return std::make_unique<RingWithTagsDetector>(
+      camera, options.ring, Nested(options.target).Board(), options.target.tags);
+}
+TargetShape ShapeOfRingWithTags(const KindOptions& options) {
+  return ShapeOf(options.ring.pattern, Nested(options.target).Board());
+}
 TargetPrint PrintOfRingWithTags(const TargetOptions& target, const LandingPattern& ring) {
   TargetPrint print = PrintOf(ring);
   PrintOver(PrintOf(Nested(target).Board()), &print);
@@ -90,13 +121,15 @@ TargetPrint PrintOfHelipad(const TargetOptions& target, const LandingPattern& /*
   return PrintOf(target.helipad);
 }
 std::vector<std::string> ValidateHelipad(const TargetOptions& target) {
-  return target.helipad.Validate();
+  std::vector<std::string> violations = target.helipad.Validate();
+  AddIdOfNone(target, &violations);
+  return violations;
 }
 
 // All kinds of pads, a line each.
 constexpr TargetKind kTargetKinds[] = {
     {"ring-cross", MakeRingCross, ShapeOfRingCross, PrintOfRingCross, ValidateRingCross},
-    {"ring-with-tags", MakeRingCross, ShapeOfRingCross, PrintOfRingWithTags, ValidateNested},
+    {"ring-with-tags", MakeRingWithTags, ShapeOfRingWithTags, PrintOfRingWithTags, ValidateNested},
     {"apriltag", MakeTags<Apriltag>, ShapeOfTags<Apriltag>, PrintOfTags<Apriltag>,
      ValidateTags<Apriltag>},
     {"aruco", MakeTags<Aruco>, ShapeOfTags<Aruco>, PrintOfTags<Aruco>, ValidateTags<Aruco>},

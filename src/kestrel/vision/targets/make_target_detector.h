@@ -29,7 +29,10 @@ struct NestedTargetOptions {
 
 // The target. The options of the ring with a cross are LandingPatternDetectorOptions.
 struct TargetOptions {
+  static constexpr int kOwnId = -1;
+
   std::string kind = "ring-cross";
+  int id = kOwnId;  // of the pad, over that of the options of a kind that is one tag
   TagTargetOptions apriltag;
   TagTargetOptions aruco{.family = "aruco_4x4_50", .board = ""};
   NestedTargetOptions nested;
@@ -42,6 +45,8 @@ struct TargetOptions {
         "kind", self.kind, "",
         "what the target is: ring-cross, ring-with-tags (of nested.board, in the ring's frame), "
         "apriltag, aruco, nested, helipad");
+    visitor("id", self.id, "",
+            "id of the pad where it is one tag (apriltag, aruco); -1: as the kind's options say");
     visitor.Group("apriltag", self.apriltag);
     visitor.Group("aruco", self.aruco);
     visitor.Group("nested", self.nested);

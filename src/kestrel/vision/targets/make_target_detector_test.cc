@@ -67,5 +67,20 @@ TEST_F(MakeTargetDetectorTest, BoardsOfTagsAreKinds) {
   EXPECT_TRUE(target.Validate().empty());
 }
 
+TEST(TargetOptions, AnIdIsOfTheKindsThatAreOneTag) {
+  TargetOptions target;
+  SetOption("id=9", &target);
+  EXPECT_THAT(target.Validate(), ElementsAre("id is 9, but a ring-cross has no id"));
+  SetOption("kind=helipad", &target);
+  EXPECT_THAT(target.Validate(), ElementsAre("id is 9, but a helipad has no id"));
+  SetOption("kind=apriltag", &target);
+  EXPECT_TRUE(target.Validate().empty());
+  const TargetShape shape = ShapeOfTarget(target, {});
+  ASSERT_EQ(shape.tags.size(), 1u);
+  EXPECT_EQ(shape.tags[0].id, 9);
+  SetOption("id=587", &target);
+  EXPECT_THAT(target.Validate(), ElementsAre(HasSubstr("tag36h11 has no id 587")));
+}
+
 }  // namespace
 }  // namespace kestrel
