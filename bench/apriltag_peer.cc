@@ -1,45 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apriltag_peer.h"
 
-#include <algorithm>
-#include <iterator>
-
-#include <apriltag/tag16h5.h>
-#include <apriltag/tag25h9.h>
-#include <apriltag/tag36h11.h>
-#include <apriltag/tagCircle21h7.h>
-#include <apriltag/tagCircle49h12.h>
-#include <apriltag/tagCustom48h12.h>
-#include <apriltag/tagStandard41h12.h>
-#include <apriltag/tagStandard52h13.h>
 #include <fmt/format.h>
 
 #include "kestrel/core/base/error.h"
+#include "kestrel/vision/tags/apriltag_families.h"
 
 namespace kestrel {
 namespace {
 
-struct Family {
-  const char* name;
-  apriltag_family_t* (*create)();
-  void (*destroy)(apriltag_family_t*);
-};
-
-constexpr Family kFamilies[] = {
-    {"tag16h5", tag16h5_create, tag16h5_destroy},
-    {"tag25h9", tag25h9_create, tag25h9_destroy},
-    {"tag36h11", tag36h11_create, tag36h11_destroy},
-    {"tagCircle21h7", tagCircle21h7_create, tagCircle21h7_destroy},
-    {"tagCircle49h12", tagCircle49h12_create, tagCircle49h12_destroy},
-    {"tagCustom48h12", tagCustom48h12_create, tagCustom48h12_destroy},
-    {"tagStandard41h12", tagStandard41h12_create, tagStandard41h12_destroy},
-    {"tagStandard52h13", tagStandard52h13_create, tagStandard52h13_destroy},
-};
-
 std::shared_ptr<apriltag_family_t> FamilyOf(const std::string& name) {
-  const auto* const known = std::find_if(std::begin(kFamilies), std::end(kFamilies),
-                                         [&](const Family& each) { return each.name == name; });
-  if (known == std::end(kFamilies)) throw InputError(fmt::format("no peer has family {}", name));
+  const AprilTagFamily* const known = FindAprilTagFamily(name);
+  if (known == nullptr) throw InputError(fmt::format("libapriltag has no family {}", name));
   return {known->create(), known->destroy};
 }
 

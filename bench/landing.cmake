@@ -23,14 +23,15 @@ target_link_libraries(light_accuracy PRIVATE kestrel::codec kestrel::landing kes
 target_compile_definitions(light_accuracy
                            PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
 
-add_executable(landing_benchmark landing_benchmark.cc landing_frames.cc landing_peers.cc
-                                 landing_score.cc)
-add_executable(landing_speed landing_speed.cc landing_frames.cc landing_peers.cc landing_score.cc)
+add_executable(landing_benchmark landing_benchmark.cc apriltag_peer.cc landing_frames.cc
+                                 landing_peers.cc landing_score.cc)
+add_executable(landing_speed landing_speed.cc apriltag_peer.cc landing_frames.cc landing_peers.cc
+                             landing_score.cc)
 target_link_libraries(landing_benchmark PRIVATE benchmark::benchmark)
 foreach(program landing_benchmark landing_speed)
   target_link_libraries(
-    ${program} PRIVATE kestrel::landing kestrel::recording kestrel::labelled_images CLI11::CLI11
-                       apriltag::apriltag fmt::fmt opencv_aruco opencv_imgproc)
+    ${program} PRIVATE kestrel::landing kestrel::recording kestrel::labelled_images kestrel::tags
+                       CLI11::CLI11 apriltag::apriltag fmt::fmt opencv_aruco opencv_imgproc)
   target_compile_definitions(${program}
                              PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
 endforeach()

@@ -16,6 +16,7 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include "apriltag_peer.h"
 #include "kestrel/core/base/random.h"
 #include "kestrel/core/camera/paper_camera.h"
 #include "kestrel/vision/landing/landing_pattern_detector.h"
@@ -128,8 +129,8 @@ Contestant Detect(const Scenes& scenes, bool with_hint) {
 }
 
 Contestant AprilTag(const Scenes& scenes, float decimate) {
-  return [&scenes, tags = AprilTagSearch(decimate)] {
-    for (const cv::Mat& image : scenes.images) tags.Search(image);
+  return [&scenes, tags = AprilTagPeer("tag36h11", decimate)] {
+    for (const cv::Mat& image : scenes.images) tags.Find(image);
   };
 }
 

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <memory>
 #include <vector>
 
-#include <apriltag/apriltag.h>
 #include <opencv2/aruco.hpp>
 #include <opencv2/core.hpp>
 
@@ -15,18 +13,6 @@ namespace kestrel {
 
 // One cv::adaptiveThreshold, mean of a box of 11 pixels.
 void ThresholdImage(const cv::Mat& image, cv::Mat* binary);
-
-// AprilTag 3, family 36h11, at 1 / 'decimate' of the image's size.
-class AprilTagSearch {
- public:
-  explicit AprilTagSearch(float decimate);
-  void Search(const cv::Mat& image) const;
-
- private:
-  // The detector refers to the family, which must outlive it.
-  std::shared_ptr<apriltag_family_t> family_;
-  std::shared_ptr<apriltag_detector_t> detector_;
-};
 
 // ArUco, dictionary 6x6_250.
 class ArucoSearch {

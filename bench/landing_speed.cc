@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 #include <opencv2/core.hpp>
 
+#include "apriltag_peer.h"
 #include "for_each_index.h"
 #include "kestrel/core/base/random.h"
 #include "kestrel/core/camera/paper_camera.h"
@@ -198,7 +199,7 @@ void Measure(const SpeedSet& set, int passes) {
   }
 
   cv::Mat binary;
-  const AprilTagSearch tags(2);
+  const AprilTagPeer tags("tag36h11", 2);
   ArucoSearch aruco;
   const auto threshold = [&](std::size_t i) { ThresholdImage(frames[i].image, &binary); };
   const auto detect = [&](std::size_t i) { detector.Detect(frames[i].image, {}, workspace); };
@@ -207,7 +208,7 @@ void Measure(const SpeedSet& set, int passes) {
   };
   std::vector<Contestant> contestants{
       {"cv::adaptiveThreshold", threshold, {}, all},
-      {"AprilTag 3, decimate 2", [&](std::size_t i) { tags.Search(frames[i].image); }, {}, all},
+      {"AprilTag 3, decimate 2", [&](std::size_t i) { tags.Find(frames[i].image); }, {}, all},
       {"ArUco", [&](std::size_t i) { aruco.Search(frames[i].image); }, {}, all},
       {"Detect, whole frame", detect, set.whole_frame, all},
       {"Detect, with prediction", predict, set.predicted, predicted},

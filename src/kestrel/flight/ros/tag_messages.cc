@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/flight/ros/tag_messages.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -22,6 +24,12 @@ void ForEachSeenTag(const LandingDetection& detection, const TargetShape& shape,
   for (const SeenPart& part : detection.parts.all()) {
     if (part.tag) take(shape.tags.at(*part.tag));
   }
+}
+
+bool ShowsTag(const LandingDetection& detection) {
+  const std::span<const SeenPart> parts = detection.parts.all();
+  return std::any_of(parts.begin(), parts.end(),
+                     [](const SeenPart& part) { return part.tag.has_value(); });
 }
 
 // libapriltag counts pixels from their corners, Kestrel from their centres.
@@ -76,7 +84,7 @@ TagPoseArrayMessage TagPosesOf(const LandingObservation& observation, const Targ
   TagPoseArrayMessage message;
   message.header = {0, observation.time, camera_frame};
   const auto& detection = observation.report.detection;
-  if (!detection || shape.tags.empty()) return message;
+  if (!detection || !ShowsTag(*detection)) return message;
   TagPoseMessage& found = message.detections.emplace_back();
   for (const TargetTag& tag : shape.tags) {
     found.ids.push_back(tag.id);

@@ -75,7 +75,7 @@ class TagMessagesTest : public ::testing::Test {
   const RigidTransform pose_ = BoardBelow(2.5, {0.2, -0.1}, Radians(50), {0.2, -0.1, 0});
 };
 
-// What listeners get is what libapriltag says of the same image.
+// Messages for listeners have what libapriltag says of the same image.
 TEST_F(TagMessagesTest, CornersAndHomographyAreThoseOfLibapriltag) {
   const TagBoard board = BoardOf({7});
   const cv::Mat image = ImageOf(board);
@@ -160,6 +160,11 @@ TEST_F(TagMessagesTest, NothingFoundIsAnEmptyList) {
   const TagBoard board = BoardOf({7});
   LandingObservation observation;
   observation.time = kTaken;
+  LandingDetection without_tags{};
+  without_tags.parts.Add({"ring and cross", std::nullopt, 100});
+  LandingObservation of_ring = observation;
+  of_ring.report.detection = without_tags;
+  EXPECT_THAT(TagPosesOf(of_ring, ShapeOf(board), "camera").detections, IsEmpty());
   EXPECT_THAT(TagsOf(observation, camera_, ShapeOf(board), "camera").detections, IsEmpty());
   EXPECT_THAT(TagPosesOf(observation, ShapeOf(board), "camera").detections, IsEmpty());
   EXPECT_THAT(TagTransformsOf(observation, ShapeOf(board), "camera", WireFormat::kCdr).transforms,

@@ -58,17 +58,21 @@ bool HelipadSearch::MayHaveSize(int pass, double distance_m, double error) const
   return helipad_.finder.Covers(pass, kSlant * size_px / (1 + error), size_px / (1 - error));
 }
 
-void HelipadSearch::SearchPass(const cv::Rect& part, int pass) {
-  for (const auto find : {&HelipadFinder::Find, &HelipadFinder::FindNarrow}) {
-    if (is_found()) return;
-    {
-      const SearchLog::Timer timer = log_.Time(LandingStage::kAreas);
-      (helipad_.finder.*find)(part, pass, &candidates_);
+// Strokes in any light are looked for where no pass finds intact borders: that takes longer.
+int HelipadSearch::Steps() const { return 2 * PlaneBorders::kPasses; }
+
+void HelipadSearch::SearchStep(const cv::Rect& part, int step) {
+  {
+    const SearchLog::Timer timer = log_.Time(LandingStage::kAreas);
+    if (step < PlaneBorders::kPasses) {
+      helipad_.finder.Find(part, step, &candidates_);
+    } else {
+      helipad_.finder.FindNarrow(part, step - PlaneBorders::kPasses, &candidates_);
     }
-    ExamineBorders(candidates_.examined, "no border has the moments of an H or its frame");
-    const SearchLog::Timer timer = log_.Time(LandingStage::kCross);
-    for (const HelipadCandidate& candidate : candidates_.candidates) Try(candidate);
   }
+  ExamineBorders(candidates_.examined, "no border has the moments of an H or its frame");
+  const SearchLog::Timer timer = log_.Time(LandingStage::kCross);
+  for (const HelipadCandidate& candidate : candidates_.candidates) Try(candidate);
 }
 
 std::optional<Eigen::Matrix2d> HelipadSearch::BestTurn(const HelipadCandidate& candidate) {

@@ -35,7 +35,8 @@ class HelipadSearch final : public BoardSearch {
  private:
   void Follow(const RigidTransform& expected) override;
   void Begin(const cv::Rect& part) override;
-  void SearchPass(const cv::Rect& part, int pass) override;
+  int Steps() const override;
+  void SearchStep(const cv::Rect& part, int step) override;
   bool MayHaveSize(int pass, double distance_m, double error) const override;
 
   void Try(const HelipadCandidate& candidate);

@@ -26,13 +26,13 @@ std::span<const float> ReadCellsAt(const cv::Mat& image, const CameraModel& came
   return samples->ReadCells(image, tag.grid().width, cell_px);
 }
 
-// The cells of a tag that are not its data are the black and the white square that all tags have.
-struct PrintedBorder {
+// Gray values of the black and the white square that all tags have: of the cells that are no data.
+struct SquareGrays {
   double threshold = 0;  // gray value between black and white
   double contrast = 0;   // white minus black; 0 where one of them is out of view
 };
 
-PrintedBorder PrintedBorderOf(const TagModel& tag, std::span<const float> gray) {
+SquareGrays SquareGraysOf(const TagModel& tag, std::span<const float> gray) {
   double sum[2] = {0, 0};
   int count[2] = {0, 0};
   for (std::size_t i = 0; i < gray.size(); ++i) {
@@ -75,9 +75,9 @@ bool AllDataIsInView(const TagModel& tag, std::span<const float> gray) {
 
 bool ShowsOther(const TagModel& tag, const std::vector<TagGrid>& grids,
                 std::span<const float> gray) {
-  const PrintedBorder border = PrintedBorderOf(tag, gray);
-  if (border.contrast < kLeastBorderContrast || !AllDataIsInView(tag, gray)) return false;
-  const TagGrid* const grid = MostLikeGrid(grids, tag, gray, border.threshold);
+  const SquareGrays squares = SquareGraysOf(tag, gray);
+  if (squares.contrast < kLeastBorderContrast || !AllDataIsInView(tag, gray)) return false;
+  const TagGrid* const grid = MostLikeGrid(grids, tag, gray, squares.threshold);
   if (grid == nullptr) return false;
   const TagAgreement other = CompareCells(*grid, tag.is_data, gray);
   // The more tags there are, the likelier it is that chance makes one of them.

@@ -17,7 +17,7 @@ namespace kestrel {
 // Logarithm of the odds against a board where it is expected.
 inline constexpr double kExpectedOdds = 4;
 
-// What the image shows of a board's tags at a pose.
+// Result of reading a board's tags at a pose.
 struct BoardReading {
   double evidence = 0;  // natural logarithm of how much likelier the tags are than other bits
   SeenParts parts;      // the tags that are read; SeenPart::tag is the index on the board

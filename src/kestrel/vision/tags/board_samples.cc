@@ -20,14 +20,15 @@ struct ColorSum {
   int count = 0;
 };
 
-// Where 'value' lies between the cells of the other colour (-1) and of its own (1).
+// Returns the place of a gray value between those of the cells of the other colour (-1) and of its
+// own colour (1).
 double PlaceBetween(double value, double black, double white, bool is_white) {
   const double place = (value - 0.5 * (white + black)) / (0.5 * (white - black));
   return std::clamp(is_white ? place : -place, -1.0, 1.0);
 }
 
-// Returns where a cell's gray value lies between that of the cells of the other colour (-1) and of
-// its own colour (1) around it; 0 where there are none. Lens and pixels mix gray values, a shadow
+// Returns the place of a cell's gray value between those of the cells around it of the other colour
+// (-1) and of its own colour (1); 0 where there are none. Lens and pixels mix gray values, a shadow
 // multiplies them: of the places by gray values and by their logarithms the better one counts.
 double CellAgreement(const TagGrid& grid, std::span<const float> gray, std::span<const float> log,
                      int column, int row) {

@@ -6,14 +6,15 @@
 #include <utility>
 
 #include "kestrel/core/geometry/angles.h"
-#include "kestrel/vision/tags/plane_borders.h"
 
 namespace kestrel {
 namespace {
 
-constexpr double kSigmas = 3;        // of the expected place that are searched
-constexpr double kMostShiftPx = 30;  // of a pad that is followed, or so many steps:
-constexpr int kMostShiftSteps = 10;  // to either side
+constexpr double kSigmas = 3;  // of the expected place that are searched
+// Largest shift of a pad that is followed, to either side: so many pixels, or steps if that is
+// more.
+constexpr double kMostShiftPx = 30;
+constexpr int kMostShiftSteps = 10;
 constexpr double kMirrorCost = 4.5;  // below it the image cannot tell two poses apart: 3 sigma
 constexpr double kMisfitBoundPx = 1;
 
@@ -50,12 +51,12 @@ void BoardSearch::Search() {
   }
   const Clock::time_point start = Clock::now();
   const std::chrono::duration<double, std::milli> limit(hint_.max_search_ms);
-  for (int pass = hint_.first_step; pass < PlaneBorders::kPasses && !is_found(); ++pass) {
-    if (limit.count() > 0 && pass > hint_.first_step && Clock::now() - start > limit) {
-      report_.next_step = pass;
+  for (int step = hint_.first_step; step < Steps() && !is_found(); ++step) {
+    if (limit.count() > 0 && step > hint_.first_step && Clock::now() - start > limit) {
+      report_.next_step = step;
       return;
     }
-    if (MayHaveSize(pass)) SearchPass(part, pass);
+    if (MayHaveSize(step % PlaneBorders::kPasses)) SearchStep(part, step);
   }
 }
 

@@ -13,6 +13,7 @@
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/vision/tags/board_alignment.h"
 #include "kestrel/vision/tags/board_samples.h"
+#include "kestrel/vision/tags/plane_borders.h"
 #include "kestrel/vision/target/landing_detection.h"
 #include "kestrel/vision/target/search_log.h"
 
@@ -55,8 +56,10 @@ class BoardSearch {
   virtual void Follow(const RigidTransform& expected) = 0;
   // Prepares passes over a part of the image.
   virtual void Begin(const cv::Rect& part) = 0;
-  // Tries the candidates of a pass.
-  virtual void SearchPass(const cv::Rect& part, int pass) = 0;
+  // Returns the number of steps of a search: the passes, once or several times over.
+  virtual int Steps() const { return PlaneBorders::kPasses; }
+  // Tries the candidates of a step.
+  virtual void SearchStep(const cv::Rect& part, int step) = 0;
   // Returns whether a pass finds the pad at 'distance_m', known up to the relative 'error'.
   virtual bool MayHaveSize(int pass, double distance_m, double error) const = 0;
 

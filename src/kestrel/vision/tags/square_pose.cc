@@ -61,7 +61,7 @@ SquareFit Fitted(const SquareCorners& corners, const RigidTransform& start) {
   for (int i = 0; i < kSteps; ++i) {
     Vector6 step = StepOf(corners, &fit);
     if (!step.allFinite()) return {};
-    step *= kMostSquareTurn / std::max(kMostTurn, step.tail<3>().norm());
+    step *= kMostSquareTurn / std::max(kMostSquareTurn, step.tail<3>().norm());
     fit.pose = Moved(fit.pose, step.head<3>(), step.tail<3>());
   }
   StepOf(corners, &fit);

@@ -7,42 +7,16 @@
 #include <string_view>
 
 #include <apriltag/apriltag.h>
-#include <apriltag/tag16h5.h>
-#include <apriltag/tag25h9.h>
-#include <apriltag/tag36h10.h>
-#include <apriltag/tag36h11.h>
-#include <apriltag/tagCircle21h7.h>
-#include <apriltag/tagCircle49h12.h>
-#include <apriltag/tagCustom48h12.h>
-#include <apriltag/tagStandard41h12.h>
-#include <apriltag/tagStandard52h13.h>
 #include <fmt/format.h>
 
 #include "kestrel/core/base/edit_distance.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/shown.h"
+#include "kestrel/vision/tags/apriltag_families.h"
 #include "kestrel/vision/tags/aruco_codes.h"
 
 namespace kestrel {
 namespace {
-
-struct AprilTagFamily {
-  std::string_view name;
-  apriltag_family_t* (*create)();
-  void (*destroy)(apriltag_family_t*);
-};
-
-constexpr std::array<AprilTagFamily, 9> kAprilTagFamilies{{
-    {"tag36h11", tag36h11_create, tag36h11_destroy},
-    {"tag25h9", tag25h9_create, tag25h9_destroy},
-    {"tag16h5", tag16h5_create, tag16h5_destroy},
-    {"tag36h10", tag36h10_create, tag36h10_destroy},
-    {"tagStandard41h12", tagStandard41h12_create, tagStandard41h12_destroy},
-    {"tagStandard52h13", tagStandard52h13_create, tagStandard52h13_destroy},
-    {"tagCircle21h7", tagCircle21h7_create, tagCircle21h7_destroy},
-    {"tagCircle49h12", tagCircle49h12_create, tagCircle49h12_destroy},
-    {"tagCustom48h12", tagCustom48h12_create, tagCustom48h12_destroy},
-}};
 
 struct ArucoFamily {
   std::string_view name;
@@ -104,7 +78,7 @@ const std::string& NearestFamily(std::string_view name) {
 const std::vector<std::string>& TagFamily::Names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
-    for (const AprilTagFamily& family : kAprilTagFamilies) all.emplace_back(family.name);
+    for (const AprilTagFamily& family : AprilTagFamilies()) all.emplace_back(family.name);
     for (const ArucoFamily& family : kArucoFamilies) all.emplace_back(family.name);
     return all;
   }();
@@ -122,10 +96,8 @@ TagFamily::TagFamily(const std::string& name) : name_(name) {
 }
 
 void TagFamily::ReadAprilTag() {
-  const auto known =
-      std::find_if(kAprilTagFamilies.begin(), kAprilTagFamilies.end(),
-                   [this](const AprilTagFamily& family) { return family.name == name_; });
-  if (known == kAprilTagFamilies.end()) {
+  const AprilTagFamily* const known = FindAprilTagFamily(name_);
+  if (known == nullptr) {
     throw InputError(fmt::format("unknown family of tags '{}', did you mean '{}'?", Shown(name_),
                                  NearestFamily(name_)));
   }

@@ -63,7 +63,7 @@ bool TagSearch::MayHaveSize(int pass, double distance_m, double error) const {
   });
 }
 
-void TagSearch::SearchPass(const cv::Rect& part, int pass) {
+void TagSearch::SearchStep(const cv::Rect& part, int pass) {
   {
     const SearchLog::Timer timer = log_.Time(LandingStage::kAreas);
     tags_.finder.Find(part, pass, &quads_);

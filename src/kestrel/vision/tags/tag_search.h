@@ -33,7 +33,7 @@ class TagSearch final : public BoardSearch {
  private:
   void Follow(const RigidTransform& expected) override;
   void Begin(const cv::Rect& part) override;
-  void SearchPass(const cv::Rect& part, int pass) override;
+  void SearchStep(const cv::Rect& part, int pass) override;
   bool MayHaveSize(int pass, double distance_m, double error) const override;
 
   const TagModel* LeadingTag(const RigidTransform& pose);

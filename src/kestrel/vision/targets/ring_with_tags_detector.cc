@@ -160,7 +160,7 @@ LandingReport RingWithTagsDetector::Detect(const cv::Mat& image, const LandingHi
   if (by_ring.detection) impl_->Identify(image, &memory.samples, &by_ring);
   if (by_ring.detection) return by_ring;
 
-  // What remains of the time: the tags' search always makes its first step.
+  // The tags' search gets the time that is left, and always makes its first step.
   constexpr double kLeastMs = 0.1;
   LandingHint of_tags = hint;
   of_tags.first_step = 0;
