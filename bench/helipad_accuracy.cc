@@ -128,7 +128,7 @@ std::string Shown(const std::vector<Sighting>& all) {
                      median(center), median(heading), median(ms));
 }
 
-// How many of the detections of a range of qualities are right.
+// Counts of the detections in a range of qualities, and of those that are right.
 struct Calibration {
   static constexpr std::array<double, 6> kEdges{0, 0.5, 0.7, 0.9, 0.99, 1.01};
   std::array<int, kEdges.size() - 1> right{}, all{};
