@@ -92,8 +92,9 @@ class PadRenderer {
         const int samples = near ? 4 : 1;
         double sum = 0;
         for (int k = 0; k < samples * samples; ++k) {
+          const int row = k / samples;
           const double du = (k % samples + 0.5) / samples - 0.5;
-          const double dv = (k / samples + 0.5) / samples - 0.5;
+          const double dv = (row + 0.5) / samples - 0.5;
           sum += GrayAt(print, OnPlane(pad_from_camera, u + du, v + dv), options, seed);
         }
         image.at<float>(v, u) = static_cast<float>(sum / (samples * samples));

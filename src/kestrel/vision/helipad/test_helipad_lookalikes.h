@@ -143,7 +143,8 @@ inline LookalikeBoard RandomLookalikeBoard(bool white, Random* random) {
   board.print.board_gray = white ? 0 : 1;
   const double ink = white ? 1 : 0;
   for (int cell = 0; cell < kLookalikesPerBoard; ++cell) {
-    const Eigen::Vector2d place(kLookalikeCell * (cell % 3 - 1), kLookalikeCell * (cell / 3 - 1));
+    const int row = cell / 3;
+    const Eigen::Vector2d place(kLookalikeCell * (cell % 3 - 1), kLookalikeCell * (row - 1));
     const int last = static_cast<int>(LookalikeFigures().size()) - 1;
     const LookalikeFigure& figure = LookalikeFigures()[random->Integer(0, last)];
     const double half = random->Uniform(0.25, 0.5);
