@@ -8,8 +8,8 @@
 
 #include <Eigen/Core>
 
+#include "kestrel/core/image/log_gray.h"
 #include "kestrel/vision/helipad/helipad.h"
-#include "kestrel/vision/helipad/log_gray.h"
 #include "kestrel/vision/tags/board_model.h"
 
 namespace kestrel {

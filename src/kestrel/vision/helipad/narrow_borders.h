@@ -13,15 +13,15 @@ namespace kestrel {
 // Memory of one thread's narrow borders.
 struct NarrowBorderBuffers {
   BlackTopHat top_hat;
-  std::vector<std::uint8_t> gray;  // of a level, dark where there is ink
+  std::vector<std::uint8_t> inverted;  // a level, dark where there is white ink
 
   void Reserve(const cv::Mat& image, BorderBuffers* borders);
 };
 
 // Traces borders around strokes of ink that are narrow at a level of an image's pyramid, in any
-// light: the edge of a shadow that crosses a stroke is no border of it. Gray values are taken by
-// their logarithm, in which light is a term that the top-hat removes. 'level': from 0;
-// 'buffers->pyramid' must have it. A border goes around the ink. Does not allocate after Reserve.
+// light: the edge of a shadow that crosses a stroke is no border of it, as light is a term of the
+// logarithms in the pyramid, which the top-hat removes. 'level': from 0; 'borders->pyramid' must
+// have it. A border goes around the ink. Does not allocate after Reserve.
 std::span<const Border> TraceNarrow(int level, bool white_ink, const BorderLimits& limits,
                                     BorderBuffers* borders, NarrowBorderBuffers* buffers);
 

@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include "kestrel/core/image/log_gray.h"
+
 namespace kestrel {
 namespace {
 
@@ -33,12 +35,14 @@ void PlaneBorders::Begin(const cv::Mat& image, const cv::Rect& part, BorderBuffe
     buffers->height_px = image.rows;
     buffers->tracer.Reserve(image.cols, image.rows);
     buffers->points.reserve(kMostPoints);
+    buffers->log_grays.resize(image.total());
     // Runs the parts whose memory depends on the size alone.
     const cv::Rect whole(0, 0, image.cols, image.rows);
     buffers->pyramid.Build(image);
     for (int pass = 0; pass < kPasses; ++pass) Trace(whole, pass, buffers);
   }
-  buffers->pyramid.Build(image(part), passes_[0].tile_level + kLargerTiles);
+  buffers->pyramid.Build(WriteLogGrays(image(part), buffers->log_grays.data()),
+                         passes_[0].tile_level + kLargerTiles);
 }
 
 std::span<const Border> PlaneBorders::Trace(const cv::Rect& part, int pass_index,

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -29,15 +30,18 @@ struct BorderPass {
 struct BorderBuffers {
   int width_px = 0;  // size of the image that it was reserved for
   int height_px = 0;
-  TilePyramid pyramid;
+  std::vector<std::uint8_t> log_grays;  // of the searched part
+  TilePyramid pyramid;                  // of these
   LocalThreshold threshold;
   BinaryImage binary;
   BorderTracer tracer;
   std::vector<Eigen::Vector2d> points;  // of one border, on the plane
 };
 
-// Traces borders in the raw image. A lens bends lines, so borders are examined as rays: on a plane
-// across the ray to their middle a straight edge is straight, however far from the axis.
+// Traces borders in the logarithms of the raw image: what is darker than its surroundings by a
+// factor has a border, also where a shadow's edge runs through it. A lens bends lines, so borders
+// are examined as rays: on a plane across the ray to their middle a straight edge is straight,
+// however far from the axis.
 class PlaneBorders {
  public:
   static constexpr int kPasses = 4;  // from the image at an eighth, for near pads, to all of it

@@ -254,6 +254,23 @@ TEST_F(TagBoardDetectorTest, ATagIsFollowedThroughBlurAndAShadow) {
   EXPECT_GE(found, kFrames - 2);
 }
 
+TEST_F(TagBoardDetectorTest, ATagIsFoundWithoutAHintUnderTheEdgeOfAShadow) {
+  Use({{OneTag("tag36h11", 7, 0.5)}});
+  Random random(19);
+  taken_.shadow = true;
+  int found = 0;
+  constexpr int kFrames = 20;
+  for (int i = 0; i < kFrames; ++i) {
+    taken_.contrast = random.Uniform(0.85, 1);
+    const RigidTransform pose = RandomBoardBelow(random.Uniform(0.8, 5), 0.3, 0.1, &random);
+    const LandingReport report = Detect(Image(pose, random.Bits()));
+    if (!report.detection) continue;
+    ++found;
+    EXPECT_LT(ErrorOf(*report.detection, pose).place, 0.03) << i;
+  }
+  EXPECT_GE(found, kFrames - 2);
+}
+
 TEST(WideLensTest, ATagIsFoundBeyondNinetyDegreesFromTheAxis) {
   // TUM VI's lens: 108 degrees from the axis in the corners of the image.
   const CameraModel camera({512,

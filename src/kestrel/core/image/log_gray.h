@@ -3,6 +3,9 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
+
+#include <opencv2/core.hpp>
 
 namespace kestrel {
 
@@ -11,7 +14,7 @@ namespace kestrel {
 class LogGrays {
  public:
   LogGrays() {
-    constexpr double kDarkest = 16;  // below it is mostly noise and stray light
+    constexpr double kDarkest = 8;  // below it is mostly noise and stray light
     for (int gray = 0; gray < 256; ++gray) {
       values_[gray] = static_cast<float>(std::log1p(gray / kDarkest) / std::log1p(255 / kDarkest));
     }
@@ -22,5 +25,9 @@ class LogGrays {
  private:
   std::array<float, 256> values_;
 };
+
+// Writes the logarithms of an image, 0 to 255, to as many bytes as it has pixels, row by row, and
+// returns them as an image. 'image': CV_8UC1.
+cv::Mat WriteLogGrays(const cv::Mat& image, std::uint8_t* log_grays);
 
 }  // namespace kestrel
