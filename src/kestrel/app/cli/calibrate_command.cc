@@ -101,6 +101,7 @@ void AddFlightCalibration(CLI::App* parent, const std::string& name, const std::
                    "Calibration to start from, with a mount; overrides the recording's")
       ->type_name("FILE");
   arguments->options.AddTo(command);
+  arguments->options.target.AddTo(command);
   command
       ->add_option("--output", arguments->output,
                    "File for the calibration, as --camera reads it (default: stdout)")

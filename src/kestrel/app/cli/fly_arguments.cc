@@ -55,6 +55,7 @@ void PredictPoses(KestrelOptions* options) {
 
 void FlyArguments::AddTo(CLI::App* command) {
   source.AddTo(command);
+  source.options.target.AddTo(command);
   command
       ->add_option("--autopilot", autopilot,
                    "Connection to the autopilot: serial:///dev/ttyAMA0:921600, "
@@ -100,6 +101,7 @@ void FlyArguments::AddTo(CLI::App* command) {
       ->type_name("FILE")
       ->needs(hunt_flag);
   guide_flag->excludes(hunt_flag);
+  hunt_flag->excludes("--target")->excludes("--target-id");
   team.AddTo(command)->needs(hunt_flag);
   command->add_flag("--loop", loop, "Play a recording in a loop");
 }

@@ -45,6 +45,7 @@ void AddLandCommand(CLI::App* app) {
   CLI::App* command = app->add_subcommand("land", "Run the landing pipeline over a source");
   const auto arguments = std::make_shared<LandArguments>();
   arguments->source.AddTo(command);
+  arguments->source.options.target.AddTo(command);
   command
       ->add_option("--predict", arguments->predict_s,
                    "Horizons (s) of predictions of the target that are written, too, as 0.5,1.0")

@@ -6,15 +6,17 @@
 
 #include <CLI/CLI.hpp>
 
+#include "kestrel/app/cli/target_arguments.h"
 #include "kestrel/app/options/kestrel_options.h"
 
 namespace kestrel {
 
-// The options --config and --set of several subcommands. Must live until the command line is
-// parsed.
+// The options --config and --set of several subcommands, and the target of those that have one.
+// Must live until the command line is parsed.
 struct OptionArguments {
   std::string config;
   std::vector<std::string> settings;
+  TargetArguments target;  // its AddTo is for the subcommand to call
 
   void AddTo(CLI::App* command) {
     command->add_option("--config", config, "Options from a YAML file (see `kestrel config`)")
@@ -23,7 +25,11 @@ struct OptionArguments {
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
   }
-  KestrelOptions Read() const { return ReadKestrelOptions(config, settings); }
+  KestrelOptions Read() const {
+    std::vector<std::string> all = settings;
+    target.AppendTo(&all, "landing.target");
+    return ReadKestrelOptions(config, all);
+  }
 };
 
 }  // namespace kestrel

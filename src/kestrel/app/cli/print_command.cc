@@ -7,7 +7,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "kestrel/app/cli/commands.h"
 #include "kestrel/app/cli/option_arguments.h"
@@ -19,7 +18,6 @@
 #include "kestrel/core/camera/calibration_reader.h"
 #include "kestrel/io/recording/image_file.h"
 #include "kestrel/io/recording/output_folder.h"
-#include "kestrel/vision/targets/make_target_detector.h"
 
 namespace kestrel {
 namespace {
@@ -35,13 +33,6 @@ struct PrintArguments {
   std::string camera;
   std::optional<double> distance_m;
   std::optional<double> ruler_m;
-  std::string target;  // kind, over the configured one
-
-  KestrelOptions ReadOptions() const {
-    OptionArguments with_target = options;
-    if (!target.empty()) with_target.settings.push_back("landing.target.kind=" + target);
-    return with_target.Read();
-  }
 };
 
 // New files in one folder. The command prints the name of each when it is written.
@@ -140,7 +131,7 @@ void RunPrint(const PrintArguments& arguments) {
     CheckPhoto(arguments);
     return;
   }
-  const LandingPipelineOptions landing = arguments.ReadOptions().landing;
+  const LandingPipelineOptions landing = arguments.options.Read().landing;
   const TargetPrint print = PrintOfTarget(landing.target, landing.detector.pattern);
   const std::filesystem::path output(arguments.output);
   const std::string kind = output.extension().string();
@@ -190,11 +181,7 @@ void AddPrintCommand(CLI::App* app) {
       app->add_subcommand("print", "The configured pad as PDF and SVG, true to scale");
   const auto arguments = std::make_shared<PrintArguments>();
   arguments->options.AddTo(command);
-  command
-      ->add_option("--target", arguments->target,
-                   fmt::format("What is printed: {} (default: as configured)",
-                               fmt::join(TargetKinds(), ", ")))
-      ->type_name("KIND");
+  arguments->options.target.AddTo(command);
   CLI::Option* const paper = command
                                  ->add_option("--paper", arguments->paper,
                                               "Size of the sheets (a0 to a4) that the print is cut "

@@ -2,10 +2,8 @@
 #include "kestrel/app/cli/simulate_arguments.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "kestrel/core/camera/calibration_reader.h"
-#include "kestrel/vision/targets/make_target_detector.h"
 
 namespace kestrel {
 
@@ -37,17 +35,9 @@ void SimulateArguments::AddTo(CLI::App* command) {
   });
 }
 
-void SimulateArguments::AddTargetTo(CLI::App* command) {
-  command
-      ->add_option(
-          "--target", target,
-          fmt::format("What is landed on: {} (default ring-cross)", fmt::join(TargetKinds(), ", ")))
-      ->type_name("KIND");
-}
-
 std::vector<std::string> SimulateArguments::AllSettings() const {
   std::vector<std::string> all = settings;
-  if (!target.empty()) all.push_back("target.kind=" + target);
+  target.AppendTo(&all, "target");
   return all;
 }
 

@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "kestrel/app/cli/target_arguments.h"
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/simulation/recordings/scenarios.h"
 
@@ -20,15 +21,13 @@ struct SimulateArguments {
   std::string config;
   std::vector<std::string> settings;
   std::string camera;
-  std::string target;  // kind; not of a hunt
+  TargetArguments target;  // its AddTo is for simulations of a landing
   std::uint64_t seed = 1;
   bool list = false;
   bool print_config = false;
   bool force = false;
 
   void AddTo(CLI::App* command);
-  // Adds --target, for simulations of a landing.
-  void AddTargetTo(CLI::App* command);
   // Returns the settings, that of the target among them.
   std::vector<std::string> AllSettings() const;
 

@@ -95,7 +95,7 @@ void AddSimulateCommand(CLI::App* app) {
   AddKind(command, "landing", "A flight over a pad on a vehicle (gray fisheye camera)",
           Kind<LandingSimulationOptions>{LandingScenarios(), ReadLandingSimulation, PlanLanding,
                                          PaperCalibration()})
-      ->AddTargetTo(command->get_subcommand("landing"));
+      ->target.AddTo(command->get_subcommand("landing"));
   AddKind(command, "hunt", "A flight over coloured objects (colour camera, rolling shutter)",
           Kind<HuntSimulationOptions>{HuntScenarios(), ReadHuntSimulation, PlanHunt,
                                       HuntCalibration()});

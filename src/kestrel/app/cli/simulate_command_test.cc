@@ -39,6 +39,16 @@ TEST_F(SimulateCommandTest, LandsOnWhatItSimulates) {
                    "exists already; --force replaces it");
 }
 
+TEST_F(SimulateCommandTest, LandsOnTheTagThatIsAskedForAndOnNoOther) {
+  const std::string flight = folder_ / "flight";
+  Succeed("simulate landing --target apriltag --target-id 7 --scenario calm --output " + flight +
+          kSmall + " --set flight.start_altitude_m=3 --set flight.end_altitude_m=2");
+  const std::string land = "land " + flight + " --target apriltag";
+  EXPECT_THAT(Succeed(land + " --target-id 7").err, HasSubstr("found in 2"));
+  EXPECT_THAT(Succeed(land + " --target-id 8").err, HasSubstr("found in 0"));
+  ExpectInputError("land " + flight + " --target-id 7", "a ring-cross has no id");
+}
+
 TEST_F(SimulateCommandTest, SimulatesAHuntWithTheUsersCamera) {
   const std::string camera = folder_.Write("camera.yaml",
                                            "image_width: 160\nimage_height: 90\n"

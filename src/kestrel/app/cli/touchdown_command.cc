@@ -94,7 +94,7 @@ void AddTouchdownCommand(CLI::App* simulate) {
       "touchdown", "A simulated UAV lands on a moving vehicle by what the landing pipeline sees");
   const auto arguments = std::make_shared<TouchdownArguments>();
   arguments->shared.AddTo(command);
-  arguments->shared.AddTargetTo(command);
+  arguments->shared.target.AddTo(command);
   AddAnnotateFlag(command, &arguments->annotate);
   command->callback([arguments] { RunTouchdown(*arguments); });
 }

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace kestrel {
+
+// The options --target and --target-id of several subcommands. Must live until the command line is
+// parsed.
+struct TargetArguments {
+  std::string kind;  // empty: as configured
+  std::optional<int> id;
+
+  void AddTo(CLI::App* command);
+
+  // Adds settings, as of --set, over those that are there. 'section': the key of the target.
+  void AppendTo(std::vector<std::string>* settings, const std::string& section) const;
+};
+
+}  // namespace kestrel
