@@ -10,9 +10,9 @@ namespace kestrel {
 
 void TargetArguments::AddTo(CLI::App* command) {
   command
-      ->add_option("--target", kind,
-                   fmt::format("The pad: {} (default: as configured)",
-                               fmt::join(TargetKinds(), ", ")))
+      ->add_option(
+          "--target", kind,
+          fmt::format("The pad: {} (default: as configured)", fmt::join(TargetKinds(), ", ")))
       ->type_name("KIND");
   command->add_option("--target-id", id, "Id of the pad, where that is one tag")->type_name("ID");
 }

@@ -254,6 +254,35 @@ TEST_F(TagBoardDetectorTest, ATagIsFollowedThroughBlurAndAShadow) {
   EXPECT_GE(found, kFrames - 2);
 }
 
+TEST_F(TagBoardDetectorTest, OfTwoPadsOfAFamilyEachIsFoundAtItsOwnPlace) {
+  TagBoard pads{{OneTag("tag36h11", 7, 0.5), OneTag("tag36h11", 8, 0.5)}};
+  pads.tags[0].board_from_tag.translation.x() = -0.6;
+  pads.tags[1].board_from_tag.translation.x() = 0.6;
+  Random random(23);
+  for (const std::size_t own : {0, 1}) {
+    Use({{OneTag("tag36h11", pads.tags[own].id, 0.5)}});
+    const Eigen::Vector3d& place = pads.tags[own].board_from_tag.translation;
+    const Eigen::Vector3d& others = pads.tags[1 - own].board_from_tag.translation;
+    for (int i = 0; i < 10; ++i) {
+      const RigidTransform pose = RandomBoardBelow(random.Uniform(2, 5), 0.2, 0.1, &random);
+      const cv::Mat image = renderer_.Render(pads.Printed(), pose, taken_, random.Bits());
+      RigidTransform pad = pose;
+      pad.translation = pose * place;
+      const LandingReport found = Detect(image);
+      ASSERT_TRUE(found.detection) << i;
+      EXPECT_EQ(found.detection->id, pads.tags[own].id);
+      EXPECT_LT(ErrorOf(*found.detection, pad).place, 0.02) << i;
+      // A track that has strayed to the other pad does not hold on to it.
+      LandingHint strayed;
+      strayed.center_in_camera = pose * others;
+      strayed.center_sigma_m = 0.05;
+      strayed.rotation_in_camera = pose.rotation;
+      const LandingReport followed = Detect(image, strayed);
+      EXPECT_TRUE(!followed.detection || ErrorOf(*followed.detection, pad).place < 0.02) << i;
+    }
+  }
+}
+
 TEST_F(TagBoardDetectorTest, ATagIsFoundWithoutAHintUnderTheEdgeOfAShadow) {
   Use({{OneTag("tag36h11", 7, 0.5)}});
   Random random(19);
