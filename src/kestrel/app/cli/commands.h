@@ -30,6 +30,8 @@ void AddCalibrateColorsCommand(CLI::App* calibrate);
 void AddPrintCommand(CLI::App* app);
 // `kestrel convert SOURCE DESTINATION`: converts between EuRoC folders and bags of ROS 1 and ROS 2.
 void AddConvertCommand(CLI::App* app);
+// `kestrel benchmark`: says how fast this computer is.
+void AddBenchmarkCommand(CLI::App* app);
 // `kestrel config`: prints all options with value, unit and meaning, as YAML for --config.
 void AddConfigCommand(CLI::App* app);
 // `kestrel help [SUBCOMMAND]`: the same as --help.

@@ -329,5 +329,15 @@ TEST_F(KestrelCommandTest, CalibrateSaysWhatIsMissing) {
   ExpectInputError("calibrate clock " + flight, "has no poses of the UAV");
 }
 
+TEST_F(KestrelCommandTest, ABenchmarkHasALineForEachStepAndOneToSend) {
+  const std::string out = Succeed("benchmark").out;
+  EXPECT_THAT(out, HasSubstr("| ring, whole image, 752 x 480 | "));
+  EXPECT_THAT(out, HasSubstr("| capture to result, 30 images/s for 5 s | "));
+  EXPECT_THAT(out, Not(HasSubstr("| - | - | - | - |"))) << "a step was not measured";
+  const std::string line = out.substr(out.rfind("kestrel "));
+  constexpr int kSteps = 6;
+  EXPECT_EQ(std::count(line.begin(), line.end(), '|'), kSteps + 1) << line;
+}
+
 }  // namespace
 }  // namespace kestrel

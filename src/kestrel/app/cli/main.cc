@@ -39,6 +39,7 @@ int main(int argc, char** argv) {
   kestrel::AddCalibrateCommand(&app);
   kestrel::AddPrintCommand(&app);
   kestrel::AddConvertCommand(&app);
+  kestrel::AddBenchmarkCommand(&app);
   kestrel::AddConfigCommand(&app);
   kestrel::AddHelpCommand(&app);
   try {
