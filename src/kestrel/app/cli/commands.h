@@ -19,6 +19,8 @@ void AddConsoleCommand(CLI::App* app);
 // `kestrel simulate landing|hunt|touchdown`: renders a recording with truth.
 void AddSimulateCommand(CLI::App* app);
 void AddTouchdownCommand(CLI::App* simulate);
+// `kestrel demo`: simulated flights, their videos and plots, and a verdict.
+void AddDemoCommand(CLI::App* app);
 // `kestrel evaluate RECORDING OUTPUT`: compares an output folder with the recording's truth.
 void AddEvaluateCommand(CLI::App* app);
 // `kestrel calibrate mount|clock|lens|colors`: mount angles and clock offset from a flight over the

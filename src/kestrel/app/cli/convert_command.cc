@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cstddef>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,9 +15,13 @@
 #include "kestrel/app/cli/progress_bar.h"
 #include "kestrel/app/cli/source_arguments.h"
 #include "kestrel/app/foxglove/foxglove_recording.h"
+#include "kestrel/core/base/error.h"
 #include "kestrel/core/camera/calibration_reader.h"
 #include "kestrel/io/bags/bag_writer.h"
 #include "kestrel/io/bags/recording_sink.h"
+#include "kestrel/io/recording/euroc_layout.h"
+#include "kestrel/io/recording/euroc_recording.h"
+#include "kestrel/io/recording/file_kind.h"
 #include "kestrel/io/recording/frame_source.h"
 
 namespace kestrel {
@@ -43,10 +48,28 @@ std::optional<CameraCalibration> CalibrationFor(const ConvertArguments& argument
   return calibration;
 }
 
+bool HasTruth(const std::string& source) {
+  const auto root = FindEurocRoot(source);
+  return root && std::filesystem::exists(std::filesystem::path(*root) / euroc::kTruePoses);
+}
+
+// Throws InputError for the name of an image or a video, which would become a folder.
+void RequireBagOrFolder(const std::string& destination) {
+  if (FileKindOf(destination) == FileKind::kOther) return;
+  throw InputError(destination +
+                   ": expected a bag (.bag, .mcap, .db3) or a folder; `kestrel land --annotate` "
+                   "makes videos");
+}
+
 // Says which data of the source the destination cannot hold.
 void SayWhatIsLost(const ConvertArguments& arguments, const RecordingHead& head) {
   const bool is_bag = IsBagName(arguments.destination);
   if (!head.calibration) fmt::print(stderr, "kestrel: no calibration: the source has none\n");
+  if (HasTruth(arguments.source)) {
+    fmt::print(stderr,
+               "kestrel: the truth of the simulation is left out: only a recording that "
+               "was simulated has it\n");
+  }
   if (is_bag && head.calibration && head.calibration->clock_offset) {
     fmt::print(stderr,
                "kestrel: a bag cannot hold the clock offset: use it with --clock-offset {}\n",
@@ -69,6 +92,7 @@ std::unique_ptr<RecordingSink> OpenDestination(const ConvertArguments& arguments
 }
 
 void RunConvert(const ConvertArguments& arguments) {
+  RequireBagOrFolder(arguments.destination);
   const auto source = OpenFrames(arguments.bag.Recording({arguments.source}, PixelFormat::kBgr));
   const std::vector<PoseSample> poses = source->poses();
   const RecordingHead head{
@@ -77,8 +101,8 @@ void RunConvert(const ConvertArguments& arguments) {
       .has_poses = !poses.empty(),
       .has_motion = std::any_of(poses.begin(), poses.end(),
                                 [](const PoseSample& pose) { return pose.motion.has_value(); })};
-  SayWhatIsLost(arguments, head);
   const auto recording = OpenDestination(arguments, head);
+  SayWhatIsLost(arguments, head);
   CatchInterrupts();
   ProgressBar progress(source->frame_count());
   std::size_t frames = 0;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
@@ -22,6 +23,8 @@
 
 namespace kestrel {
 namespace {
+
+constexpr double kMaxLatitude_deg = 90;
 
 struct HuntArguments {
   SourceArguments source;
@@ -110,6 +113,11 @@ void AddHuntCommand(CLI::App* app) {
   command->callback([arguments] {
     if (!arguments->origin.empty() && arguments->origin.size() != 2) {
       throw CLI::ValidationError("--origin", "expected latitude and longitude, as 50.1,14.4");
+    }
+    if (!arguments->origin.empty() && std::abs(arguments->origin[0]) > kMaxLatitude_deg) {
+      throw CLI::ValidationError(
+          "--origin", fmt::format("latitude {} is beyond {} degrees, expected latitude first",
+                                  arguments->origin[0], kMaxLatitude_deg));
     }
     RunHunt(*arguments);
   });

@@ -107,10 +107,12 @@ TEST_F(KestrelCommandTest, WrongUsageIsStatusTwo) {
         "land a.png --clock-offset inf", "land a.png --annotate", "land a.png --colour",
         "land a.png --output o --annotate=gif", "land a.png --predict 1", "calibrate",
         "land a.png --output o --predict 0.5,-1", "hunt a.png --origin 50",
-        "hunt a.png --origin 50,14,3"}) {
+        "hunt a.png --origin 50,14,3", "hunt a.png --origin 95,14", "land a.png --mcap out.txt",
+        "simulate landing --seed x"}) {
     const Outcome outcome = Run(arguments);
     EXPECT_EQ(outcome.status, 2) << arguments;
-    EXPECT_THAT(outcome.err, Not(IsEmpty())) << arguments;
+    EXPECT_THAT(outcome.err, StartsWith("kestrel")) << arguments;
+    EXPECT_EQ(Lines(outcome.err), 1) << outcome.err;
     EXPECT_THAT(outcome.out, IsEmpty()) << arguments;
   }
 }
@@ -288,6 +290,7 @@ TEST_F(KestrelCommandTest, MisspeltOptionNamesTheNearest) {
                    "c.yaml:2: unknown key 'landing.hint_sigma', did you mean "
                    "'landing.hint_sigma_m'?");
   ExpectInputError("land " + recording + " --set landing.hint_sigmam=1", "did you mean");
+  EXPECT_THAT(Run("land " + recording + " --set zzz=1").err, Not(HasSubstr("did you mean")));
 }
 
 TEST_F(KestrelCommandTest, EvaluateComparesALandingWithItsTruth) {

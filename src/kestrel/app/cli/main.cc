@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstdlib>
 #include <exception>
+#include <string>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -22,6 +23,17 @@ void SilenceLibraries() {
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
 }
 
+// Returns the words of the command as given, for example "kestrel simulate landing".
+std::string CommandOf(const CLI::App& app) {
+  std::string words = app.get_name();
+  const CLI::App* command = &app;
+  while (!command->get_subcommands().empty()) {
+    command = command->get_subcommands().front();
+    words += " " + command->get_name();
+  }
+  return words;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -29,6 +41,7 @@ int main(int argc, char** argv) {
   CLI::App app("Kestrel gives UAVs eyes for landing on moving targets.", "kestrel");
   app.set_version_flag("--version", fmt::format("kestrel {}", kestrel::kVersion));
   app.require_subcommand(1);
+  kestrel::AddDemoCommand(&app);
   kestrel::AddLandCommand(&app);
   kestrel::AddHuntCommand(&app);
   kestrel::AddFlyCommand(&app);
@@ -52,7 +65,8 @@ int main(int argc, char** argv) {
       fmt::print(stderr, "kestrel: there is no command '{}'; kestrel --help lists them\n", argv[1]);
       return kWrongUsage;
     }
-    app.exit(error);
+    fmt::print(stderr, "{}: {}; {} --help says more\n", CommandOf(app), error.what(),
+               CommandOf(app));
     return kWrongUsage;
   } catch (const kestrel::WrongUsage& error) {
     fmt::print(stderr, "kestrel: {}\n", error.what());

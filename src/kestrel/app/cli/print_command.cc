@@ -70,8 +70,7 @@ void PrintTiled(const TargetPrint& print, const Tiling& tiling, const std::strin
   if (kind != kSvg) {
     const std::string path = files.Add(
         name + kPdf, [&](const std::string& file) { PrintTilesPdf(print, tiling, file); });
-    fmt::print(stderr, "{}: {} sheets, {} rows of {}\n", path, tiling.count(), tiling.rows,
-               tiling.columns);
+    fmt::print(stderr, "{}: {}\n", path, SheetsInWords(print, tiling));
   }
   if (kind == kPdf) return;
   const std::string overview = files.Add(name + "/overview" + kSvg, [&](const std::string& file) {
@@ -79,6 +78,7 @@ void PrintTiled(const TargetPrint& print, const Tiling& tiling, const std::strin
   });
   for (int row = 0; row < tiling.rows; ++row) {
     for (int column = 0; column < tiling.columns; ++column) {
+      if (!HasPrint(print, tiling, row, column)) continue;
       files.Add(fmt::format("{}/sheet_{}.{}{}", name, row + 1, column + 1, kSvg),
                 [&](const std::string& file) { PrintTileSvg(print, tiling, row, column, file); });
     }
@@ -136,6 +136,11 @@ void RunPrint(const PrintArguments& arguments) {
   const std::filesystem::path output(arguments.output);
   const std::string kind = output.extension().string();
   const bool is_file = kind == kPdf || kind == kSvg;
+  if (!is_file && !kind.empty() && !std::filesystem::is_directory(output)) {
+    throw InputError(
+        arguments.output +
+        ": expected a name that ends in .pdf or .svg, or a folder's without an ending");
+  }
   const PrintFiles files(is_file ? output.parent_path() / "." : output, arguments.force);
   if (arguments.paper.empty()) {
     const std::string name = is_file ? output.stem().string() : "landing_pattern";

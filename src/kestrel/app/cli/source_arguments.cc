@@ -79,7 +79,13 @@ void SourceArguments::AddTo(CLI::App* command) {
   command
       ->add_option("--mcap", mcap,
                    "MCAP file of images and results, too, for Foxglove, Lichtblick and Rerun")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(CLI::Validator(
+          [](const std::string& file) {
+            const bool is_mcap = std::filesystem::path(file).extension() == ".mcap";
+            return is_mcap ? std::string() : "'" + file + "': expected a name that ends in .mcap";
+          },
+          ""));
   dds.AddTo(command);
   command->add_flag("--force", force, "Replace files that exist");
 }

@@ -101,27 +101,16 @@ std::string PanelScript(const PlotPanel& panel, std::size_t index) {
                               fmt::join(curves, ", "));
 }
 
-// Width of the longest label with its sample, in characters.
-std::size_t LegendWidth(const Plot& plot) {
-  constexpr std::size_t kSample = 9;
-  std::size_t longest = 0;
-  for (const PlotPanel& panel : plot.panels) {
-    for (const PlotSeries& series : panel.series) longest = std::max(longest, series.label.size());
-  }
-  return longest + kSample;
-}
-
 }  // namespace
 
 std::string PlotScript(const Plot& plot, const std::string& file) {
   std::string script = fmt::format(
       "set terminal pngcairo noenhanced size {},{} font 'DejaVu Sans,18'\n"
       "set output {}\n"
-      "set grid lt 1 lc rgb '#cccccc'\nset key outside right top\nset autoscale xfix\n"
-      "set offsets graph 0.02, graph 0.02\nset lmargin 11\nset rmargin {}\n"
+      "set grid lt 1 lc rgb '#cccccc'\nset key above right horizontal\nset autoscale xfix\n"
+      "set offsets graph 0.02, graph 0.02\nset lmargin 11\nset rmargin 3\n"
       "set multiplot layout {},1 title {} font 'DejaVu Sans,22'\n",
-      kWidth_px, HeightOf(plot), Quoted(file), LegendWidth(plot), plot.panels.size(),
-      Quoted(plot.title));
+      kWidth_px, HeightOf(plot), Quoted(file), plot.panels.size(), Quoted(plot.title));
   for (std::size_t i = 0; i < plot.panels.size(); ++i) script += PanelScript(plot.panels[i], i);
   return script + "unset multiplot\n";
 }

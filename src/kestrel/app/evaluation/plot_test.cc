@@ -40,12 +40,6 @@ TEST(PlotScript, LeavesOutSeriesWithoutPoints) {
   EXPECT_THAT(PlotScript(TwoPanels(), "a.png"), Not(HasSubstr("nothing")));
 }
 
-TEST(PlotScript, LegendHasRoomForItsLongestLabel) {
-  Plot plot = TwoPanels();
-  plot.panels[0].series[0].label = std::string(30, 'm');
-  EXPECT_THAT(PlotScript(plot, "a.png"), HasSubstr("set rmargin 39"));
-}
-
 TEST(WritePlot, DrawsAPicture) {
   const TestFolder folder;
   WritePlot(TwoPanels(), folder / "it's.png");

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "kestrel/calibration/print/canvas.h"
@@ -21,6 +23,7 @@ using Eigen::Vector2d;
 
 constexpr double kMaxPage_m = 14400 * 0.0254 / 72;
 constexpr Canvas::Ink kBlack{0, 0, 0};
+constexpr Canvas::Ink kWhite{1, 1, 1};
 constexpr Canvas::Ink kGray{0.5, 0.5, 0.5};  // for what is on the board but not part of the pad
 constexpr Canvas::Ink kBlue{0.2, 0.5, 1};
 constexpr double kTextHeight_m = 0.004;
@@ -164,6 +167,37 @@ void DrawTile(const TargetPrint& print, const Tiling& tiling, int row, int colum
   }
 }
 
+// Corners of a box with sides along the board's, in the board's frame.
+struct BoardBox {
+  Vector2d low = Vector2d::Constant(std::numeric_limits<double>::infinity());
+  Vector2d high = -low;
+
+  void Add(const Vector2d& point) {
+    low = low.cwiseMin(point);
+    high = high.cwiseMax(point);
+  }
+  bool Meets(const BoardBox& other) const {
+    return (low.array() < other.high.array()).all() && (other.low.array() < high.array()).all();
+  }
+};
+
+bool Reaches(const PrintRing& ring, const Eigen::Isometry2d& board_from_pad, const BoardBox& tile) {
+  const Vector2d center = board_from_pad * ring.center;
+  const Vector2d nearest = center.cwiseMax(tile.low).cwiseMin(tile.high);
+  const Vector2d farthest =
+      (center - tile.low).cwiseAbs().cwiseMax((center - tile.high).cwiseAbs());
+  return (nearest - center).norm() < ring.outer_radius_m && farthest.norm() > ring.inner_radius_m;
+}
+
+bool Reaches(const PrintPolygon& polygon, const Eigen::Isometry2d& board_from_pad,
+             const BoardBox& tile) {
+  BoardBox box;
+  for (const std::vector<Vector2d>& loop : polygon.loops) {
+    for (const Vector2d& corner : loop) box.Add(board_from_pad * corner);
+  }
+  return box.Meets(tile);
+}
+
 void DrawGrid(const TargetPrint& print, const Tiling& tiling, double line, Canvas* canvas) {
   const double size = print.board_size_m;
   canvas->SetInk(kBlue);
@@ -176,7 +210,13 @@ void DrawGrid(const TargetPrint& print, const Tiling& tiling, double line, Canva
   const double height = 0.2 * tiling.tile.minCoeff();
   for (int row = 0; row < tiling.rows; ++row) {
     for (int column = 0; column < tiling.columns; ++column) {
+      if (!HasPrint(print, tiling, row, column)) continue;
       const Vector2d middle = tiling.TileOnBoard(row, column) + 0.5 * tiling.tile;
+      // On a plate, as the number is not to be read against the pad.
+      canvas->SetInk(kWhite);
+      canvas->Rectangle(middle - height * Vector2d(1.1, 0.6), height * Vector2d(2.2, 1.2));
+      canvas->Fill();
+      canvas->SetInk(kBlue);
       canvas->Text(middle + Vector2d(0, 0.35 * height), height,
                    fmt::format("{}.{}", row + 1, column + 1), 0.5);
     }
@@ -185,8 +225,7 @@ void DrawGrid(const TargetPrint& print, const Tiling& tiling, double line, Canva
 
 void DrawOverview(const TargetPrint& print, const Tiling& tiling, Canvas* canvas) {
   std::vector<std::string> lines = print.dimensions;
-  lines.insert(lines.begin(), fmt::format("Kestrel landing pattern: {} sheets, {} rows of {}",
-                                          tiling.count(), tiling.rows, tiling.columns));
+  lines.insert(lines.begin(), "Kestrel landing pattern: " + SheetsInWords(print, tiling));
   lines.insert(
       lines.end(),
       {"1. Print at 100 % (not \"fit to page\") on matt paper: gloss mirrors the sun.",
@@ -230,6 +269,35 @@ void PrintSvg(const Tiling& tiling, const std::string& file,
 
 }  // namespace
 
+bool HasPrint(const TargetPrint& print, const Tiling& tiling, int row, int column) {
+  if (print.board_gray < 1) return true;
+  // From the pad's frame, y up, to the board's, y down from its upper left corner.
+  Eigen::Isometry2d board_from_pad = Eigen::Isometry2d::Identity();
+  board_from_pad.linear() = Eigen::Vector2d(1, -1).asDiagonal() *
+                            Eigen::Rotation2Dd(print.board_heading).toRotationMatrix();
+  board_from_pad.translation().setConstant(0.5 * print.board_size_m);
+  BoardBox tile;
+  tile.Add(tiling.TileOnBoard(row, column));
+  tile.Add(tiling.TileOnBoard(row + 1, column + 1));
+  return std::any_of(print.shapes.begin(), print.shapes.end(), [&](const PrintShape& shape) {
+    return std::visit([&](const auto& area) { return Reaches(area, board_from_pad, tile); },
+                      shape.area);
+  });
+}
+
+std::string SheetsInWords(const TargetPrint& print, const Tiling& tiling) {
+  int sheets = 0;
+  for (int row = 0; row < tiling.rows; ++row) {
+    for (int column = 0; column < tiling.columns; ++column) {
+      sheets += HasPrint(print, tiling, row, column);
+    }
+  }
+  if (sheets == 1) return "1 sheet";
+  const int blank = tiling.count() - sheets;
+  return fmt::format("{} sheets, in {} rows of {}{}", sheets, tiling.rows, tiling.columns,
+                     blank > 0 ? fmt::format(" without {} blank ones", blank) : "");
+}
+
 double RulerLength(double board_size_m) {
   constexpr double kLongest_m = 0.2;
   const double room = 0.25 * board_size_m;
@@ -259,6 +327,7 @@ void PrintTilesPdf(const TargetPrint& print, const Tiling& tiling, const std::st
   DrawOverview(print, tiling, &canvas);
   for (int row = 0; row < tiling.rows; ++row) {
     for (int column = 0; column < tiling.columns; ++column) {
+      if (!HasPrint(print, tiling, row, column)) continue;
       canvas.NextPage();
       DrawTile(print, tiling, row, column, &canvas);
     }

@@ -11,6 +11,13 @@ namespace kestrel {
 // Writes a pad as a file to be printed true to scale. All functions throw InputError when the file
 // cannot be written. The same input gives the same bytes.
 
+// Returns whether something of the pad is printed on a tile (row and column from 0). The others are
+// blank and no sheet is made of them.
+bool HasPrint(const TargetPrint& print, const Tiling& tiling, int row, int column);
+
+// Returns the number of sheets in words: "24 sheets, in 4 rows of 6", or "1 sheet".
+std::string SheetsInWords(const TargetPrint& print, const Tiling& tiling);
+
 // Returns the length (m) of the ruler that is printed beside the pad.
 double RulerLength(double board_size_m);
 
@@ -19,9 +26,9 @@ double RulerLength(double board_size_m);
 void PrintPatternPdf(const TargetPrint& print, const std::string& file);
 void PrintPatternSvg(const TargetPrint& print, const std::string& file);
 
-// Write first an overview with the dimensions and instructions, then one page per tile, row by row,
-// with cut marks, the tile's place and a ruler. An SVG has one page: the overview, or a tile (row
-// and column from 0).
+// Write first an overview with the dimensions and instructions, then one page per tile that has
+// print, row by row, with cut marks, the tile's place and a ruler. An SVG has one page: the
+// overview, or a tile (row and column from 0).
 void PrintTilesPdf(const TargetPrint& print, const Tiling& tiling, const std::string& file);
 void PrintOverviewSvg(const TargetPrint& print, const Tiling& tiling, const std::string& file);
 void PrintTileSvg(const TargetPrint& print, const Tiling& tiling, int row, int column,

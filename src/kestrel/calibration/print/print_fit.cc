@@ -35,6 +35,7 @@ constexpr double kSpreadSigma_px =
 constexpr double kEdgeSigma_px = 0.2;  // initial value
 constexpr double kLeastSigma_px = 0.05;
 constexpr double kUnmodelled_px = 0.15;  // of a dimension: gaps of few pixels, and lens errors
+constexpr double kMaxZoom = 1.1;         // logarithm: three times as near, or as far, as assumed
 constexpr double kHuber = 2;             // standard deviations
 // Fewest edges: of 180 on the outer and about 100 on the inner circle, 96 on sides, 28 on ends.
 constexpr int kMinCircle = 60, kMinSides = 40, kMinEnds = 14;
@@ -203,6 +204,11 @@ class LineFit {
                                nullptr, state_.data());
     };
     hold(kZoom, std::log(lens_.focal_px / start_.camera.fx_px), lens_.zoom_sigma);
+    // A view straight from above says nothing of the zoom, and the search would run away.
+    const double assumed = std::log(lens_.focal_px / start_.camera.fx_px);
+    problem.SetParameterLowerBound(state_.data(), kZoom, assumed - kMaxZoom);
+    problem.SetParameterUpperBound(state_.data(), kZoom, assumed + kMaxZoom);
+    state_[kZoom] = std::clamp(state_[kZoom], assumed - kMaxZoom, assumed + kMaxZoom);
     hold(kBend, 0, lens_.bend_sigma);
     hold(kSpread, 0, kSpreadSigma_px * start_.pixel_m);
     if (!with_ends) {

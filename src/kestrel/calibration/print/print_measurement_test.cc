@@ -80,6 +80,20 @@ TEST(PrintMeasurementTest, MeasuresPrintsOfOtherDimensionsToo) {
   }
 }
 
+// Such a photograph says nothing of the focal length.
+TEST(PrintMeasurementTest, MeasuresAPrintThatIsSeenFromStraightAbove) {
+  const LandingPattern print = Configured().pattern;
+  for (const double distance_m : {1.2, 2.0, 3.0}) {
+    for (const double tilt_deg : {0.0, 0.5, 1.5}) {
+      const auto seen = MeasurePrint(Photograph(print, distance_m, tilt_deg), {}, Configured());
+      const std::string what = fmt::format("{} m, {} degrees", distance_m, tilt_deg);
+      ASSERT_TRUE(seen) << what;
+      ExpectMeasured(seen->ring_width, print.ring_width_m, 3 * seen->pixel_m, what);
+      ExpectMeasured(seen->arm_width, print.arm_width_m, 3 * seen->pixel_m, what);
+    }
+  }
+}
+
 TEST(PrintMeasurementTest, SeesNothingWhereThereIsNothing) {
   EXPECT_FALSE(MeasurePrint(cv::Mat(480, 640, CV_8UC1, cv::Scalar(120)), {}, Configured()));
   const cv::Mat far = Photograph({}, 60, 10);

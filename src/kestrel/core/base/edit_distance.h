@@ -25,4 +25,11 @@ inline int EditDistance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+// Returns whether 'typed' is so near to 'name' that it was likely meant: one error in three
+// letters, and one in a short name.
+inline bool IsNearName(std::string_view typed, std::string_view name) {
+  const auto errors = static_cast<std::size_t>(EditDistance(typed, name));
+  return errors <= std::max<std::size_t>(1, typed.size() / 3);
+}
+
 }  // namespace kestrel

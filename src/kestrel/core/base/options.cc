@@ -88,7 +88,9 @@ std::set<std::string> AllKeys(const OptionFields& fields) {
       std::min_element(keys.begin(), keys.end(), [&](const std::string& a, const std::string& b) {
         return KeyDistance(key, a) < KeyDistance(key, b);
       });
-  throw InputError(fmt::format("{}: unknown key '{}', did you mean '{}'?", where, key, *nearest));
+  const bool is_near = IsNearName(SplitLast(key).second, SplitLast(*nearest).second);
+  throw InputError(fmt::format("{}: unknown key '{}'{}", where, key,
+                               is_near ? fmt::format(", did you mean '{}'?", *nearest) : ""));
 }
 
 const OptionField* FindField(const std::string& key, const OptionFields& fields) {

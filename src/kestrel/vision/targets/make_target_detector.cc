@@ -158,8 +158,9 @@ std::vector<std::string> TargetOptions::Validate() const {
       std::min_element(names.begin(), names.end(), [&](std::string_view a, std::string_view b) {
         return EditDistance(kind, a) < EditDistance(kind, b);
       });
-  return {fmt::format("kind is '{}', expected one of {}; did you mean '{}'?", kind,
-                      fmt::join(names, ", "), *nearest)};
+  return {
+      fmt::format("kind is '{}', expected one of {}{}", kind, fmt::join(names, ", "),
+                  IsNearName(kind, *nearest) ? fmt::format("; did you mean '{}'?", *nearest) : "")};
 }
 
 std::unique_ptr<const TargetDetector> MakeTargetDetector(

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "kestrel/app/cli/commands.h"
+#include "kestrel/app/cli/interrupt.h"
+#include "kestrel/app/evaluation/evaluate_hunt.h"
+#include "kestrel/app/evaluation/evaluate_landing.h"
+#include "kestrel/app/evaluation/report.h"
+#include "kestrel/app/evaluation/report_page.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/read_file.h"
+#include "kestrel/io/recording/output_folder.h"
+
+namespace kestrel {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A UAV whose clock and mount are known.
+constexpr char kCalibrated[] =
+    " --set navigation.mount_error_deg=0 --set navigation.clock_offset_min_s=0"
+    " --set navigation.clock_offset_max_s=0";
+
+// Runs a command of the program in this process, after showing it as one would type it.
+void RunCommand(const std::string& words) {
+  fmt::print(stderr, "\nkestrel {}\n", words);
+  CLI::App app("", "kestrel");
+  AddLandCommand(&app);
+  AddHuntCommand(&app);
+  AddSimulateCommand(&app);
+  app.parse(words);
+  if (WasInterrupted()) throw InputError("interrupted");
+}
+
+// Returns the cell of a table's last row, which is that of all rows; "-" where there is none.
+std::string CellOf(const Report& report, const std::string& table_name, const std::string& column) {
+  for (const ReportTable& table : report.tables) {
+    if (table.name != table_name || table.rows.empty()) continue;
+    const auto place = std::find(table.columns.begin(), table.columns.end(), column);
+    if (place == table.columns.end()) continue;
+    return table.rows.back().at(static_cast<std::size_t>(place - table.columns.begin()));
+  }
+  return kUnknownCell;
+}
+
+// Returns the text of a length in m ("0.006") in cm ("0.6").
+std::string InCentimetres(const std::string& metres) {
+  return fmt::format("{:.1f} cm", 100 * std::strtod(metres.c_str(), nullptr));
+}
+
+// The demo: flights over a driving car and over coloured objects, and a landing on the car.
+class Demo {
+ public:
+  Demo(const std::string& folder, bool force)
+      : folder_(folder), files_(folder, force), forced_(force ? " --force" : "") {}
+
+  void Run() {
+    Follow();
+    Hunt();
+    Land();
+    const std::string page = files_.NewFile("index.html").string();
+    verdict_.push_back("Videos, plots and figures: " + page);
+    files_.OpenText("index.html") << ToHtml("Kestrel: what it sees", verdict_, chapters_);
+    fmt::print("\n{}\n", fmt::join(verdict_, "\n"));
+  }
+
+ private:
+  std::string Quoted(const char* name) const { return "\"" + (folder_ / name).string() + "\""; }
+
+  void Follow() {
+    RunCommand("simulate landing --scenario figure8 --seed 7 --set frames=120 --set rate_hz=20" +
+               (kCalibrated + forced_) + " --output " + Quoted("flight"));
+    RunCommand("land " + Quoted("flight") + " --annotate --predict 0.5,1.0" + forced_ +
+               " --output " + Quoted("found"));
+    const Report report = Evaluated(EvaluateLanding, "flight", "found");
+    verdict_.push_back(fmt::format("Landing pattern: found in {} of {} images, {} false",
+                                   CellOf(report, "images", "found"),
+                                   CellOf(report, "images", "with a quarter of it in view"),
+                                   CellOf(report, "images", "false")));
+    verdict_.push_back(
+        fmt::format("Its place in the world: {} off (root mean square, from 14 m down)",
+                    InCentimetres(CellOf(report, "errors", "world RMS, m"))));
+    AddChapter("A car on a figure of eight, followed from above",
+               "A UAV comes down over a car that drives in curves. The outline is what Kestrel "
+               "found; the plots compare it with the truth of the simulation.",
+               "found", report);
+  }
+
+  void Hunt() {
+    RunCommand("simulate hunt --scenario sweep --seed 3 --set frames=60 --set rate_hz=4" +
+               (kCalibrated + forced_) + " --output " + Quoted("field"));
+    RunCommand("hunt " + Quoted("field") + " --annotate --set hunt.readout_s=0.025" + forced_ +
+               " --output " + Quoted("objects"));
+    const Report report = Evaluated(EvaluateHunt, "field", "objects");
+    verdict_.push_back(fmt::format(
+        "Coloured objects: {} of {} in the map, {} false, {} from their true places (mean)",
+        CellOf(report, "map", "in the map"), CellOf(report, "map", "objects"),
+        CellOf(report, "map", "false"), InCentimetres(CellOf(report, "map", "position mean, m"))));
+    AddChapter("Coloured objects, found and mapped",
+               "A UAV flies to and fro over a field with coloured discs, cuboids and bars.",
+               "objects", report);
+  }
+
+  void Land() {
+    RunCommand("simulate touchdown --seed 1 --annotate" + forced_ + " --output " +
+               Quoted("touchdown"));
+    std::string summary = ReadFile((folder_ / "touchdown" / "summary.txt").string());
+    summary.erase(summary.find_last_not_of('\n') + 1);
+    verdict_.push_back("Landing on the car: " + summary);
+    AddChapter("A landing on the car, by what Kestrel sees",
+               "A simulated UAV in gusty wind has nothing but the track to land by.", "touchdown",
+               Report());
+  }
+
+  template <class Evaluate>
+  Report Evaluated(const Evaluate& evaluate, const char* recording, const char* output) const {
+    const fs::path result = folder_ / output;
+    const Report report = evaluate((folder_ / recording).string(), result.string());
+    WriteReport(report, OutputFolder(result / "evaluation", !forced_.empty()));
+    return report;
+  }
+
+  // Adds all videos and plots of an output folder.
+  void AddChapter(const char* title, const char* text, const char* output, const Report& report) {
+    PageChapter chapter{title, text, {}, {}, report.tables};
+    for (const auto& entry : fs::recursive_directory_iterator(folder_ / output)) {
+      const std::string name = entry.path().lexically_relative(folder_).generic_string();
+      const fs::path kind = entry.path().extension();
+      if (entry.path().stem() == "annotated" && entry.is_regular_file()) {
+        chapter.videos.push_back(name);
+      } else if (kind == ".png" && name.find("/mav0/") == std::string::npos) {
+        chapter.pictures.push_back(name);
+      }
+    }
+    std::sort(chapter.pictures.begin(), chapter.pictures.end());
+    chapters_.push_back(chapter);
+  }
+
+  fs::path folder_;
+  OutputFolder files_;
+  std::string forced_;
+  std::vector<std::string> verdict_;
+  std::vector<PageChapter> chapters_;
+};
+
+struct DemoArguments {
+  std::string output = "kestrel_demo";
+  bool force = false;
+};
+
+void RunDemo(const DemoArguments& arguments) {
+  std::error_code ignored;
+  const bool is_free =
+      !fs::exists(arguments.output, ignored) || fs::is_empty(fs::path(arguments.output), ignored);
+  if (!is_free && !arguments.force) {
+    throw InputError(arguments.output + ": exists already; --force replaces the files in it");
+  }
+  fmt::print(stderr, "Three simulated flights, in about a minute; the verdict comes last.\n");
+  Demo(arguments.output, arguments.force).Run();
+}
+
+}  // namespace
+
+void AddDemoCommand(CLI::App* app) {
+  CLI::App* command = app->add_subcommand(
+      "demo", "Simulated flights, what Kestrel found in them, and how right it was");
+  const auto arguments = std::make_shared<DemoArguments>();
+  command
+      ->add_option("--output", arguments->output,
+                   "Folder for the videos, plots and the page index.html (default: kestrel_demo)")
+      ->type_name("DIR");
+  command->add_flag("--force", arguments->force, "Replace files that exist");
+  command->callback([arguments] { RunDemo(*arguments); });
+}
+
+}  // namespace kestrel
