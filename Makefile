@@ -25,7 +25,7 @@ console:  ## the web page: what it needs, built in, over a simulated flight
 	scripts/install-deps --console
 	cmake --preset release
 	cmake --build --preset release --target kestrel
-	$(BIN)/src/kestrel/app/cli/kestrel fly sim:figure8 --autopilot sim:px4 --guide --console
+	$(BIN)/src/kestrel/app/cli/kestrel console --demo
 
 test: tests
 	ctest --preset release -j $$(nproc)

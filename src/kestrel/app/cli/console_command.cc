@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 
 #include "kestrel/app/cli/commands.h"
+#include "kestrel/app/cli/fly_arguments.h"
+#include "kestrel/app/cli/fly_command.h"
 #include "kestrel/app/cli/interrupt.h"
 #include "kestrel/app/cli/recorded_run.h"
 #include "kestrel/app/cli/result_argument.h"
@@ -35,6 +37,7 @@ struct ConsoleArguments {
   std::string model;
   std::string output = "taught";  // folder for the files that the page saves
   bool is_hunt = false;
+  bool is_demo = false;
   // Result of `kestrel land` or `hunt` that is shown instead of a new run; empty: none.
   std::string result;
 
@@ -106,6 +109,17 @@ void RunConsole(const ConsoleArguments& arguments) {
   console.Play(run->TakeResult(), RecordingOf(choice, *search), WasInterrupted);
 }
 
+// Shows a simulated UAV that lands on a simulated car, again and again.
+void RunConsoleDemo(const ConsoleArguments& arguments) {
+  FlyArguments flight;
+  flight.source.sources = {"sim:figure8"};
+  flight.source.options = arguments.source.options;
+  flight.autopilot = "sim:px4";
+  flight.guide = true;
+  flight.console = arguments.address;
+  FlyUntilInterrupted(flight);
+}
+
 }  // namespace
 
 void AddConsoleCommand(CLI::App* app) {
@@ -113,6 +127,11 @@ void AddConsoleCommand(CLI::App* app) {
       "console", "Serve the web page for a recording: replay, calibration, teaching of colours");
   const auto arguments = std::make_shared<ConsoleArguments>();
   arguments->source.AddReadingTo(command);
+  CLI::Option* const source = command->get_option("SOURCE")->required(false);
+  command
+      ->add_flag("--demo", arguments->is_demo,
+                 "In place of a SOURCE: simulated landings on a driving car, until Ctrl-C")
+      ->excludes(source);
   command
       ->add_option("--address", arguments->address,
                    "Address of the page (127.0.0.1:8080); port 0: any free one")
@@ -131,6 +150,8 @@ void AddConsoleCommand(CLI::App* app) {
                    "(objects.yaml), its versions and the draft (taught)")
       ->type_name("DIR");
   command->callback([arguments] {
+    if (arguments->is_demo) return RunConsoleDemo(*arguments);
+    if (arguments->source.sources.empty()) throw CLI::RequiredError("SOURCE, or --demo,");
     const char* const table =
         arguments->is_hunt ? "object_detections.csv" : "landing_detections.csv";
     arguments->result = TakeResult(table, &arguments->source.sources).value_or("");

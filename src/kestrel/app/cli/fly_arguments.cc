@@ -19,6 +19,9 @@ void RequireFlyable(const SourceArguments& source) {
   if (!source.annotate.empty()) {
     throw InputError("--annotate: record the flight, then kestrel land DIR --annotate");
   }
+  if (source.fov_deg) {
+    throw InputError("--fov: a flight needs a calibration (--camera): kestrel calibrate lens");
+  }
   if (source.altitude_m) throw InputError("--altitude: a flight has the autopilot's poses");
 }
 

@@ -310,6 +310,13 @@ void RunFly(const FlyArguments& arguments) {
 
 }  // namespace
 
+void FlyUntilInterrupted(const FlyArguments& arguments) {
+  while (!WasInterrupted()) {
+    Flight flight(arguments);
+    fmt::print(stderr, "{}\n", InWords(flight.Run()));
+  }
+}
+
 void AddFlyCommand(CLI::App* app) {
   CLI::App* command =
       app->add_subcommand("fly", "On board: live camera and autopilot in, landing target out");

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "kestrel/app/cli/fly_arguments.h"
 #include "kestrel/flight/session/flight_end.h"
 
 namespace kestrel {
@@ -12,6 +13,10 @@ namespace kestrel {
 // `kestrel fly`: reads camera and autopilot, reports the landing target and records everything. Its
 // callback throws BadFlightEnd when the flight did not end as it should.
 void AddFlyCommand(CLI::App* app);
+
+// Makes flights with these arguments, one after the other, until the user interrupts: a show.
+// Throws InputError as the command does.
+void FlyUntilInterrupted(const FlyArguments& arguments);
 
 // Arguments that are valid alone but not together; what() is one line.
 class WrongUsage : public std::runtime_error {

@@ -67,7 +67,7 @@ void RunHunt(const HuntArguments& arguments) {
   if (arguments.source.still) options.still = true;
   const ObjectModel model = ReadModel(arguments);
   const ColorGrid grid = ReadGrid(arguments, model);
-  const OpenedSource opened = OpenRecording(arguments.source.Recording(PixelFormat::kBgr));
+  const OpenedSource opened = arguments.source.OpenOrAssume(PixelFormat::kBgr);
   const bool has_map = opened.has_world() && !options.still;
   std::unique_ptr<TeamLink> team = OpenTeam(arguments, opened, all_options, options.still, model);
   HuntRun hunt(opened, model, grid, options, arguments.source.altitude_m);

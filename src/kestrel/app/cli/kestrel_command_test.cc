@@ -234,7 +234,7 @@ TEST_F(KestrelCommandTest, SourceAtFaultIsNamed) {
   const std::string camera = " --camera " + folder_.Write("camera.yaml", kSensor);
   const std::string image = WriteTestImage(folder_, "a.png", NoiseImage(640, 480, CV_8UC1));
   ExpectInputError("land nowhere.png" + camera, "nowhere.png: no such file");
-  ExpectInputError("land " + image, "no calibration");
+  ExpectInputError("land " + image + " --mcap " + (folder_ / "a.mcap"), "no calibration");
   EXPECT_THAT(Run("land " + image + camera + " --predict 1 --output " + folder_ / "out").err,
               HasSubstr("no prediction: it needs a source with poses"));
   const std::string deep = WriteTestImage(folder_, "deep.png", cv::Mat(480, 640, CV_16UC1));
@@ -250,6 +250,51 @@ TEST_F(KestrelCommandTest, SourceAtFaultIsNamed) {
     EXPECT_EQ(outcome.status, 1);
     EXPECT_THAT(outcome.err, HasSubstr(words));
   }
+}
+
+TEST_F(KestrelCommandTest, WithoutACalibrationThePlaceInTheImageIsTold) {
+  const std::string image = WriteRecording() + "/mav0/cam0/data/100000000.png";
+  const Outcome outcome = Succeed("land " + image);
+  EXPECT_THAT(outcome.err, HasSubstr("kestrel calibrate lens"));
+  EXPECT_THAT(outcome.out, HasSubstr("100000000.png,0,1,359.5"));
+  EXPECT_THAT(outcome.out, HasSubstr(",,,,,,,,,,,,")) << "no positions";
+  // The lens of the image sees 77.3 degrees, and the pattern is 3 m before it.
+  const Outcome guessed = Succeed("land " + image + " --fov 77.3");
+  EXPECT_THAT(guessed.err, HasSubstr("as coarse as the 77.3 degrees of --fov"));
+  EXPECT_THAT(guessed.out,
+              ::testing::ContainsRegex(",0[.](29|30)[0-9]*,0[.](19|20)[0-9]*,(2[.]9|3[.]0)"));
+  EXPECT_EQ(Run("land " + image + " --fov 400").status, 2);
+  ExpectInputError("fly " + image + " --fov 77", "--fov: a flight needs a calibration");
+}
+
+TEST_F(KestrelCommandTest, ABrokenImageOfAFolderIsARow) {
+  const std::string image = WriteRecording() + "/mav0/cam0/data/100000000.png";
+  for (const char* name : {"a.png", "c.png"}) {
+    WriteTestImage(folder_, std::string("images/") + name, ReadImage(image));
+  }
+  const std::string broken = folder_.Write("images/b.png", "garbage");
+  const std::string camera = " --camera " + folder_.Write("camera.yaml", kSensor);
+  const Outcome outcome = Succeed("land " + (folder_ / "images") + camera);
+  EXPECT_THAT(outcome.out, HasSubstr("\nb.png,33333333,0,,,,,,,,,,,,,,,unreadable,,,\n"));
+  EXPECT_EQ(Lines(outcome.out), 4);
+  EXPECT_THAT(outcome.err, HasSubstr("2 frames, pattern found in 2"));
+  EXPECT_THAT(outcome.err, HasSubstr("1 of 3 images left out, for example " + broken));
+  EXPECT_THAT(Run("convert " + (folder_ / "images") + " " + (folder_ / "x.mcap")).err,
+              HasSubstr("b.png: cannot be decoded"))
+      << "nothing is lost without a word";
+  folder_.Write("images/a.png", "garbage");
+  folder_.Write("images/c.png", "garbage");
+  ExpectInputError("land " + (folder_ / "images") + camera, "a.png: cannot be decoded");
+}
+
+TEST_F(KestrelCommandTest, HuntSaysThatItNeedsColour) {
+  ExpectInputError("hunt " + WriteRecording() + "/mav0/cam0/data/100000000.png",
+                   "is a gray image, expected images in colour");
+}
+
+TEST_F(KestrelCommandTest, DemoReplacesNothing) {
+  folder_.Write("demo/mine.txt", "");
+  ExpectInputError("demo --output " + (folder_ / "demo"), "demo: exists already; --force");
 }
 
 TEST_F(KestrelCommandTest, VideoThatEndsEarlyGivesItsFramesAndSaysSo) {

@@ -23,7 +23,7 @@ void RunLand(const LandArguments& arguments) {
   const KestrelOptions all_options = arguments.source.options.Read();
   LandingPipelineOptions options = all_options.landing;
   if (arguments.source.still) options.still = true;
-  const OpenedSource opened = OpenRecording(arguments.source.Recording(PixelFormat::kGray));
+  const OpenedSource opened = arguments.source.OpenOrAssume(PixelFormat::kGray);
   const bool has_track = opened.has_world() && !options.still;
   if (!arguments.predict_s.empty() && !has_track) {
     fmt::print(stderr,

@@ -30,8 +30,19 @@ class DetectTimes : public ObservationSink {
   void Take(const Observation& observation) override {
     times_ms_.push_back(1e3 * ToSeconds(DetectTime(observation)));
   }
+  void Take(const BrokenFrame& frame) override {
+    if (broken_++ == 0) first_fault_ = frame.fault;
+  }
 
   std::size_t count() const { return times_ms_.size(); }
+  const std::string& first_fault() const { return first_fault_; }
+
+  // A line on the images that cannot be read; empty when there is none.
+  std::string Faults() const {
+    if (broken_ == 0) return "";
+    return fmt::format("{} of {} images left out, for example {}\n", broken_,
+                       broken_ + times_ms_.size(), first_fault_);
+  }
 
   // For example ", detect_ms median 0.24, p99 0.51"; empty without a frame.
   std::string InWords() const {
@@ -46,11 +57,13 @@ class DetectTimes : public ObservationSink {
 
  private:
   std::vector<double> times_ms_;
+  std::size_t broken_ = 0;
+  std::string first_fault_;
 };
 
 void PrintSummary(const DetectTimes& times, const Vision& vision) {
-  fmt::print(stderr, "{} frames, {}{}\n{}", times.count(), vision.Found(), times.InWords(),
-             vision.Remarks());
+  fmt::print(stderr, "{} frames, {}{}\n{}{}", times.count(), vision.Found(), times.InWords(),
+             times.Faults(), vision.Remarks());
 }
 
 // Shows the progress and, as soon as there is one, the first warning.
@@ -118,6 +131,7 @@ void RunToEnd(const OpenedSource& opened, Vision* vision, ObservationSinks* sink
     throw;
   }
   sinks->Finish();
+  if (times->count() == 0 && !times->first_fault().empty()) throw InputError(times->first_fault());
   PrintSummary(*times, *vision);
 }
 

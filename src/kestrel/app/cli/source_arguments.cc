@@ -8,6 +8,7 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/parse_number.h"
+#include "kestrel/core/camera/assumed_lens.h"
 
 namespace kestrel {
 namespace {
@@ -54,6 +55,13 @@ void SourceArguments::AddReadingTo(CLI::App* command) {
                    "Calibration: EuRoC sensor.yaml, Kalibr camchain.yaml, ROS camera_info YAML or "
                    "OpenCV YAML; overrides the source's")
       ->type_name("FILE");
+  command
+      ->add_option("--fov", fov_deg,
+                   "Field of view of the lens, from the left edge to the right (degrees): a guess "
+                   "where there is no calibration")
+      ->type_name("DEG")
+      ->check(InRange(kMinFov_deg - 1e-9, kMaxFov_deg + 1e-9,
+                      fmt::format("{} to {} degrees", kMinFov_deg, kMaxFov_deg)));
   options.AddTo(command);
   command->add_flag("--still", still,
                     "Independent frames: no state is carried from one to the next");
@@ -93,13 +101,23 @@ void SourceArguments::AddTo(CLI::App* command) {
 RecordingChoice SourceArguments::Recording(PixelFormat format) const {
   RecordingChoice choice = bag.Recording(sources, format);
   choice.camera = camera;
+  choice.fov_deg = fov_deg;
   if (clock_offset) choice.clock_offset = DurationFromSeconds(*clock_offset);
   return choice;
 }
 
+OpenedSource SourceArguments::OpenOrAssume(PixelFormat format) const {
+  RecordingChoice choice = Recording(format);
+  choice.may_assume_lens = mcap.empty() && !dds.is_given() && !altitude_m;
+  return OpenRecording(choice);
+}
+
 OutputOptions SourceArguments::Output(const OpenedSource& opened) const {
-  return {
-      .folder = output, .force = force, .annotate = annotate, .rate_hz = opened.source->rate_hz()};
+  return {.folder = output,
+          .force = force,
+          .annotate = annotate,
+          .rate_hz = opened.source->rate_hz(),
+          .only_in_image = opened.is_lens_unknown};
 }
 
 }  // namespace kestrel

@@ -30,6 +30,7 @@ struct SourceArguments {
   bool force = false;
   std::optional<double> altitude_m;
   std::optional<double> clock_offset;
+  std::optional<double> fov_deg;
 
   void AddTo(CLI::App* command);
   // Adds the arguments for reading only, without those for the results.
@@ -37,6 +38,10 @@ struct SourceArguments {
 
   // The recording and what the arguments say of it. Warnings go to stderr.
   RecordingChoice Recording(PixelFormat format) const;
+
+  // Opens the recording. Without a calibration, and without an output that needs one, a lens is
+  // assumed.
+  OpenedSource OpenOrAssume(PixelFormat format) const;
 
   OutputOptions Output(const OpenedSource& opened) const;
 };

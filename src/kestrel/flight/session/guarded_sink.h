@@ -22,6 +22,7 @@ class GuardedSink : public ObservationSink {
 
   bool IsWanted() const override { return !is_over_ && sink_->IsWanted(); }
   void Take(const Observation& observation) override { TakeAny(observation); }
+  void Take(const BrokenFrame& frame) override { TakeAny(frame); }
   void Take(const FlightReport& report) override { TakeAny(report); }
   void Take(const TeamReport& report) override { TakeAny(report); }
   void Take(const SessionEvent& event) override { TakeAny(event); }

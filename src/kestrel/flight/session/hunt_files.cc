@@ -13,13 +13,17 @@ namespace kestrel {
 HuntFiles::HuntFiles(const OutputOptions& output, const HuntPipeline* pipeline, bool has_map,
                      const std::vector<double>& origin)
     : pipeline_(pipeline),
+      only_in_image_(output.only_in_image),
       results_(output, "object_detections.csv", ObjectCsvHeader()),
       has_map_(has_map),
       origin_(origin) {}
 
 void HuntFiles::Take(const Observation& observation) {
   const Frame& frame = observation.frame;
-  const auto& seen = std::get<HuntObservation>(observation.seen);
+  HuntObservation seen = std::get<HuntObservation>(observation.seen);
+  if (only_in_image_) {
+    for (ObjectDetection& detection : seen.report.detections) detection.location.reset();
+  }
   const ObjectModel& model = pipeline_->detector().model();
   results_.WriteRows(ObjectCsvRows(frame.name, seen, model));
   if (!results_.wants_pictures()) return;
@@ -28,6 +32,12 @@ void HuntFiles::Take(const Observation& observation) {
     DrawMapInset(pipeline_->map().Confirmed(), model, pose->translation.head<2>(), &drawn);
   }
   results_.WritePicture(frame.name, drawn);
+}
+
+void HuntFiles::Take(const BrokenFrame& frame) {
+  HuntObservation nothing;
+  nothing.time = frame.time;
+  results_.WriteRows(ObjectCsvRows(frame.name, nothing, pipeline_->detector().model()));
 }
 
 void HuntFiles::Finish() {

@@ -20,6 +20,7 @@ class HuntFiles : public ObservationSink {
             const std::vector<double>& origin);
 
   void Take(const Observation& observation) override;
+  void Take(const BrokenFrame& frame) override;
   void Finish() override;
 
   // Folder for further files; null where the table goes to stdout.
@@ -27,6 +28,7 @@ class HuntFiles : public ObservationSink {
 
  private:
   const HuntPipeline* pipeline_;
+  bool only_in_image_;
   ResultFiles results_;
   bool has_map_;
   std::vector<double> origin_;

@@ -2,11 +2,30 @@
 #include "kestrel/flight/session/hunt_run.h"
 
 #include <fmt/format.h>
+#include <opencv2/core.hpp>
 
+#include "kestrel/core/base/error.h"
 #include "kestrel/vision/objects/color/color_grid.h"
 #include "kestrel/vision/pipeline/ground_height.h"
 
 namespace kestrel {
+
+namespace {
+
+// Returns nothing for an image without any contrast, which says nothing of the camera.
+std::optional<bool> IsColored(const cv::Mat& image) {
+  cv::Mat channels[3];
+  cv::split(image, channels);
+  if (cv::norm(channels[0], channels[1], cv::NORM_INF) > 0 ||
+      cv::norm(channels[1], channels[2], cv::NORM_INF) > 0) {
+    return true;
+  }
+  double low = 0, high = 0;
+  cv::minMaxLoc(channels[0], &low, &high);
+  return low == high ? std::nullopt : std::optional(false);
+}
+
+}  // namespace
 
 HuntRun::HuntRun(const OpenedSource& opened, const ObjectModel& model, const ColorGrid& grid,
                  const HuntPipelineOptions& options, std::optional<double> altitude_m)
@@ -22,6 +41,13 @@ Duration HuntRun::pose_lead() const {
 }
 
 Observation HuntRun::Process(const Frame& frame) {
+  if (!is_colored_) {
+    const std::optional<bool> colored = IsColored(frame.image);
+    if (colored == false) {
+      throw InputError(frame.name + ": is a gray image, expected images in colour to hunt in");
+    }
+    is_colored_ = colored.has_value();
+  }
   const HuntObservation& seen = pipeline_.Process(frame.image, frame.time);
   detections_ += seen.report.detections.size();
   for (std::size_t i = 0; i < kObjectStageCount; ++i) passed_[i] += seen.report.passed[i];

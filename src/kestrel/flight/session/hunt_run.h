@@ -37,7 +37,8 @@ class HuntRun : public Vision {
   HuntPipeline pipeline_;
   Duration clock_offset_;
   std::optional<double> altitude_m_;
-  bool has_world_ = false;  // the last frame had a pose
+  bool has_world_ = false;   // the last frame had a pose
+  bool is_colored_ = false;  // an image in colour has been seen
   std::size_t detections_ = 0;
   std::array<std::size_t, kObjectStageCount> passed_{};
 };

@@ -38,19 +38,25 @@ void TrackFiles::Write(const LandingObservation& observation, const TargetTracke
 
 LandingFiles::LandingFiles(const OutputOptions& output, const LandingPipeline* pipeline,
                            bool has_track, const std::vector<double>& predict_s)
-    : pipeline_(pipeline), results_(output, "landing_detections.csv", LandingCsvHeader()) {
+    : pipeline_(pipeline),
+      only_in_image_(output.only_in_image),
+      results_(output, "landing_detections.csv", LandingCsvHeader()) {
   if (has_track && results_.folder()) track_.emplace(*results_.folder(), predict_s);
 }
 
 void LandingFiles::Take(const Observation& observation) {
   const Frame& frame = observation.frame;
   const auto& seen = std::get<LandingObservation>(observation.seen);
-  results_.WriteRows(LandingCsvRow(frame.name, seen));
+  results_.WriteRows(LandingCsvRow(frame.name, seen, only_in_image_));
   if (track_) track_->Write(seen, pipeline_->tracker());
   if (!results_.wants_pictures()) return;
   const TargetDetector& detector = pipeline_->detector();
-  results_.WritePicture(frame.name,
-                        DrawLandingOverlay(frame.image, detector.camera(), detector.shape(), seen));
+  results_.WritePicture(frame.name, DrawLandingOverlay(frame.image, detector.camera(),
+                                                       detector.shape(), seen, only_in_image_));
+}
+
+void LandingFiles::Take(const BrokenFrame& frame) {
+  results_.WriteRows(UnreadableLandingCsvRow(frame.name, frame.time));
 }
 
 }  // namespace kestrel

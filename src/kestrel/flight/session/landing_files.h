@@ -35,9 +35,11 @@ class LandingFiles : public ObservationSink {
                const std::vector<double>& predict_s);
 
   void Take(const Observation& observation) override;
+  void Take(const BrokenFrame& frame) override;
 
  private:
   const LandingPipeline* pipeline_;
+  bool only_in_image_;
   ResultFiles results_;
   std::optional<TrackFiles> track_;
 };

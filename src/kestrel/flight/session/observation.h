@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <variant>
 
 #include "kestrel/core/base/time.h"
@@ -16,6 +17,13 @@ struct Observation {
   Frame frame;  // its pixels do not change any more
   std::variant<LandingObservation, HuntObservation> seen;
   std::optional<Duration> latency = {};  // from capture until it was processed; live only
+};
+
+// A frame whose image cannot be read.
+struct BrokenFrame {
+  std::string name;
+  Time time;
+  std::string fault;  // names the file
 };
 
 // Returns the time that the detection alone took.

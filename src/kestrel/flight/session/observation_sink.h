@@ -20,6 +20,8 @@ class ObservationSink {
 
   // A frame with its results. Called by the vision thread.
   virtual void Take(const Observation& observation) = 0;
+  // A frame of a recording that cannot be read. Called by the session's thread.
+  virtual void Take(const BrokenFrame& /*frame*/) {}
   // State of the flight, ten times a second. Called by the session's thread.
   virtual void Take(const FlightReport& /*report*/) {}
   // The team's map, about twice a second. Called by the session's thread.

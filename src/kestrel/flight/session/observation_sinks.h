@@ -45,6 +45,7 @@ class ObservationSinks : public ObservationSink {
     return false;
   }
   void Take(const Observation& observation) override { TakeAll(observation); }
+  void Take(const BrokenFrame& frame) override { TakeAll(frame); }
   void Take(const FlightReport& report) override { TakeAll(report); }
   void Take(const TeamReport& report) override { TakeAll(report); }
   void Take(const SessionEvent& event) override { TakeAll(event); }

@@ -4,14 +4,30 @@
 #include <variant>
 
 #include "kestrel/io/recording/event_source.h"
+#include "kestrel/io/recording/frame_source.h"
 
 namespace kestrel {
+
+namespace {
+
+// A broken image is told and left out: one bad file does not end the run.
+Event NextReadable(RecordingEvents* events, ObservationSink* sink) {
+  for (;;) {
+    try {
+      return events->Next();
+    } catch (const BrokenImage& broken) {
+      sink->Take(BrokenFrame{broken.name, broken.time, broken.what()});
+    }
+  }
+}
+
+}  // namespace
 
 bool RunRecording(const OpenedSource& opened, Vision* vision, ObservationSink* sink,
                   const std::function<bool(std::size_t done)>& go_on) {
   RecordingEvents events(opened.source.get(), opened.source->poses(), vision->pose_lead());
   for (std::size_t done = 0;;) {
-    const Event event = events.Next();
+    const Event event = NextReadable(&events, sink);
     if (std::holds_alternative<EndOfStream>(event)) break;
     if (const auto* pose = std::get_if<PoseSample>(&event)) vision->AddPose(*pose);
     const auto* frame = std::get_if<Frame>(&event);

@@ -19,6 +19,8 @@ struct OutputOptions {
   bool force = false;    // replace existing files
   std::string annotate;  // "video", "images" or empty
   double rate_hz = 0;    // frame rate of the video
+  // The lens is not known: distances and positions are left out.
+  bool only_in_image = false;
 };
 
 // Writes the results that all runs have: a table, row by row, and annotated frames. All functions

@@ -1,26 +1,56 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/io/bags/open_recording.h"
 
+#include <fmt/format.h>
+
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/camera/assumed_lens.h"
 #include "kestrel/core/camera/calibration_reader.h"
 #include "kestrel/io/bags/bag_source.h"
 
 namespace kestrel {
 namespace {
 
-CameraCalibration FindCalibration(const FrameSource& source, const RecordingChoice& choice) {
-  CameraCalibration calibration;
-  if (choice.camera.empty()) {
-    const std::optional<CameraCalibration> own = source.calibration();
-    if (!own) {
-      throw InputError(
-          "no calibration: the source has none, give one by --camera FILE (EuRoC sensor.yaml, "
-          "Kalibr camchain.yaml, ROS camera_info YAML or OpenCV YAML)");
-    }
-    calibration = *own;
-  } else {
-    calibration = ReadCalibration(choice.camera);
+constexpr double kUsualFov_deg = 75;
+
+// The size of the images is known with the first of them, which the source then has to give again.
+CameraIntrinsics AssumeLens(const RecordingChoice& choice) {
+  Frame first;
+  if (!OpenFrames(choice)->Next(&first)) throw InputError("the source has no images");
+  const double fov_deg = choice.fov_deg.value_or(kUsualFov_deg);
+  return AssumedLens(first.image.cols, first.image.rows, fov_deg);
+}
+
+// Says what is assumed of the lens, and how to know it.
+void TellAssumption(const RecordingChoice& choice) {
+  if (!choice.bag.tell) return;
+  choice.bag.tell(
+      choice.fov_deg
+          ? fmt::format("no calibration: distances are as coarse as the {} degrees of --fov; "
+                        "`kestrel calibrate lens` measures the lens",
+                        *choice.fov_deg)
+          : "no calibration: only places in the image, in pixels; --fov DEGREES (as wide as the "
+            "lens sees) gives coarse distances, `kestrel calibrate lens` a calibration for "
+            "--camera");
+}
+
+CameraCalibration KnownCalibration(const FrameSource& source, const RecordingChoice& choice) {
+  if (!choice.camera.empty()) return ReadCalibration(choice.camera);
+  if (const std::optional<CameraCalibration> own = source.calibration()) return *own;
+  if (!choice.may_assume_lens && !choice.fov_deg) {
+    throw InputError(
+        "no calibration: the source has none, give one by --camera FILE (EuRoC sensor.yaml, "
+        "Kalibr camchain.yaml, ROS camera_info YAML or OpenCV YAML); `kestrel calibrate lens` "
+        "makes one");
   }
+  TellAssumption(choice);
+  CameraCalibration assumed;
+  assumed.intrinsics = AssumeLens(choice);
+  return assumed;
+}
+
+CameraCalibration FindCalibration(const FrameSource& source, const RecordingChoice& choice) {
+  CameraCalibration calibration = KnownCalibration(source, choice);
   if (!calibration.body_from_camera) {
     const CameraMount own = source.mount();
     calibration.body_from_camera = own.body_from_camera;
@@ -47,7 +77,10 @@ std::vector<PoseSample> RequirePoses(const FrameSource& source, const std::strin
 
 OpenedSource OpenRecording(const RecordingChoice& choice) {
   OpenedSource opened{OpenFrames(choice), {}};
+  opened.is_lens_unknown =
+      choice.camera.empty() && !choice.fov_deg && !opened.source->calibration();
   opened.calibration = FindCalibration(*opened.source, choice);
+  if (opened.is_lens_unknown) opened.calibration.body_from_camera.reset();
   return opened;
 }
 

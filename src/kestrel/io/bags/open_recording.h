@@ -20,12 +20,19 @@ struct RecordingChoice {
   BagChoice bag = {};
   std::string camera = {};                    // file with the calibration; empty: the source's own
   std::optional<Duration> clock_offset = {};  // in place of the calibration's
+  // The lens where there is no calibration: of this field of view (degrees); or any, for results
+  // that are only in the image.
+  std::optional<double> fov_deg = {};
+  bool may_assume_lens = false;
 };
 
 // A recording and the calibration of its camera.
 struct OpenedSource {
   std::unique_ptr<FrameSource> source;
   CameraCalibration calibration;
+  // Nothing is known of the lens: what is found has a place in the image, but none before the
+  // camera.
+  bool is_lens_unknown = false;
 
   // True when frames can be placed in the world, by poses and the camera's mount.
   bool has_world() const { return calibration.body_from_camera && !source->poses().empty(); }
@@ -38,8 +45,9 @@ std::unique_ptr<FrameSource> OpenFrames(const RecordingChoice& choice);
 // the recording, for the error.
 std::vector<PoseSample> RequirePoses(const FrameSource& source, const std::string& name);
 
-// Opens a recording with the calibration of the file, or its own. A file without a mount gets the
-// source's, and its clock offset. Tells 'bag.tell' when there are poses but no mount. Throws
+// Opens a recording with the calibration of the file, its own, or an assumed one. A calibration
+// without a mount gets the source's, and its clock offset. Tells 'bag.tell' which lens is assumed.
+// Tells 'bag.tell' when there are poses but no mount. Throws
 // InputError when there is no calibration, or when source or calibration are not valid.
 OpenedSource OpenRecording(const RecordingChoice& choice);
 

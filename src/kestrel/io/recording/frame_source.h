@@ -4,8 +4,10 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "kestrel/core/base/error.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/core/geometry/rigid_transform.h"
@@ -23,6 +25,16 @@ struct CameraMount {
   std::optional<Duration> clock_offset;  // t_nav = t_image + clock_offset
 };
 
+// An image that cannot be decoded. The source goes on with the next one.
+class BrokenImage : public InputError {
+ public:
+  BrokenImage(const std::string& message, std::string frame_name, Time frame_time)
+      : InputError(message), name(std::move(frame_name)), time(frame_time) {}
+
+  std::string name;  // as in Frame
+  Time time;
+};
+
 // A source of frames, one after the other.
 class FrameSource {
  public:
@@ -33,7 +45,7 @@ class FrameSource {
 
   // Fills 'frame' with the next image; returns false at the end. Frames are in order of time.
   // Throws InputError when an image is missing, broken or of an unsupported kind (16 bits), and at
-  // the end of a video that ends too early.
+  // the end of a video that ends too early; BrokenImage where the next call gives the next image.
   virtual bool Next(Frame* frame) = 0;
 
   // Fills 'frame' with the image 'index', from 0; the position of Next does not change. Returns

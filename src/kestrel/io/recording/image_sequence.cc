@@ -71,7 +71,13 @@ ImageSequence::ImageSequence(std::vector<Item> items, std::string calibration_fi
 
 bool ImageSequence::Next(Frame* frame) {
   if (next_ == items_.size()) return false;
-  return Read(next_++, frame);
+  const Item& item = items_[next_];
+  try {
+    return Read(next_++, frame);
+  } catch (const InputError& error) {
+    if (items_.size() == 1) throw;
+    throw BrokenImage(error.what(), item.name, item.time);
+  }
 }
 
 bool ImageSequence::Read(std::size_t index, Frame* frame) const {

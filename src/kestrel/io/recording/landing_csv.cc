@@ -16,16 +16,16 @@ std::string Position(const std::optional<Eigen::Vector3d>& position) {
 }
 
 // The columns u_px to p_CP_C_z_m, from the detection.
-std::string ImageCells(const std::optional<LandingDetection>& detection) {
+std::string ImageCells(const std::optional<LandingDetection>& detection, bool only_in_image) {
   if (!detection) return ",,,,,,";
   return fmt::format("{:.3f},{:.3f},{},{:.4f},{}", detection->center_px.x(),
                      detection->center_px.y(), ToString(detection->method), detection->quality,
-                     Position(detection->camera_from_pattern.translation));
+                     only_in_image ? ",," : Position(detection->camera_from_pattern.translation));
 }
 
 // 0 stands for "no edges", as a measured misfit is never exactly 0.
-std::string MisfitCell(const std::optional<LandingDetection>& detection) {
-  if (!detection || detection->misfit_px == 0) return "";
+std::string MisfitCell(const std::optional<LandingDetection>& detection, bool only_in_image) {
+  if (!detection || only_in_image || detection->misfit_px == 0) return "";
   return fmt::format("{:.3f}", detection->misfit_px);
 }
 
@@ -33,8 +33,8 @@ std::string IdCell(const std::optional<LandingDetection>& detection) {
   return detection && detection->id ? std::to_string(*detection->id) : "";
 }
 
-std::string SigmaCells(const std::optional<LandingDetection>& detection) {
-  if (!detection) return ",,";
+std::string SigmaCells(const std::optional<LandingDetection>& detection, bool only_in_image) {
+  if (!detection || only_in_image) return ",,";
   return Position(detection->covariance.diagonal().head<3>().cwiseSqrt().eval());
 }
 
@@ -46,16 +46,21 @@ std::string LandingCsvHeader() {
          "detect_ms,misfit_px,target_id\n";
 }
 
-std::string LandingCsvRow(const std::string& frame_name, const LandingObservation& observation) {
+std::string LandingCsvRow(const std::string& frame_name, const LandingObservation& observation,
+                          bool only_in_image) {
   const LandingReport& report = observation.report;
   const auto& yaw = observation.yaw_in_world;
-  return fmt::format("{},{},{},{},{},{},{},{},{:.4f},{},{}\n", CsvCell(frame_name),
-                     ToNanoseconds(observation.time), report.detection ? 1 : 0,
-                     ImageCells(report.detection), Position(observation.center_in_world),
-                     yaw ? fmt::format("{:.6f}", *yaw) : "", SigmaCells(report.detection),
-                     report.detection ? "" : ToString(report.reached),
-                     1e3 * ToSeconds(observation.detect_time), MisfitCell(report.detection),
-                     IdCell(report.detection));
+  return fmt::format(
+      "{},{},{},{},{},{},{},{},{:.4f},{},{}\n", CsvCell(frame_name),
+      ToNanoseconds(observation.time), report.detection ? 1 : 0,
+      ImageCells(report.detection, only_in_image), Position(observation.center_in_world),
+      yaw ? fmt::format("{:.6f}", *yaw) : "", SigmaCells(report.detection, only_in_image),
+      report.detection ? "" : ToString(report.reached), 1e3 * ToSeconds(observation.detect_time),
+      MisfitCell(report.detection, only_in_image), IdCell(report.detection));
+}
+
+std::string UnreadableLandingCsvRow(const std::string& frame_name, Time time) {
+  return fmt::format("{},{},0{:,>15}unreadable,,,\n", CsvCell(frame_name), ToNanoseconds(time), "");
 }
 
 }  // namespace kestrel

@@ -114,8 +114,29 @@ void DrawMisfit(const LandingDetection& detection, const CameraModel& camera,
                 kYellow, 2);
 }
 
+// What was seen, as a person would say it.
+const char* InWords(DetectionMethod method) {
+  switch (method) {
+    case DetectionMethod::kQuadrants:
+    case DetectionMethod::kThinning:
+    case DetectionMethod::kLines:
+      return "ring and cross";
+    case DetectionMethod::kPartial:
+      return "a part of the pattern";
+    case DetectionMethod::kTags:
+      return "tag";
+    case DetectionMethod::kLetter:
+      return "helipad";
+    case DetectionMethod::kFollowed:
+      return "followed from the last image";
+    case DetectionMethod::kOther:
+      return "pad";
+  }
+  return "";
+}
+
 void DrawDetection(const LandingDetection& detection, const CameraModel& camera,
-                   const TargetShape& shape, Canvas* canvas) {
+                   const TargetShape& shape, bool only_in_image, Canvas* canvas) {
   const RigidTransform& pose = detection.camera_from_pattern;
   const auto project = [&](const Eigen::Vector3d& point, Eigen::Vector2d* pixel) {
     return camera.Project(pose * point, pixel) != ProjectionStatus::kOutsideModel;
@@ -126,22 +147,26 @@ void DrawDetection(const LandingDetection& detection, const CameraModel& camera,
     const Eigen::Vector3d end = shape.radius_m() * Eigen::Vector3d::Unit(axis);
     canvas->DrawLine(LineBetween(Eigen::Vector3d::Zero(), end), project, colors[axis]);
   }
-  if (detection.is_misfit() && detection.seen) DrawMisfit(detection, camera, shape, canvas);
+  if (!only_in_image && !only_in_image && detection.is_misfit() && detection.seen)
+    DrawMisfit(detection, camera, shape, canvas);
   canvas->DrawCenter(detection.center_px);
   const std::string id = detection.id ? fmt::format(" {}", *detection.id) : "";
-  canvas->Write(fmt::format("{}{}  {:.2f} m  quality {:.2f}", ToString(detection.method), id,
-                            pose.translation.norm(), detection.quality),
+  const std::string distance =
+      only_in_image ? "" : fmt::format(", {:.1f} m", pose.translation.norm());
+  canvas->Write(fmt::format("{}{}{}, {:.0f} %", InWords(detection.method), id, distance,
+                            100 * detection.quality),
                 kGreen);
 }
 
 }  // namespace
 
 cv::Mat DrawLandingOverlay(const cv::Mat& image, const CameraModel& camera,
-                           const TargetShape& shape, const LandingObservation& observation) {
+                           const TargetShape& shape, const LandingObservation& observation,
+                           bool only_in_image) {
   Canvas canvas(image);
   const LandingReport& report = observation.report;
   if (report.detection) {
-    DrawDetection(*report.detection, camera, shape, &canvas);
+    DrawDetection(*report.detection, camera, shape, only_in_image, &canvas);
   } else {
     canvas.Write(fmt::format("not found: {}: {}", ToString(report.reached), report.reason), kRed);
   }

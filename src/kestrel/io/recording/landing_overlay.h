@@ -11,10 +11,12 @@ namespace kestrel {
 
 // Returns the frame (CV_8UC1) with the result drawn in, as CV_8UC3 (BGR). With a detection: the
 // outlines of the pad as the pose projects them through the lens, the centre, the axes (x red, y
-// green, z blue), and in words method, id, distance and quality. Otherwise: the stage at which the
-// best candidate was rejected, and why. For a misfit also the print where it is seen, in another
-// colour, and a legend of the colours.
+// green, z blue), and in words what it is, id, distance and quality. Otherwise: the stage at which
+// the best candidate was rejected, and why. For a misfit also the print where it is seen, in
+// another colour, and a legend of the colours. 'only_in_image': without distance, as the lens is
+// not known.
 cv::Mat DrawLandingOverlay(const cv::Mat& image, const CameraModel& camera,
-                           const TargetShape& shape, const LandingObservation& observation);
+                           const TargetShape& shape, const LandingObservation& observation,
+                           bool only_in_image = false);
 
 }  // namespace kestrel
