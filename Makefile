@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# `make demo` and `make test` start from nothing (Debian 12): they install, build and run.
+# `make demo` and `make test` start from nothing (Debian 12 or 13): they install, build and run.
 SHELL := bash
 BIN := build/release
 DATA ?=
@@ -16,7 +16,7 @@ export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
 export CCACHE_BASEDIR ?= $(CURDIR)
 export CCACHE_SLOPPINESS ?= locale
 
-.PHONY: demo console test dds ros interop browser bench accuracy figures check-figures format check asan tsan fuzz install command tests build configure deps
+.PHONY: demo console test dds ros interop browser bench accuracy figures check-figures format check asan tsan fuzz install command tests build configure configure-tests
 
 demo: command  ## a simulated landing, or with DATA=<folder> [CAMERA=<file>] your own images
 	scripts/demo $(BIN) "$(DATA)" "$(CAMERA)"
@@ -30,25 +30,25 @@ console:  ## the web page: what it needs, built in, over a simulated flight
 test: tests
 	ctest --preset release -j $$(nproc)
 
-dds: deps  ## ROS 2 and the team's map over DDS, and their tests
-	scripts/install-deps --dds
+dds:  ## ROS 2 and the team's map over DDS, and their tests
+	scripts/install-deps --test --dds
 	cmake --preset release
 	cmake --build --preset release --target kestrel $(DDS_ROOMS:%=kestrel_%_test)
 	ctest --preset release -j $$(nproc) -R '^(dds|ros|team|hosts)/|DdsCommand|TeamCommand' --no-tests=error
 
-ros: deps  ## the node of ROS 1 and its tests, and bags of ROS 1 against its rosbag
-	scripts/install-deps --ros
+ros:  ## the node of ROS 1 and its tests, and bags of ROS 1 against its rosbag
+	scripts/install-deps --test --ros
 	cmake --preset release
 	cmake --build --preset release --target kestrel kestrel_node kestrel_ros_test kestrel_ros_node_test
 	ctest --preset release -R "^ros(_node)?/" --no-tests=error --verbose
 
-interop: deps  ## MAVLink, MCAP, live flights, bags and ROS 2 against implementations of others, which npm installs
-	scripts/install-deps --interop
+interop:  ## MAVLink, MCAP, live flights, bags and ROS 2 against implementations of others, which npm installs
+	scripts/install-deps --test --interop
 	cmake --preset release
 	cmake --build --preset release --target interop
 	ctest --preset release -R ^interop/ --no-tests=error
 
-browser: deps  ## the console's page: its unit tests, and used in Chromium as a person would; pictures to out/browser
+browser:  ## the console's page: its unit tests, and used in Chromium as a person would; pictures to out/browser
 	scripts/install-deps --browser
 	cmake --preset release
 	cmake --build --preset release --target kestrel
@@ -62,51 +62,58 @@ accuracy: build  ## errors against truth; simulated flights (landings: SCENARIOS
 	scripts/hunt_accuracy $(BIN)
 	@for program in $(BIN)/bench/*accuracy; do echo "== $$program"; $$program || exit; done
 
-figures: configure  ## all figures of README and docs, or FIGURES, measured and written
+figures: configure-tests  ## all figures of README and docs, or FIGURES, measured and written
 	targets=$$(scripts/figures --targets $(FIGURES)) && cmake --build --preset release --target $$targets
 	scripts/figures --build $(BIN) $(FIGURES)
 
-check-figures: configure  ## what README and docs quote: form, commands, and what is quick to measure
+check-figures: configure-tests  ## what README and docs quote: form, commands, and what is quick to measure
 	targets=$$(scripts/figures --check --targets) && cmake --build --preset release --target $$targets
 	scripts/figures --build $(BIN) --check
 
 format:
 	scripts/check-format --fix
 
-check: deps  ## format, layers, clang-tidy on every source but the tests, of all ROOMS or of some
+check:  ## format, layers, clang-tidy on every source but the tests, of all ROOMS or of some
+	scripts/install-deps --check
 	scripts/check-format
 	scripts/check-layers
 	scripts/check-tidy $(ROOMS)
 
-asan: deps  ## the unit tests, of all ROOMS or of some, with the address and undefined-behaviour sanitizers
+asan:  ## the unit tests, of all ROOMS or of some, with the address and undefined-behaviour sanitizers
+	scripts/install-deps --check
 	cmake --preset asan
 	cmake --build --preset asan $(if $(ROOMS),--target $(ROOMS:%=kestrel_%_test))
 	ctest --preset asan -j $$(nproc) $(if $(ROOMS),-R '^($(subst $(space),|,$(strip $(ROOMS))))/')
 
-tsan: deps  ## the unit tests of all ROOMS or of some, `sessions` of whole sessions, with the thread sanitizer
+tsan:  ## the unit tests of all ROOMS or of some, `sessions` of whole sessions, with the thread sanitizer
+	scripts/install-deps --check
 	cmake --preset tsan
 	cmake --build --preset tsan --target $(if $(ROOMS),$(ROOMS:%=kestrel_%_test),tests)
 	ctest --preset tsan $(if $(ROOMS),-R '^($(subst $(space),|,$(strip $(ROOMS))))/' --no-tests=error)
 
-fuzz: deps  ## every fuzz target for FUZZ_SECONDS
+fuzz:  ## every fuzz target for FUZZ_SECONDS
+	scripts/install-deps --check
 	cmake --preset asan
 	cmake --build --preset asan --target fuzzers
 	scripts/fuzz build/asan/fuzz $(FUZZ_SECONDS)
 
-install: command
+install: configure
+	cmake --build --preset release --target installed
 	cmake --install $(BIN) --prefix $(PREFIX)
 
 command: configure  ## the command alone
 	cmake --build --preset release --target kestrel
 
-tests: configure
+tests: configure-tests
 	cmake --build --preset release --target tests
 
-build: configure  ## everything: command, tests, benchmarks, tools
+build: configure-tests  ## everything: command, tests, benchmarks, tools
 	cmake --build --preset release
 
-configure: deps
+configure:
+	scripts/install-deps
 	cmake --preset release
 
-deps:
-	scripts/install-deps
+configure-tests:
+	scripts/install-deps --test
+	cmake --preset release

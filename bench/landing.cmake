@@ -1,5 +1,4 @@
 # Accuracy and speed of the landing pattern detector (paper, sections 2.1 to 2.5).
-find_package(OpenCV 4.5 REQUIRED COMPONENTS aruco)
 
 add_executable(kestrel_accuracy accuracy.cc landing_frames.cc landing_score.cc
                                 landing_variants.cc)
@@ -31,7 +30,7 @@ target_link_libraries(landing_benchmark PRIVATE benchmark::benchmark)
 foreach(program landing_benchmark landing_speed)
   target_link_libraries(
     ${program} PRIVATE kestrel::landing kestrel::recording kestrel::labelled_images kestrel::tags
-                       CLI11::CLI11 apriltag::apriltag fmt::fmt opencv_aruco opencv_imgproc)
+                       CLI11::CLI11 apriltag::apriltag fmt::fmt ${KESTREL_ARUCO} opencv_imgproc)
   target_compile_definitions(${program}
                              PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
 endforeach()
