@@ -6,6 +6,9 @@ DATA ?=
 CAMERA ?=
 SCENARIOS ?=
 PREFIX ?= /usr/local
+DIST ?= bookworm
+ARCH ?= $(shell dpkg --print-architecture)
+KEY ?=
 FUZZ_SECONDS ?= 60
 ROOMS ?=
 FIGURES ?=
@@ -16,7 +19,8 @@ export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
 export CCACHE_BASEDIR ?= $(CURDIR)
 export CCACHE_SLOPPINESS ?= locale
 
-.PHONY: demo console test dds ros interop browser bench accuracy figures check-figures format check asan tsan fuzz install command tests build configure configure-tests
+.PHONY: demo console test dds ros interop browser bench accuracy figures check-figures format check asan tsan fuzz install command tests build configure configure-tests \
+  package repository package-test
 
 demo: command  ## a simulated landing, or with DATA=<folder> [CAMERA=<file>] your own images
 	scripts/demo $(BIN) "$(DATA)" "$(CAMERA)"
@@ -117,3 +121,15 @@ configure:
 configure-tests:
 	scripts/install-deps --test
 	cmake --preset release
+
+package:  ## packages for DIST (bookworm, trixie) and ARCH (amd64, arm64), in out/packages/DIST
+	scripts/install-deps --package --console
+	cd web && npm run --silent build
+	packaging/build $(DIST) $(ARCH)
+
+repository:  ## a signed repository for apt of all packages, in out/repository; KEY=<key of gpg>
+	packaging/repository $(KEY)
+
+package-test: repository  ## packages of DIST installed, used, upgraded and removed on a fresh machine
+	scripts/install-deps --package
+	packaging/test $(DIST)

@@ -1,11 +1,11 @@
-# `cmake --install` puts the command, the rooms as static libraries, the public headers, the internal
-# ones behind them, and the package that `find_package(kestrel COMPONENTS ...)` finds. A component is
-# what a user wants, and asks only for the libraries that it needs: cmake/kestrelConfig.cmake.in.
+# `cmake --install` puts the command, the rooms as static libraries, or libkestrel in place of them, the public
+# headers, the internal ones behind them, and the package that `find_package(kestrel COMPONENTS ...)` finds. A
+# component is what a user wants, and asks only for the libraries that it needs: cmake/kestrelConfig.cmake.in.
+# The target `installed` builds all that.
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/kestrel)
-# Rooms that belong to their programs alone.
-set(programs cli ros_node ros1)
+set(programs ${KESTREL_PROGRAM_ROOMS} ros1)
 # Component of each floor, but for these rooms.
 set(component_core vision)
 set(component_vision vision)
@@ -17,17 +17,27 @@ set(component_simulation simulation)
 set(component_app console)
 set(component_of_codec io)
 
+add_custom_target(installed)
+add_dependencies(installed kestrel)
+if(TARGET kestrel_node)
+  add_dependencies(installed kestrel_node)
+endif()
+set(library_rooms)
 get_property(floors GLOBAL PROPERTY KESTREL_FLOORS)
 foreach(floor IN LISTS floors)
   separate_arguments(rooms UNIX_COMMAND "${floor}")
   list(POP_FRONT rooms name)
   list(REMOVE_ITEM rooms ${programs})
+  list(APPEND library_rooms ${rooms})
   foreach(room IN LISTS rooms)
     set(component ${component_${name}})
     if(component_of_${room})
       set(component ${component_of_${room}})
     endif()
-    install(TARGETS kestrel_${room} EXPORT kestrel_${component})
+    if(NOT KESTREL_SHARED_LIBRARY)
+      install(TARGETS kestrel_${room} EXPORT kestrel_${component})
+      add_dependencies(installed kestrel_${room})
+    endif()
   endforeach()
 endforeach()
 include(PublicHeaders)
@@ -40,15 +50,25 @@ foreach(header IN LISTS internal_headers)
   cmake_path(GET header PARENT_PATH folder)
   install(FILES src/kestrel/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kestrel/${folder})
 endforeach()
-foreach(component vision calibration io flight simulation console)
-  install(EXPORT kestrel_${component} NAMESPACE kestrel:: FILE kestrel_${component}.cmake
-          DESTINATION ${package_dir})
-endforeach()
+if(KESTREL_SHARED_LIBRARY)
+  set(config_template cmake/kestrelSharedConfig.cmake.in)
+  install(TARGETS kestrel_library EXPORT kestrel_library INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  install(EXPORT kestrel_library NAMESPACE kestrel:: DESTINATION ${package_dir})
+  list(GET OpenCV_INCLUDE_DIRS 0 opencv_includes)
+  configure_file(cmake/kestrel.pc.in kestrel.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/kestrel.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+else()
+  set(config_template cmake/kestrelConfig.cmake.in)
+  foreach(component vision calibration io flight simulation console)
+    install(EXPORT kestrel_${component} NAMESPACE kestrel:: FILE kestrel_${component}.cmake
+            DESTINATION ${package_dir})
+  endforeach()
+endif()
 
 # Configurations of boards and cameras, and the unit that flies from power-on.
 install(DIRECTORY examples/ DESTINATION ${CMAKE_INSTALL_DATADIR}/kestrel)
 
-configure_package_config_file(cmake/kestrelConfig.cmake.in kestrelConfig.cmake
+configure_package_config_file(${config_template} kestrelConfig.cmake
                               INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(kestrelConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/kestrelConfig.cmake

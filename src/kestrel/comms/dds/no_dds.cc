@@ -7,10 +7,14 @@
 namespace kestrel {
 namespace {
 
-[[noreturn]] void SayHowToGetIt() {
-  throw InputError(
-      "this kestrel was built without DDS: run scripts/install-deps --dds and build it again");
-}
+#ifdef KESTREL_EXTENSION
+constexpr char kHowToGetIt[] = "this needs DDS: apt install " KESTREL_EXTENSION;
+#else
+constexpr char kHowToGetIt[] =
+    "this kestrel was built without DDS: run scripts/install-deps --dds and build it again";
+#endif
+
+[[noreturn]] void SayHowToGetIt() { throw InputError(kHowToGetIt); }
 
 }  // namespace
 

@@ -4,13 +4,22 @@
 #include "kestrel/flight/ros1/ros1_connection.h"
 
 namespace kestrel {
+namespace {
+
+#ifdef KESTREL_EXTENSION
+constexpr char kHowToGetIt[] = "this needs ROS: apt install " KESTREL_EXTENSION;
+#else
+constexpr char kHowToGetIt[] =
+    "this kestrel was built without ROS: run scripts/install-deps --ros and build it again";
+#endif
+
+}  // namespace
 
 struct Ros1Connection::State {};
 
 Ros1Connection::Ros1Connection(int* /*argc*/, char** /*argv*/, const std::string& /*node*/,
                                bool /*handles_interrupts*/) {
-  throw InputError(
-      "this kestrel was built without ROS: run scripts/install-deps --ros and build it again");
+  throw InputError(kHowToGetIt);
 }
 
 Ros1Connection::~Ros1Connection() = default;
