@@ -375,23 +375,24 @@ FlightReport FlightProgram::Report() const {
 
 std::string FlightProgram::State() const {
   const CaptureCounters capture = parts_.source->counters();
-  std::string state = fmt::format("{} frames, {} with the target", frames_, detections_);
+  std::string state =
+      fmt::format("{} frames, {} with the target", frames_.load(), detections_.load());
   if (capture.missed > 0) state += fmt::format(", {} missed", capture.missed);
   if (parts_.autopilot == nullptr) return state;
-  state += fmt::format("; target {}", ToString(phase_));
+  state += fmt::format("; target {}", ToString(phase_.load()));
   if (phase_ == TargetPhase::kFound) state += fmt::format(", {:.1f} m below", height_m_.load());
   if (guided_) return state + fmt::format("; guidance: {}", ToString(guidance_phase_.load()));
-  return state + fmt::format("; {} messages sent", messages_);
+  return state + fmt::format("; {} messages sent", messages_.load());
 }
 
 std::string FlightProgram::Summary() const {
   const LiveEvents::Counters events = events_.counters();
   const CaptureCounters capture = parts_.source->counters();
-  std::string summary = fmt::format("{} frames, {}", frames_, parts_.vision->Found());
+  std::string summary = fmt::format("{} frames, {}", frames_.load(), parts_.vision->Found());
   summary += fmt::format(
       "; {} missed and {} repeated by the camera, {} dropped before the vision, {} without "
       "a pose in time\n",
-      capture.missed, repeated_frames_, events.dropped_frames, events.unposed_frames);
+      capture.missed, repeated_frames_.load(), events.dropped_frames, events.unposed_frames);
   if (const std::string warning = parts_.vision->Warning(); !warning.empty()) {
     summary += warning + "\n";
   }
@@ -400,7 +401,8 @@ std::string FlightProgram::Summary() const {
   const ConnectionCounters link = parts_.connection->counters();
   summary += fmt::format(
       "{} targets and {} set-points sent; {} packets received, {} sent, {} not sent; {} damaged\n",
-      messages_, set_points_, link.received, link.sent, link.unsent, link.bad_checksums);
+      messages_.load(), set_points_.load(), link.received, link.sent, link.unsent,
+      link.bad_checksums);
   return summary;
 }
 
