@@ -1,7 +1,6 @@
 # `cmake --install` puts the command, the rooms as static libraries, or libkestrel in place of them, the public
 # headers, the internal ones behind them, and the package that `find_package(kestrel COMPONENTS ...)` finds. A
 # component is what a user wants, and asks only for the libraries that it needs: cmake/kestrelConfig.cmake.in.
-# The target `installed` builds all that.
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/kestrel)
@@ -17,7 +16,6 @@ set(component_simulation simulation)
 set(component_app console)
 set(component_of_codec io)
 
-add_custom_target(installed)
 add_dependencies(installed kestrel)
 if(TARGET kestrel_node)
   add_dependencies(installed kestrel_node)

@@ -35,7 +35,9 @@ function(kestrel_loaded_library room folder)
   # A stand-in says which package the user wants.
   target_compile_definitions(${target} PRIVATE KESTREL_EXTENSION="kestrel-${room}")
   target_link_libraries(${target} PRIVATE fmt::fmt)
-  set_target_properties(${target} PROPERTIES OUTPUT_NAME kestrel_${room} LIBRARY_OUTPUT_DIRECTORY ${folder})
+  set_target_properties(${target} PROPERTIES OUTPUT_NAME kestrel_${room} LIBRARY_OUTPUT_DIRECTORY ${folder}
+                                             INSTALL_RPATH "")
+  add_dependencies(installed ${target})
   # The package for CMake tells the linker about the stand-ins.
   if("${folder}" STREQUAL "stand_in")
     set(export EXPORT kestrel_library)
