@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The detectors of pads.
+#include <memory>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "bindings.h"
+#include "camera_argument.h"
+#include "detector.h"
+#include "enum_casters.h"
+#include "kestrel/core/base/read_file.h"
+#include "kestrel/landing_pattern_detector.h"
+#include "kestrel/landing_pipeline.h"
+#include "kestrel/vision/targets/ring_with_tags_detector.h"
+#include "option_values.h"
+#include "value_class.h"
+
+namespace kestrel::python {
+
+Detector::Detector(std::shared_ptr<const TargetDetector> detector)
+    : detector_(std::move(detector)),
+      view_(std::make_shared<PadView>(PadView{detector_->camera(), detector_->shape()})) {}
+
+SeenReport Detector::Detect(const pybind11::handle& image, const LandingHint& hint) {
+  const cv::Mat pixels = GrayImage(image, detector_->camera().intrinsics());
+  std::unique_ptr<TargetWorkspace> workspace = TakeWorkspace();
+  SeenReport report;
+  {
+    const pybind11::gil_scoped_release release;
+    static_cast<LandingReport&>(report) = detector_->Detect(pixels, hint, *workspace);
+  }
+  idle_.push_back(std::move(workspace));
+  report.view = view_;
+  return report;
+}
+
+std::unique_ptr<TargetWorkspace> Detector::TakeWorkspace() {
+  if (idle_.empty()) return detector_->MakeWorkspace();
+  std::unique_ptr<TargetWorkspace> workspace = std::move(idle_.back());
+  idle_.pop_back();
+  return workspace;
+}
+
+namespace {
+
+namespace py = pybind11;
+
+// Python's names of the detectors are classes of their own.
+struct LandingPatternFinder : Detector {
+  using Detector::Detector;
+};
+struct TagBoardFinder : Detector {
+  using Detector::Detector;
+};
+struct HelipadFinder : Detector {
+  using Detector::Detector;
+};
+struct RingWithTagsFinder : Detector {
+  using Detector::Detector;
+};
+
+template <class Finder>
+using FinderClass = py::class_<Finder, Detector, std::shared_ptr<Finder>>;
+
+// Returns a board from the path of its file, or from a list of dicts as its tags.
+TagBoard BoardOf(const py::object& board) {
+  if (const auto path = PathOf(board)) {
+    return ParseTagBoard(ReadFile(*path), *path, TagTargetOptions().family);
+  }
+  // A dict is YAML, too.
+  const std::string text =
+      "tags: " + py::module_::import("json").attr("dumps")(board).cast<std::string>();
+  return ParseTagBoard(text, "board", TagTargetOptions().family);
+}
+
+void BindBase(py::module_& module) {
+  py::class_<Detector, std::shared_ptr<Detector>>(
+      module, "TargetDetector",
+      "Finds one kind of pad in gray images of one camera. Any number of threads may use one at "
+      "the same time.")
+      .def("detect", &Detector::Detect, py::arg("image"), py::arg("hint") = LandingHint(),
+           "Searches an image.\n\nimage: uint8 of shape (rows, columns), of the camera's size, "
+           "gray; its pixels are not copied. Rows may be apart, as in a part of an array.\nhint: "
+           "LandingHint, what is known before.\nReturns a LandingReport. Raises TypeError for "
+           "another kind of array, InputError for another size. Lets other threads run.")
+      .def_property_readonly(
+          "camera", [](const Detector& self) { return self.view()->camera; }, "The CameraModel.")
+      .def_property_readonly(
+          "shape", [](const Detector& self) { return self.view()->shape; }, "The TargetShape.")
+      .def("__repr__", [](const py::object& self) {
+        const auto& view = self.cast<const Detector&>().view();
+        return fmt::format("<{}: a pad of {} m in images of {} x {} px>",
+                           py::str(py::type::of(self).attr("__name__")).cast<std::string>(),
+                           view->shape.diameter_m, view->camera.width_px(),
+                           view->camera.height_px());
+      });
+}
+
+void BindLandingPattern(py::module_& module) {
+  FinderClass<LandingPatternFinder>(
+      module, "LandingPatternDetector",
+      "Finds the landing pattern: a black ring with a cross on a white board.")
+      .def(py::init([](const CameraArgument& camera, const py::object& options,
+                       const py::kwargs& keywords) {
+             return std::make_shared<LandingPatternFinder>(std::make_shared<LandingPatternDetector>(
+                 camera,
+                 OptionsOf<LandingPatternDetectorOptions>(
+                     options, keywords, [](const auto& file) { return file.landing.detector; })));
+           }),
+           py::arg("camera"), py::arg("options") = py::none(),
+           "camera: CameraModel, CameraCalibration or CameraIntrinsics.\noptions: a dict by the "
+           "names of `kestrel config` under landing.detector, or the path of such a file; keyword "
+           "arguments are options, too, as pattern={'outer_diameter_m': 0.6}, min_quality=0.9.");
+}
+
+void BindTags(py::module_& module) {
+  FinderClass<TagBoardFinder>(module, "TagBoardDetector",
+                              "Finds a board of AprilTags and ArUco markers, or a single one.")
+      .def(py::init([](const CameraArgument& camera, const py::object& board,
+                       const py::kwargs& keywords) {
+             TagBoardDetectorOptions options;
+             SetFields(keywords, FieldsOf(options));
+             return std::make_shared<TagBoardFinder>(
+                 std::make_shared<TagBoardDetector>(*camera.model, BoardOf(board), options));
+           }),
+           py::arg("camera"), py::arg("board"),
+           "board: a list of dicts, as [{'family': 'tag36h11', 'id': 3, 'size_m': 0.5}] (x_m, y_m "
+           "and yaw_deg place a tag on the board), or the path of its YAML file.\nKeyword "
+           "arguments: landing.target.tags of `kestrel config`.");
+  FinderClass<RingWithTagsFinder>(module, "RingWithTagsDetector",
+                                  "Finds the landing pattern whose board also has tags.")
+      .def(py::init([](const CameraArgument& camera, const py::object& board, const py::dict& ring,
+                       const py::dict& tags) {
+             LandingPatternDetectorOptions ring_options;
+             SetFields(ring, FieldsOf(ring_options));
+             TagBoardDetectorOptions tag_options;
+             SetFields(tags, FieldsOf(tag_options));
+             return std::make_shared<RingWithTagsFinder>(std::make_shared<RingWithTagsDetector>(
+                 *camera.model, ring_options, BoardOf(board), tag_options));
+           }),
+           py::arg("camera"), py::arg("board"), py::arg("ring") = py::dict(),
+           py::arg("tags") = py::dict(),
+           "board: the tags, in the ring's frame, as of TagBoardDetector.\nring, tags: dicts of "
+           "landing.detector and landing.target.tags of `kestrel config`.");
+}
+
+void BindHelipad(py::module_& module) {
+  FinderClass<HelipadFinder>(module, "HelipadDetector", "Finds a helipad by its H.")
+      .def(py::init([](const CameraArgument& camera, const py::object& options,
+                       const py::kwargs& keywords) {
+             return std::make_shared<HelipadFinder>(std::make_shared<HelipadDetector>(
+                 *camera.model,
+                 OptionsOf<HelipadDetectorOptions>(options, keywords, [](const auto& file) {
+                   return file.landing.target.helipad;
+                 })));
+           }),
+           py::arg("camera"), py::arg("options") = py::none(),
+           "options: landing.target.helipad of `kestrel config`, as of LandingPatternDetector.");
+}
+
+void BindMakeDetector(py::module_& module) {
+  module.def(
+      "make_detector",
+      [](const CameraArgument& camera, const py::object& options, const py::kwargs& keywords) {
+        const auto landing = OptionsOf<LandingPipelineOptions>(
+            options, keywords, [](const auto& file) { return file.landing; });
+        return std::make_shared<Detector>(
+            MakeTargetDetector(*camera.model, landing.target, landing.detector));
+      },
+      py::arg("camera"), py::arg("options") = py::none(),
+      "Returns the TargetDetector of a configuration.\n\noptions: a dict by the names of `kestrel "
+      "config` under landing, or the path of such a file; keyword arguments are options, too, as "
+      "target={'kind': 'apriltag', 'apriltag': {'id': 3, 'size_m': 0.5}}.");
+  module.def("target_kinds", &TargetKinds, "Returns the kinds of pads, for target.kind.");
+}
+
+}  // namespace
+
+void BindDetectors(py::module_& module) {
+  BindBase(module);
+  BindLandingPattern(module);
+  BindTags(module);
+  BindHelipad(module);
+  BindMakeDetector(module);
+}
+
+}  // namespace kestrel::python

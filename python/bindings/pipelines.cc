@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The pipelines of a landing and of a hunt, and what they see in a frame.
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "arrays.h"
+#include "bindings.h"
+#include "detector.h"
+#include "enum_casters.h"
+#include "kestrel/hunt_pipeline.h"
+#include "kestrel/landing_pipeline.h"
+#include "option_values.h"
+#include "seen.h"
+#include "value_class.h"
+
+namespace kestrel::python {
+namespace {
+
+namespace py = pybind11;
+
+// A pipeline of Python. Threads that use it at the same time wait for each other.
+template <class Pipeline>
+class Guarded {
+ public:
+  explicit Guarded(Pipeline pipeline) : pipeline_(std::move(pipeline)) {}
+
+  // Calls 'action' with the pipeline, without the interpreter's lock.
+  template <class Action>
+  auto With(const Action& action) {
+    const py::gil_scoped_release release;
+    const std::lock_guard lock(mutex_);
+    return action(pipeline_);
+  }
+
+  // For what never changes.
+  const Pipeline& pipeline() const { return pipeline_; }
+
+ private:
+  std::mutex mutex_;
+  Pipeline pipeline_;
+};
+
+class LandingVision : public Guarded<LandingPipeline> {
+ public:
+  explicit LandingVision(LandingPipeline pipeline)
+      : Guarded(std::move(pipeline)),
+        view_(std::make_shared<PadView>(
+            PadView{this->pipeline().detector().camera(), this->pipeline().detector().shape()})) {}
+
+  SeenLanding Process(const py::handle& image, Time time) {
+    const cv::Mat pixels = GrayImage(image, view_->camera.intrinsics());
+    return With([&](LandingPipeline& pipeline) {
+      return SeenLanding{pipeline.Process(pixels, time), view_};
+    });
+  }
+
+ private:
+  std::shared_ptr<PadView> view_;
+};
+
+class HuntVision : public Guarded<HuntPipeline> {
+ public:
+  HuntVision(HuntPipeline pipeline, std::shared_ptr<ObjectModel> model)
+      : Guarded(std::move(pipeline)), model_(std::move(model)) {}
+
+  SeenHunt Process(const py::handle& image, Time time) {
+    const cv::Mat pixels = ColorImage(image, pipeline().detector().camera().intrinsics());
+    return With([&](HuntPipeline& pipeline) {
+      return SeenHunt{pipeline.Process(pixels, time), model_};
+    });
+  }
+
+ private:
+  std::shared_ptr<ObjectModel> model_;
+};
+
+void BindLandingObservation(py::module_& module) {
+  using Seen = SeenLanding;
+  ValueClass<Seen>(module, "LandingObservation", "What the landing pipeline saw in a frame.")
+      .Field("time_ns", &Seen::time, "Of the frame, on the images' clock, int, ns.")
+      .Field(
+          "report",
+          [](const Seen& self) {
+            return SeenReport{self.report, self.view};
+          },
+          [](const py::handle& value, Seen* self) { self->report = value.cast<SeenReport>(); },
+          "LandingReport: the detection in the camera frame, or why there is none.")
+      .Field("world_from_camera", &Seen::world_from_camera,
+             "RigidTransform, or None without a pose.")
+      .Field("pose", &Seen::pose, "'found', 'predicted', or why there is no pose.")
+      .Field("pose_uncertainty", &Seen::pose_uncertainty, "PoseUncertainty of a predicted pose.")
+      .Field("center_in_world", &Seen::center_in_world,
+             "The pad's centre in the world, float64 of 3, ENU, m; or None.")
+      .Field("position_method", &Seen::position_method, "'size' or 'altitude'.")
+      .Field("yaw_in_world", &Seen::yaw_in_world, "Yaw of the pad, rad, or None.")
+      .Field("fate", &Seen::fate, "What the track made of the detection, or None.")
+      .Field("track_state", &Seen::track_state, "'searching', 'tracking', 'predicting' or 'lost'.")
+      .Field("target", &Seen::target, "TargetEstimate at the time of the frame, or None.")
+      .Field("detect_time_s", &Seen::detect_time, "Time of the detection alone, s.")
+      .Field("view", &Seen::view, "What it is drawn by, or None.")
+      .Derived(
+          "detection", [](const Seen& self) { return self.report.detection; },
+          "That of the report.")
+      .Repr([](const Seen& self) {
+        const auto place = self.center_in_world
+                               ? fmt::format(", at ({:.2f}, {:.2f}, {:.2f}) m in the world",
+                                             self.center_in_world->x(), self.center_in_world->y(),
+                                             self.center_in_world->z())
+                               : "";
+        return fmt::format("<LandingObservation: {}{}, {}>", InWords(self.report), place,
+                           ToString(self.track_state));
+      })
+      .py()
+      .def("__bool__", [](const Seen& self) { return self.report.detection.has_value(); });
+}
+
+void BindHuntObservation(py::module_& module) {
+  using Seen = SeenHunt;
+  ValueClass<Seen>(module, "HuntObservation", "What the hunt pipeline saw in a frame.")
+      .Field("time_ns", &Seen::time, "Of the frame, on the images' clock, int, ns.")
+      .Field(
+          "report",
+          [](const Seen& self) {
+            return SeenObjects{self.report, self.model};
+          },
+          [](const py::handle& value, Seen* self) { self->report = value.cast<SeenObjects>(); },
+          "ObjectReport.")
+      .Field("world_from_camera", &Seen::world_from_camera,
+             "RigidTransform, or None without a pose.")
+      .Field("in_world", &Seen::in_world,
+             "For each detection, in order: ObjectLocation in the world (ENU), or None.")
+      .Field("detect_time_s", &Seen::detect_time, "Time of the detection alone, s.")
+      .Field("model", &Seen::model, "The ObjectModel.")
+      .Repr([](const Seen& self) {
+        return fmt::format("<HuntObservation: {} objects{}>", self.report.detections.size(),
+                           self.world_from_camera ? ", with a pose" : ", no pose");
+      });
+}
+
+constexpr char kAddPose[] =
+    "Adds a PoseSample of the navigation, later than those before. Returns 'ok', 'out of order' or "
+    "'invalid'.";
+constexpr char kSetAltitude[] =
+    "Sets the height (m) of the camera above what it looks for, for frames without a pose; None: "
+    "not "
+    "known.";
+
+void BindLandingPipeline(py::module_& module) {
+  py::class_<LandingVision, std::shared_ptr<LandingVision>>(
+      module, "LandingPipeline",
+      "The whole vision of a landing: images and poses in; the pad, its place in the world and its "
+      "track out.")
+      .def(py::init([](const CameraCalibration& calibration, const py::object& options,
+                       const std::shared_ptr<Detector>& detector, const py::kwargs& keywords) {
+             const auto values = OptionsOf<LandingPipelineOptions>(
+                 options, keywords, [](const auto& file) { return file.landing; });
+             if (!detector) {
+               return std::make_shared<LandingVision>(LandingPipeline(calibration, values));
+             }
+             return std::make_shared<LandingVision>(LandingPipeline(
+                 calibration, std::make_unique<SharedDetector>(detector->target()), values));
+           }),
+           py::arg("calibration"), py::arg("options") = py::none(),
+           py::arg("detector") = py::none(),
+           "calibration: CameraCalibration; poses place the pad in the world where it has a "
+           "mount.\noptions: a dict by the names of `kestrel config` under landing, or the path of "
+           "such a file; keyword arguments are options, too, as target={'kind': 'helipad'}.\n"
+           "detector: TargetDetector in place of that of the options.")
+      .def(
+          "add_pose",
+          [](LandingVision& self, const PoseSample& sample) {
+            return self.With([&](LandingPipeline& pipeline) { return pipeline.AddPose(sample); });
+          },
+          py::arg("sample"), kAddPose)
+      .def(
+          "set_altitude",
+          [](LandingVision& self, std::optional<double> altitude_m) {
+            self.With([&](LandingPipeline& pipeline) { pipeline.SetAltitude(altitude_m); });
+          },
+          py::arg("altitude_m"), kSetAltitude)
+      .def("process", &LandingVision::Process, py::arg("image"), py::arg("time_ns"),
+           "Processes a frame.\n\nimage: uint8 of shape (rows, columns), gray, of the camera's "
+           "size; not copied.\ntime_ns: middle of the exposure, int, ns.\nReturns a "
+           "LandingObservation. Lets other threads run.")
+      .def(
+          "predict",
+          [](LandingVision& self, Time time) {
+            return self.With(
+                [&](LandingPipeline& pipeline) { return pipeline.tracker().Predict(time); });
+          },
+          py::arg("time_ns"),
+          "Returns the TargetEstimate of the track at a time, or None where it is not known.")
+      .def("__repr__", [](const LandingVision& self) {
+        const LandingPipelineOptions& options = self.pipeline().options();
+        return fmt::format("<LandingPipeline: {} of {} m>", options.target.kind,
+                           self.pipeline().detector().shape().diameter_m);
+      });
+}
+
+void BindHuntPipeline(py::module_& module) {
+  py::class_<HuntVision, std::shared_ptr<HuntVision>>(
+      module, "HuntPipeline",
+      "The whole vision of a hunt: colour images and poses in; objects and their map out.")
+      .def(py::init([](const CameraCalibration& calibration,
+                       const std::shared_ptr<ObjectModel>& model, const py::object& options,
+                       const py::kwargs& keywords) {
+             const auto used = model ? model : std::make_shared<ObjectModel>(DefaultObjectModel());
+             return std::make_shared<HuntVision>(
+                 HuntPipeline(calibration, *used,
+                              OptionsOf<HuntPipelineOptions>(
+                                  options, keywords, [](const auto& file) { return file.hunt; })),
+                 used);
+           }),
+           py::arg("calibration"), py::arg("model") = py::none(), py::arg("options") = py::none(),
+           "model: ObjectModel; None: that of MBZIRC 2017.\noptions: a dict by the names of "
+           "`kestrel config` under hunt, or the path of such a file; keyword arguments are "
+           "options, too.")
+      .def(
+          "add_pose",
+          [](HuntVision& self, const PoseSample& sample) {
+            return self.With([&](HuntPipeline& pipeline) { return pipeline.AddPose(sample); });
+          },
+          py::arg("sample"), kAddPose)
+      .def(
+          "set_altitude",
+          [](HuntVision& self, std::optional<double> altitude_m) {
+            self.With([&](HuntPipeline& pipeline) { pipeline.SetAltitude(altitude_m); });
+          },
+          py::arg("altitude_m"), kSetAltitude)
+      .def("process", &HuntVision::Process, py::arg("image"), py::arg("time_ns"),
+           "Processes a frame.\n\nimage: uint8 of shape (rows, columns, 3), BGR, of the camera's "
+           "size; not copied.\ntime_ns: middle of the exposure, int, ns.\nReturns a "
+           "HuntObservation. Lets other threads run.")
+      .def(
+          "confirmed",
+          [](HuntVision& self) {
+            return self.With([](HuntPipeline& pipeline) { return pipeline.map().Confirmed(); });
+          },
+          "Returns the confirmed objects of the map, a list of MappedObject.")
+      .def("__repr__", [](const HuntVision& self) {
+        return fmt::format("<HuntPipeline: {} classes>",
+                           self.pipeline().detector().model().classes.size());
+      });
+}
+
+}  // namespace
+
+void BindPipelines(py::module_& module) {
+  BindLandingObservation(module);
+  BindHuntObservation(module);
+  BindLandingPipeline(module);
+  BindHuntPipeline(module);
+}
+
+}  // namespace kestrel::python

@@ -1,0 +1,380 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sessions: a source, the vision, and functions of Python that get the results.
+#include <atomic>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "arrays.h"
+#include "bindings.h"
+#include "enum_casters.h"
+#include "kestrel/asynchronous_sink.h"
+#include "kestrel/flight/session/hunt_files.h"
+#include "kestrel/flight/session/landing_files.h"
+#include "kestrel/hunt_run.h"
+#include "kestrel/io/recording/landing_csv.h"
+#include "kestrel/io/recording/object_csv.h"
+#include "kestrel/landing_run.h"
+#include "kestrel/live_session.h"
+#include "kestrel/observation_sinks.h"
+#include "kestrel/open_live_source.h"
+#include "kestrel/recorded_session.h"
+#include "option_values.h"
+#include "recordings.h"
+#include "seen.h"
+#include "value_class.h"
+
+namespace kestrel::python {
+namespace {
+
+namespace py = pybind11;
+
+// A frame and what was seen in it, for functions of Python.
+struct SeenFrame {
+  Frame frame;
+  std::variant<SeenLanding, SeenHunt> seen;
+  std::optional<Duration> latency;
+};
+
+// What the results of one session are drawn by.
+struct Views {
+  std::shared_ptr<PadView> pad;
+  std::shared_ptr<ObjectModel> model;
+
+  SeenFrame Seen(const Observation& observation) const {
+    SeenFrame frame{observation.frame, {}, observation.latency};
+    if (const auto* hunt = std::get_if<HuntObservation>(&observation.seen)) {
+      frame.seen = SeenHunt{*hunt, model};
+    } else {
+      frame.seen = SeenLanding{std::get<LandingObservation>(observation.seen), pad};
+    }
+    return frame;
+  }
+};
+
+// The settings of a session, as its constructor takes them.
+struct Choices {
+  py::object source;  // a path, or a Recording
+  py::object camera;
+  bool is_hunt = false;
+  py::object options;  // nothing, a dict or a path
+  std::vector<py::function> sinks;
+  py::object on_event;  // a function, or nothing
+  std::optional<double> altitude_m;
+  bool is_live = false;
+  std::shared_ptr<ObjectModel> model;
+  std::string output;
+  std::string record;
+  bool replace = false;
+  std::string autopilot;
+  bool guides = false;
+};
+
+// Calls functions of Python with the frames of a session over a recording.
+class CallingSink : public ObservationSink {
+ public:
+  CallingSink(const std::vector<py::function>* sinks, Views views)
+      : sinks_(sinks), views_(std::move(views)) {}
+
+  bool IsWanted() const override { return !sinks_->empty(); }
+  void Take(const Observation& observation) override {
+    if (sinks_->empty()) return;
+    const py::gil_scoped_acquire acquire;
+    const py::object seen = py::cast(views_.Seen(observation));
+    for (const py::function& sink : *sinks_) sink(seen);
+  }
+
+ private:
+  const std::vector<py::function>* sinks_;
+  Views views_;
+};
+
+// The first error of a function of Python. A flight goes on without that function.
+class FirstError {
+ public:
+  template <class Action>
+  void Catch(const Action& action) {
+    if (has_failed()) return;
+    try {
+      action();
+    } catch (const std::exception& error) {
+      fmt::print(stderr, "kestrel: a sink has failed, the session goes on without it: {}\n",
+                 error.what());
+      const std::lock_guard lock(mutex_);
+      error_ = std::current_exception();
+    }
+  }
+  void Rethrow() const {
+    if (error_) std::rethrow_exception(error_);
+  }
+
+ private:
+  bool has_failed() const {
+    const std::lock_guard lock(mutex_);
+    return error_ != nullptr;
+  }
+
+  mutable std::mutex mutex_;
+  std::exception_ptr error_;
+};
+
+// Calls them in a flight, which does not wait: with a thread of its own.
+class CallingWriter : public SinkWriter {
+ public:
+  CallingWriter(const Choices* choices, Views views, FirstError* error)
+      : sink_(&choices->sinks, std::move(views)), on_event_(&choices->on_event), error_(error) {}
+
+  void Write(const Observation& observation, std::size_t /*waiting*/) override {
+    error_->Catch([&] { sink_.Take(observation); });
+  }
+  void Write(const SessionEvent& event) override {
+    const py::gil_scoped_acquire acquire;
+    if (on_event_->is_none()) return;
+    error_->Catch([&] { (*on_event_)(event.text); });
+  }
+
+ private:
+  CallingSink sink_;
+  const py::object* on_event_;
+  FirstError* error_;
+};
+
+// Throws what Ctrl-C has raised. For the thread that has called the session.
+void CheckSignals() {
+  const py::gil_scoped_acquire acquire;
+  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
+
+// Returns the groups of 'options' that a session over a recording reads, too.
+ConfigurationFile VisionOptions(const py::object& options) {
+  py::object vision = options;
+  if (py::isinstance<py::dict>(options)) {
+    vision = options.attr("copy")();
+    vision.attr("pop")("fly", py::none());
+  }
+  const auto values =
+      OptionsOf<ConfigurationFile>(vision, {}, [](const auto& file) { return file; });
+  RequireValid(values.landing);
+  RequireValid(values.hunt);
+  return values;
+}
+
+// A source, the vision and the sinks, run once or again.
+class Session {
+ public:
+  explicit Session(Choices choices)
+      : choices_(std::move(choices)), options_(VisionOptions(choices_.options)) {
+    if (!choices_.model) choices_.model = std::make_shared<ObjectModel>(DefaultObjectModel());
+    if (choices_.is_live && PathOf(choices_.options)) {
+      throw InputError("options: expected a dict where live=True");
+    }
+    if (!choices_.is_live &&
+        (!choices_.autopilot.empty() || !choices_.record.empty() || choices_.guides)) {
+      throw InputError("autopilot, guide and record: expected live=True, too");
+    }
+  }
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  std::string Run() {
+    is_stopped_ = false;
+    return choices_.is_live ? RunLive() : RunRecorded();
+  }
+  void Stop() { is_stopped_ = true; }
+
+  std::string InWords() const {
+    return fmt::format("<Session over {}: {}{}>", std::string(py::repr(choices_.source)),
+                       choices_.is_hunt ? "hunt" : "landing", choices_.is_live ? ", live" : "");
+  }
+
+ private:
+  PixelFormat format() const { return choices_.is_hunt ? PixelFormat::kBgr : PixelFormat::kGray; }
+
+  OpenedSource Open() const {
+    if (py::isinstance<Recording>(choices_.source)) {
+      OpenedSource opened = choices_.source.cast<const Recording&>().open();
+      opened.source->set_format(format());
+      return opened;
+    }
+    return OpenRecording(ChoiceOf(choices_.source, choices_.camera, format()));
+  }
+
+  std::string RunRecorded() {
+    const OpenedSource opened = Open();
+    const py::gil_scoped_release release;
+    return choices_.is_hunt ? RunHunt(opened) : RunLanding(opened);
+  }
+
+  OutputOptions Output(const OpenedSource& opened) const {
+    return {choices_.output, choices_.replace, "", opened.source->rate_hz()};
+  }
+
+  std::string RunLanding(const OpenedSource& opened) {
+    LandingRun run(opened, options_.landing, choices_.altitude_m);
+    const TargetDetector& detector = run.pipeline().detector();
+    ObservationSinks sinks(SinkErrors::kThrow);
+    if (!choices_.output.empty()) {
+      const bool has_track = opened.has_world() && !options_.landing.still;
+      sinks.Add(std::make_unique<LandingFiles>(Output(opened), &run.pipeline(), has_track,
+                                               std::vector<double>()));
+    }
+    const auto view = std::make_shared<PadView>(PadView{detector.camera(), detector.shape()});
+    return RunToEnd(opened, {view, nullptr}, &run, &sinks);
+  }
+
+  std::string RunHunt(const OpenedSource& opened) {
+    HuntRun run(opened, *choices_.model, ColorGrid(choices_.model->colors), options_.hunt,
+                choices_.altitude_m);
+    ObservationSinks sinks(SinkErrors::kThrow);
+    if (!choices_.output.empty()) {
+      sinks.Add(std::make_unique<HuntFiles>(Output(opened), &run.pipeline(), opened.has_world(),
+                                            std::vector<double>()));
+    }
+    return RunToEnd(opened, {nullptr, choices_.model}, &run, &sinks);
+  }
+
+  std::string RunToEnd(const OpenedSource& opened, const Views& views, Vision* vision,
+                       ObservationSinks* sinks) {
+    sinks->Add(std::make_unique<CallingSink>(&choices_.sinks, views));
+    std::size_t frames = 0;
+    RunRecording(opened, vision, sinks, [&](std::size_t done) {
+      frames = done;
+      CheckSignals();
+      return !is_stopped_;
+    });
+    sinks->Finish();
+    std::string text = fmt::format("{} frames, {}\n{}", frames, vision->Found(), vision->Remarks());
+    if (const std::string warning = vision->Warning(); !warning.empty()) text += warning + "\n";
+    return text;
+  }
+
+  LiveSessionParts Parts(const OpenedLiveSource& opened, ObservationSink* sink) const {
+    LiveSessionParts parts;
+    parts.source = opened.source.get();
+    parts.calibration = opened.calibration;
+    parts.rate_hz = opened.rate_hz;
+    parts.has_poses = opened.has_poses;
+    parts.camera = opened.actuator;
+    if (choices_.is_hunt) parts.objects = *choices_.model;
+    parts.sink = sink;
+    parts.autopilot = choices_.autopilot;
+    parts.guides = choices_.guides;
+    parts.output = choices_.output;
+    parts.record = choices_.record;
+    parts.replace = choices_.replace;
+    return parts;
+  }
+
+  Views LiveViews(const OpenedLiveSource& opened) const {
+    const LandingPipelineOptions& landing = options_.landing;
+    return {std::make_shared<PadView>(PadView{CameraModel(opened.calibration.intrinsics),
+                                              ShapeOfTarget(landing.target, landing.detector)}),
+            choices_.model};
+  }
+
+  std::string RunLive() {
+    const LiveSourceChoice choice{ChoiceOf(choices_.source, choices_.camera, format())};
+    std::vector<std::string> settings;
+    if (!choices_.options.is_none()) settings = Settings(choices_.options);
+    const py::gil_scoped_release release;
+    const OpenedLiveSource opened = OpenLiveSource(choice, {});
+    FirstError sink_error;
+    ObservationSinks sinks;
+    sinks.Add(std::make_unique<AsynchronousSink>(
+        AsynchronousSinkOptions{.thread_name = "python"},
+        std::make_unique<CallingWriter>(&choices_, LiveViews(opened), &sink_error)));
+    LiveSession session(Parts(opened, &sinks), settings);
+    std::exception_ptr interruption;
+    const FlightEnd end = session.Run([&] {
+      try {
+        CheckSignals();
+      } catch (const py::error_already_set&) {
+        interruption = std::current_exception();
+      }
+      return is_stopped_ || interruption;
+    });
+    sinks.Finish();
+    if (interruption) std::rethrow_exception(interruption);
+    sink_error.Rethrow();
+    return kestrel::InWords(end) + "\n" + session.Summary();
+  }
+
+  Choices choices_;
+  ConfigurationFile options_;
+  std::atomic<bool> is_stopped_{false};
+};
+
+void BindSeenFrame(py::module_& module) {
+  ValueClass<SeenFrame>(module, "Observation", "A frame and what was seen in it.")
+      .Field("frame", &SeenFrame::frame, "Frame.")
+      .Field("seen", &SeenFrame::seen, "LandingObservation or HuntObservation.")
+      .Field("latency_s", &SeenFrame::latency,
+             "Time from the capture until it was processed, s; None for recordings.")
+      .Derived(
+          "csv_header",
+          [](const SeenFrame& self) {
+            return std::holds_alternative<SeenHunt>(self.seen) ? ObjectCsvHeader()
+                                                               : LandingCsvHeader();
+          },
+          "First line of object_detections.csv or landing_detections.csv.")
+      .Derived(
+          "csv_rows",
+          [](const SeenFrame& self) {
+            const auto* hunt = std::get_if<SeenHunt>(&self.seen);
+            return hunt ? ObjectCsvRows(self.frame.name, *hunt, *hunt->model)
+                        : LandingCsvRow(self.frame.name, std::get<SeenLanding>(self.seen));
+          },
+          "Its lines of that table.");
+}
+
+}  // namespace
+
+void BindSession(py::module_& module) {
+  BindSeenFrame(module);
+  py::class_<Session>(
+      module, "Session",
+      "A source, the vision, and functions that get the results: what `kestrel land`, `kestrel "
+      "hunt` and, live, `kestrel fly` run.")
+      .def(
+          py::init([](const py::object& source, const py::object& camera,
+                      std::vector<py::function> sinks, bool hunt, const py::object& options,
+                      std::optional<double> altitude_m, const std::shared_ptr<ObjectModel>& model,
+                      const std::string& output, bool replace, bool live,
+                      const std::string& autopilot, bool guide, const std::string& record,
+                      const py::object& on_event) {
+            return std::make_unique<Session>(
+                Choices{source, camera, hunt, options, std::move(sinks), on_event, altitude_m, live,
+                        model, output, record, replace, autopilot, guide});
+          }),
+          py::arg("source"), py::arg("camera") = py::none(), py::arg("sinks") = py::list(),
+          py::kw_only(), py::arg("hunt") = false, py::arg("options") = py::none(),
+          py::arg("altitude_m") = py::none(), py::arg("model") = py::none(), py::arg("output") = "",
+          py::arg("replace") = false, py::arg("live") = false, py::arg("autopilot") = "",
+          py::arg("guide") = false, py::arg("record") = "", py::arg("on_event") = py::none(),
+          "source: a path (recording, bag, video, images), a Recording or SimulatedFlight; with "
+          "live=True also '/dev/video0', 'rtsp://...' or a GStreamer pipeline.\ncamera: path of "
+          "the calibration; None: the source's own.\nsinks: functions that get each "
+          "Observation.\nhunt: looks for coloured objects ('model') instead of a pad.\noptions: a "
+          "dict by the names of `kestrel config`, as {'landing': {'target': {'kind': 'helipad'}}}, "
+          "or the path of such a file.\naltitude_m: height of the camera above what it looks for, "
+          "where there are no poses.\noutput: folder of the tables, as the commands write them; "
+          "replace: those that are there.\nlive: in real time, as it is flown; a sink that is slow "
+          "misses frames.\nautopilot, guide, record, on_event: of live sessions, as of `kestrel "
+          "fly`; on_event gets each message as a text.")
+      .def("run", &Session::Run,
+           "Runs to the end of the source, until stop() or Ctrl-C. Returns a summary in words. "
+           "Raises InputError when the source fails, and what a sink raises: at once over a "
+           "recording, after its end in a flight, which goes on without the sink.")
+      .def("stop", &Session::Stop, "Ends the run after the present frame. Any thread may call it.")
+      .def("__repr__", &Session::InWords);
+}
+
+}  // namespace kestrel::python

@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Sessions over recordings, beside the command where KESTREL_COMMAND names it."""
+import os
+import subprocess
+
+import numpy as np
+import pytest
+
+import kestrel
+
+COMMAND = os.environ.get("KESTREL_COMMAND")
+needs_command = pytest.mark.skipif(not COMMAND, reason="KESTREL_COMMAND names no command")
+
+
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("flights") / "landing"
+    assert kestrel.simulate("calm", frames=10, rate_hz=10).write(folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def hunt_recording(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("flights") / "hunt"
+    assert kestrel.simulate("sweep", hunt=True, frames=4).write(folder)
+    return folder
+
+
+def without_times(csv):
+    """The rows of a table without the columns that are times of this run."""
+    rows = [line.split(",") for line in csv.splitlines()]
+    kept = [i for i, name in enumerate(rows[0]) if not name.endswith("_ms")]
+    return [[row[i] for i in kept] for row in rows]
+
+
+@needs_command
+def test_the_table_is_that_of_the_command(recording, tmp_path):
+    subprocess.run([COMMAND, "land", recording, "--output", tmp_path], check=True,
+                   capture_output=True)
+    table = kestrel.ResultTable()
+    kestrel.Session(recording, sinks=[table]).run()
+    assert without_times(table.csv()) == without_times(
+        (tmp_path / "landing_detections.csv").read_text())
+
+
+@needs_command
+def test_the_hunt_is_that_of_the_command(hunt_recording, tmp_path):
+    subprocess.run([COMMAND, "hunt", hunt_recording, "--output", tmp_path / "command"],
+                   check=True, capture_output=True)
+    kestrel.Session(hunt_recording, hunt=True, output=str(tmp_path / "python")).run()
+    for name in ("object_detections.csv", "object_map.csv"):
+        command, python = ((tmp_path / each / name).read_text() for each in ("command", "python"))
+        assert without_times(command) == without_times(python)
+
+
+@needs_command
+def test_a_simulated_flight_is_that_of_the_command(recording, tmp_path):
+    subprocess.run([COMMAND, "simulate", "landing", "--scenario", "calm", "--set", "frames=10", "rate_hz=10",
+                    "--output", tmp_path / "flight"], check=True, capture_output=True)
+    for image in sorted((recording / "mav0/cam0/data").iterdir()):
+        assert image.read_bytes() == (tmp_path / "flight/mav0/cam0/data" / image.name).read_bytes()
+
+
+def test_sinks_get_each_frame(recording):
+    seen = []
+    summary = kestrel.Session(recording, sinks=[seen.append]).run()
+    assert "10 frames, pattern found in 10" in summary
+    assert len(seen) == 10 and all(observation.seen for observation in seen)
+    assert seen[0].frame.image.shape == (480, 752)
+    assert kestrel.draw(seen[0].frame.image, seen[0].seen).shape == (480, 752, 3)
+
+
+def test_a_simulated_flight_needs_no_disk():
+    seen = []
+    kestrel.Session(kestrel.simulate("calm", frames=8, rate_hz=10), sinks=[seen.append]).run()
+    assert [observation.seen.center_in_world is not None for observation in seen] == [True] * 8
+
+
+def test_a_table_is_a_dataframe(recording):
+    pandas = pytest.importorskip("pandas")
+    table = kestrel.ResultTable()
+    assert table.dataframe().empty
+    kestrel.Session(recording, sinks=[table]).run()
+    frame = table.dataframe()
+    assert isinstance(frame, pandas.DataFrame) and len(frame) == 10
+    assert frame["quality"].min() > 0.7
+    assert np.isfinite(frame["w_x_m"] if "w_x_m" in frame else frame.iloc[:, 3]).all()
+
+
+def test_an_error_of_a_sink_ends_the_run(recording):
+    frames = []
+
+    def sink(observation):
+        frames.append(observation.frame.name)
+        if len(frames) == 3:
+            raise ZeroDivisionError("of the sink")
+
+    with pytest.raises(ZeroDivisionError, match="of the sink"):
+        kestrel.Session(recording, sinks=[sink]).run()
+    assert len(frames) == 3
+
+
+def test_a_sink_stops_the_run(recording):
+    frames = []
+    session = kestrel.Session(recording, sinks=[lambda seen: (frames.append(seen), session.stop())])
+    assert "1 frames" in session.run()
+
+
+def test_a_live_session_plays_a_recording(recording):
+    seen, events = [], []
+    session = kestrel.Session(recording, sinks=[seen.append], live=True, on_event=events.append)
+    assert "source ended" in session.run() or seen
+    assert len(seen) >= 5 and seen[0].latency_s > 0
+    assert all(isinstance(event, str) for event in events)
+
+
+def test_a_flight_goes_on_without_a_sink_that_fails(recording, capfd):
+    with pytest.raises(ZeroDivisionError):
+        kestrel.Session(recording, sinks=[lambda seen: 1 / 0], live=True).run()
+    assert "goes on without it" in capfd.readouterr().err
+
+
+def test_the_results_are_evaluated(recording, tmp_path):
+    kestrel.Session(recording, output=str(tmp_path)).run()
+    report = kestrel.evaluate(recording, tmp_path)
+    assert report.tables and report.tables[0].columns
+    assert report.to_markdown().startswith("#")
+    with pytest.raises(kestrel.InputError, match="replace"):
+        kestrel.Session(recording, output=str(tmp_path)).run()
+
+
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        ({"source": "nowhere"}, "nowhere"),
+        ({"source": "flight", "options": {"landin": {}}}, "did you mean 'landing'"),
+        ({"source": "flight", "autopilot": "udpin://0.0.0.0:14550"}, "expected live=True"),
+        ({"source": "flight", "options": "nowhere.yaml"}, "nowhere.yaml"),
+    ],
+)
+def test_a_wrong_argument_is_named(arguments, message):
+    with pytest.raises(kestrel.InputError, match=message):
+        kestrel.Session(**arguments).run()
+    with pytest.raises(TypeError, match="source: got 3"):
+        kestrel.Session(3).run()
