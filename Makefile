@@ -19,7 +19,7 @@ export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
 export CCACHE_BASEDIR ?= $(CURDIR)
 export CCACHE_SLOPPINESS ?= locale
 
-.PHONY: demo console test dds ros interop browser bench accuracy figures check-figures format check asan tsan fuzz install command tests build configure configure-tests \
+.PHONY: demo console test dds ros python wheel interop browser bench accuracy figures check-figures format check asan tsan fuzz install command tests build configure configure-tests \
   package repository package-test
 
 demo: command  ## a simulated landing, or with DATA=<folder> [CAMERA=<file>] your own images
@@ -45,6 +45,16 @@ ros:  ## the node of ROS 1 and its tests, and bags of ROS 1 against its rosbag
 	cmake --preset release
 	cmake --build --preset release --target kestrel kestrel_node kestrel_ros_test kestrel_ros_node_test
 	ctest --preset release -R "^ros(_node)?/" --no-tests=error --verbose
+
+python:  ## `import kestrel` and its tests
+	scripts/install-deps --test --python
+	cmake --preset release -DKESTREL_BUILD_PYTHON=ON
+	cmake --build --preset release --target kestrel _kestrel
+	ctest --preset release -R ^python/ --no-tests=error
+
+wheel:  ## a wheel of `import kestrel` with the libraries that it needs, to out/wheel
+	scripts/install-deps --python
+	scripts/wheel out/wheel
 
 interop:  ## MAVLink, MCAP, live flights, bags and ROS 2 against implementations of others, which npm installs
 	scripts/install-deps --test --interop

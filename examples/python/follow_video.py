@@ -17,7 +17,7 @@ for event in recording.events():
     soon = pipeline.predict(event.time_ns + 500_000_000)
     if soon:
         print(event.name, "in half a second at", soon.position.round(2), "m in the world")
-    elif seen:
+    elif seen.detection:
         print(event.name, seen.detection.center_in_camera.round(2), "m in the camera frame")
     else:
         print(event.name, seen.report.reason)

@@ -91,7 +91,7 @@ void BindBase(py::module_& module) {
           "shape", [](const Detector& self) { return self.view()->shape; }, "The TargetShape.")
       .def("__repr__", [](const py::object& self) {
         const auto& view = self.cast<const Detector&>().view();
-        return fmt::format("<{}: a pad of {} m in images of {} x {} px>",
+        return fmt::format("<{}: a pad of {:.3g} m in images of {} x {} px>",
                            py::str(py::type::of(self).attr("__name__")).cast<std::string>(),
                            view->shape.diameter_m, view->camera.width_px(),
                            view->camera.height_px());
@@ -105,7 +105,7 @@ void BindLandingPattern(py::module_& module) {
       .def(py::init([](const CameraArgument& camera, const py::object& options,
                        const py::kwargs& keywords) {
              return std::make_shared<LandingPatternFinder>(std::make_shared<LandingPatternDetector>(
-                 camera,
+                 *camera.model,
                  OptionsOf<LandingPatternDetectorOptions>(
                      options, keywords, [](const auto& file) { return file.landing.detector; })));
            }),

@@ -197,8 +197,7 @@ void BindLandingPipeline(py::module_& module) {
           py::arg("time_ns"),
           "Returns the TargetEstimate of the track at a time, or None where it is not known.")
       .def("__repr__", [](const LandingVision& self) {
-        const LandingPipelineOptions& options = self.pipeline().options();
-        return fmt::format("<LandingPipeline: {} of {} m>", options.target.kind,
+        return fmt::format("<LandingPipeline: a pad of {:.3g} m>",
                            self.pipeline().detector().shape().diameter_m);
       });
 }

@@ -94,9 +94,12 @@ void BindTransform(py::module_& module) {
                   "Returns the transform of a 4 x 4 matrix. Raises InputError where it is not "
                   "rigid.")
       .def("inverse", &RigidTransform::Inverse, "Returns a_from_b.")
-      .def("__matmul__",
-           [](const RigidTransform& self, const RigidTransform& other) { return self * other; })
-      .def("__matmul__", &Apply, "Composes transforms, or transforms points: N x 3 or 3, m.");
+      .def(
+          "__matmul__",
+          [](const RigidTransform& self, const RigidTransform& other) { return self * other; },
+          py::arg("other"))
+      .def("__matmul__", &Apply, py::arg("points"),
+           "Composes transforms, or transforms points: N x 3 or 3, m.");
 }
 
 void BindSample(py::module_& module) {

@@ -84,17 +84,20 @@ class CallingSink : public ObservationSink {
   CallingSink(const std::vector<py::function>* sinks, Views views)
       : sinks_(sinks), views_(std::move(views)) {}
 
-  bool IsWanted() const override { return !sinks_->empty(); }
   void Take(const Observation& observation) override {
+    ++frames_;
     if (sinks_->empty()) return;
     const py::gil_scoped_acquire acquire;
     const py::object seen = py::cast(views_.Seen(observation));
     for (const py::function& sink : *sinks_) sink(seen);
   }
 
+  std::size_t frames() const { return frames_; }
+
  private:
   const std::vector<py::function>* sinks_;
   Views views_;
+  std::size_t frames_ = 0;
 };
 
 // The first error of a function of Python. A flight goes on without that function.
@@ -243,15 +246,14 @@ class Session {
 
   std::string RunToEnd(const OpenedSource& opened, const Views& views, Vision* vision,
                        ObservationSinks* sinks) {
-    sinks->Add(std::make_unique<CallingSink>(&choices_.sinks, views));
-    std::size_t frames = 0;
-    RunRecording(opened, vision, sinks, [&](std::size_t done) {
-      frames = done;
+    const auto* const called = sinks->Add(std::make_unique<CallingSink>(&choices_.sinks, views));
+    RunRecording(opened, vision, sinks, [&](std::size_t /*done*/) {
       CheckSignals();
       return !is_stopped_;
     });
     sinks->Finish();
-    std::string text = fmt::format("{} frames, {}\n{}", frames, vision->Found(), vision->Remarks());
+    std::string text =
+        fmt::format("{} frames, {}\n{}", called->frames(), vision->Found(), vision->Remarks());
     if (const std::string warning = vision->Warning(); !warning.empty()) text += warning + "\n";
     return text;
   }

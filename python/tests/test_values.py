@@ -81,10 +81,9 @@ def test_fields_are_checked():
 
 def test_texts_say_what_one_wants_to_see(results, calibration):
     text = repr(kestrel.LandingPatternDetector(calibration))
-    assert text == "<LandingPatternDetector: a pad of 1 m in images of 752 x 480 px>".replace(
-        "1 m", "1.0 m") or "a pad of 1" in text
+    assert text == "<LandingPatternDetector: a pad of 1 m in images of 752 x 480 px>"
     report = repr(results[2])
-    assert "found at (" in report and " m away, quality 0.9" in report
+    assert "found at (" in report and " m away, quality " in report
     assert "in the world" in repr(results[3])
     for value in results:
         assert len(repr(value)) < 400 and "0x" not in repr(value)
