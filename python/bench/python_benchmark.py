@@ -6,6 +6,7 @@ threads beside one.
 
 PROGRAM: build/release/python/detect_time, which times the same call in C++.
 """
+import multiprocessing
 import statistics
 import subprocess
 import sys
@@ -34,13 +35,12 @@ def microseconds(call, count=COUNT):
     return statistics.median(rounds)
 
 
-def tag_image(calibration):
-    """A tag of the family 36h11 in the middle of an image, as Kestrel prints it."""
+def tag_image():
+    """A tag of the family 36h11 on a white wall, in the middle of an image."""
     import cv2
 
     dictionary = cv2.aruco.Dictionary_get(cv2.aruco.DICT_APRILTAG_36h11)
-    image = np.full((480, 752), 200, np.uint8)
-    image[190:290, 326:426] = 255
+    image = np.full((480, 752), 230, np.uint8)
     image[200:280, 336:416] = cv2.aruco.drawMarker(dictionary, 3, 80)
     return image
 
@@ -52,7 +52,7 @@ def compare_tags():
 
     camera = kestrel.CameraIntrinsics(width_px=752, height_px=480, fx_px=400, fy_px=400, cx_px=376,
                                       cy_px=240)
-    image = tag_image(camera)
+    image = tag_image()
     ours = kestrel.TagBoardDetector(camera, [{"family": "tag36h11", "id": 3, "size_m": 0.5}])
     theirs = apriltag.apriltag("tag36h11")
     dictionary = cv2.aruco.Dictionary_get(cv2.aruco.DICT_APRILTAG_36h11)
@@ -64,41 +64,50 @@ def compare_tags():
           f"{microseconds(lambda: cv2.aruco.detectMarkers(image, dictionary), 50):.0f} us")
 
 
-def compare_with_cpp(program, detector, frame, calibration):
+def compare_with_cpp(program, name, camera, frame):
     """The same call in C++, in turns, so that both have the same machine."""
+    detector = kestrel.LandingPatternDetector(camera)
     with tempfile.TemporaryDirectory() as folder:
         image = Path(folder) / "image.pgm"
-        image.write_bytes(b"P5\n752 480\n255\n" + frame.tobytes())
-        camera = Path(folder) / "camera.yaml"
-        camera.write_text(kestrel.calibration_text(calibration))
+        image.write_bytes(f"P5\n{frame.shape[1]} {frame.shape[0]}\n255\n".encode() + frame.tobytes())
+        calibration = Path(folder) / "camera.yaml"
+        calibration.write_text(kestrel.calibration_text(camera))
         python, cpp = [], []
         for _ in range(ROUNDS):
             python.append(microseconds(lambda: detector.detect(frame), COUNT // 4))
-            cpp.append(float(subprocess.run([program, camera, image], check=True,
+            cpp.append(float(subprocess.run([program, calibration, image], check=True,
                                             capture_output=True, text=True).stdout))
     ours, theirs = statistics.median(python), statistics.median(cpp)
-    print(f"landing pattern: Python {ours:.1f} us, C++ {theirs:.1f} us, {ours - theirs:+.1f} us")
+    print(f"{name}: Python {ours:.1f} us, C++ {theirs:.1f} us, {ours - theirs:+.1f} us")
+
+
+def seconds(make, work):
+    """Time that two threads or two processes take for the same work."""
+    workers = [make(target=work) for _ in range(2)]
+    begin = time.perf_counter()
+    for worker in workers:
+        worker.start()
+    for worker in workers:
+        worker.join()
+    return time.perf_counter() - begin
 
 
 def compare_threads(detector, frame):
-    """Frames per second of two threads over those of one."""
+    """Frames per second of two threads over those of one; of two processes, what the machine has."""
 
     def work():
         for _ in range(COUNT * 5):
             detector.detect(frame)
 
-    def seconds(count):
-        threads = [threading.Thread(target=work) for _ in range(count)]
+    threads, processes = [], []
+    for _ in range(5):
         begin = time.perf_counter()
-        for thread in threads:
-            thread.start()
-        for thread in threads:
-            thread.join()
-        return time.perf_counter() - begin
-
-    work()
-    ratio = statistics.median(2 * seconds(1) / seconds(2) for _ in range(5))
-    print(f"two threads: {ratio:.2f} times the frames of one")
+        work()
+        one = time.perf_counter() - begin
+        threads.append(2 * one / seconds(threading.Thread, work))
+        processes.append(2 * one / seconds(multiprocessing.Process, work))
+    print(f"frames of two threads {statistics.median(threads):.2f} times those of one, of two "
+          f"processes {statistics.median(processes):.2f} times")
 
 
 def main():
@@ -106,14 +115,11 @@ def main():
     frame = np.ascontiguousarray(kestrel.simulate("calm")[0].image)
     detector = kestrel.LandingPatternDetector(calibration)
     assert detector.detect(frame)
-    blank = np.zeros((48, 64), np.uint8)
-    small = kestrel.CameraIntrinsics(width_px=64, height_px=48, fx_px=40, fy_px=40, cx_px=32,
-                                     cy_px=24)
-    nothing = kestrel.LandingPatternDetector(small)
-    print(f"a call on 64 x 48 px, in which nothing is: {microseconds(lambda: nothing.detect(blank)):.1f}"
-          " us with what the detector does")
     if len(sys.argv) > 1:
-        compare_with_cpp(sys.argv[1], detector, frame, calibration)
+        compare_with_cpp(sys.argv[1], "landing pattern in 752 x 480 px", calibration, frame)
+        small = kestrel.CameraIntrinsics(width_px=64, height_px=48, fx_px=40, fy_px=40, cx_px=32,
+                                         cy_px=24)
+        compare_with_cpp(sys.argv[1], "nothing in 64 x 48 px", small, np.zeros((48, 64), np.uint8))
     compare_threads(detector, frame)
     compare_tags()
 

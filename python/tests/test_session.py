@@ -55,7 +55,7 @@ def test_the_hunt_is_that_of_the_command(hunt_recording, tmp_path):
 
 @needs_command
 def test_a_simulated_flight_is_that_of_the_command(recording, tmp_path):
-    subprocess.run([COMMAND, "simulate", "landing", "--scenario", "calm", "--set", "frames=10", "rate_hz=10",
+    subprocess.run([COMMAND, "simulate", "landing", "--scenario", "calm", "--set", "frames=10", "--set", "rate_hz=10",
                     "--output", tmp_path / "flight"], check=True, capture_output=True)
     for image in sorted((recording / "mav0/cam0/data").iterdir()):
         assert image.read_bytes() == (tmp_path / "flight/mav0/cam0/data" / image.name).read_bytes()
