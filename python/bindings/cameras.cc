@@ -187,8 +187,8 @@ void BindCameras(py::module_& module) {
           .Field("body_from_camera", &CameraCalibration::body_from_camera,
                  "The mount, a RigidTransform from the camera frame to the body's (FLU: x forward, "
                  "y left, z up); None: not known.")
-          .Field("clock_offset", &CameraCalibration::clock_offset,
-                 "t_nav = t_image + clock_offset, s; None: not known.")
+          .Field("clock_offset_s", &CameraCalibration::clock_offset,
+                 "t_nav = t_image + clock_offset_s, s; None: not known.")
           .Field("name", &CameraCalibration::name, "Name of the camera in its file.")
           .Repr([](const CameraCalibration& self) { return Described(self); });
   BindCalibration(calibration.py());

@@ -84,7 +84,7 @@ def test_a_table_is_a_dataframe(recording):
     frame = table.dataframe()
     assert isinstance(frame, pandas.DataFrame) and len(frame) == 10
     assert frame["quality"].min() > 0.7
-    assert np.isfinite(frame["w_x_m"] if "w_x_m" in frame else frame.iloc[:, 3]).all()
+    assert np.isfinite(frame["p_WP_W_x_m"]).all()
 
 
 def test_an_error_of_a_sink_ends_the_run(recording):
