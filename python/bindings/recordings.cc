@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -54,7 +55,7 @@ namespace {
 
 namespace py = pybind11;
 
-// Frames of a source, one after the other.
+// Frames of a source, one after the other. Threads that share them wait for each other.
 class Frames {
  public:
   explicit Frames(std::unique_ptr<FrameSource> source) : source_(std::move(source)) {}
@@ -63,16 +64,18 @@ class Frames {
     Frame frame;
     {
       const py::gil_scoped_release release;
+      const std::lock_guard lock(mutex_);
       if (source_->Next(&frame)) return frame;
     }
     throw py::stop_iteration();
   }
 
  private:
+  std::mutex mutex_;
   std::unique_ptr<FrameSource> source_;
 };
 
-// Frames and poses in order of time.
+// Frames and poses in order of time, in the same way.
 class Events {
  public:
   explicit Events(OpenedSource opened)
@@ -84,6 +87,7 @@ class Events {
     Event event;
     {
       const py::gil_scoped_release release;
+      const std::lock_guard lock(mutex_);
       event = events_.Next();
     }
     if (auto* frame = std::get_if<Frame>(&event)) return std::move(*frame);
@@ -92,6 +96,7 @@ class Events {
   }
 
  private:
+  std::mutex mutex_;
   OpenedSource opened_;
   RecordingEvents events_;
 };

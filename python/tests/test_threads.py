@@ -43,6 +43,18 @@ def test_threads_wait_for_each_other_in_a_pipeline(flight):
     assert pipeline.process(frame.image, frame.time_ns)
 
 
+def test_threads_share_the_frames_of_a_source():
+    frames = iter(kestrel.simulate("calm", frames=10, rate_hz=10))
+    taken = []
+    threads = [threading.Thread(target=lambda: taken.extend(frame.time_ns for frame in frames))
+               for _ in range(3)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(taken) == len(set(taken)) == 10
+
+
 def resident_kb():
     with open("/proc/self/status", encoding="ascii") as status:
         return next(int(line.split()[1]) for line in status if line.startswith("VmRSS"))
