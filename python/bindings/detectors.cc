@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The detectors of pads.
+#include <exception>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -59,6 +61,47 @@ struct HelipadFinder : Detector {
 };
 struct RingWithTagsFinder : Detector {
   using Detector::Detector;
+};
+
+struct OwnPadFinder : Detector {
+  using Detector::Detector;
+};
+
+// A detector that is a function of Python. What it raises is the reason of the report: a pipeline
+// goes on.
+class CalledDetector : public TargetDetector {
+ public:
+  CalledDetector(CameraModel camera, TargetShape shape, py::function find)
+      : camera_(std::move(camera)), shape_(std::move(shape)), find_(std::move(find)) {}
+
+  LandingReport Detect(const cv::Mat& image, const LandingHint& hint,
+                       TargetWorkspace& /*workspace*/) const override {
+    const py::gil_scoped_acquire acquire;
+    LandingReport report;
+    try {
+      // The function may keep the image: the pixels are its own.
+      report.detection =
+          find_(ArrayOf(image.clone()), hint).cast<std::optional<LandingDetection>>();
+      report.reason = "the function has found nothing";
+    } catch (const std::exception& error) {
+      report.reason = Interned(error.what());
+    }
+    if (report.detection) {
+      report.reached = LandingStage::kFound;
+      report.reason = {};
+    }
+    return report;
+  }
+  std::unique_ptr<TargetWorkspace> MakeWorkspace() const override {
+    return std::make_unique<TargetWorkspace>();
+  }
+  const CameraModel& camera() const override { return camera_; }
+  const TargetShape& shape() const override { return shape_; }
+
+ private:
+  CameraModel camera_;
+  TargetShape shape_;
+  py::function find_;
 };
 
 template <class Finder>
@@ -160,6 +203,21 @@ void BindHelipad(py::module_& module) {
            "options: landing.target.helipad of `kestrel config`, as of LandingPatternDetector.");
 }
 
+void BindOwnPad(py::module_& module) {
+  FinderClass<OwnPadFinder>(module, "OwnPadDetector",
+                            "A pad of your own, found by a function, as a pipeline takes it.")
+      .def(py::init([](const CameraArgument& camera, const TargetShape& shape,
+                       const py::function& find) {
+             return std::make_shared<OwnPadFinder>(
+                 std::make_shared<CalledDetector>(*camera.model, shape, find));
+           }),
+           py::arg("camera"), py::arg("shape"), py::arg("find"),
+           "shape: TargetShape, for pictures and the track.\nfind: function of an image (uint8, "
+           "rows "
+           "x columns) and a LandingHint that returns a LandingDetection, or None. What it raises "
+           "is the reason in the report.");
+}
+
 void BindMakeDetector(py::module_& module) {
   module.def(
       "make_detector",
@@ -183,6 +241,7 @@ void BindDetectors(py::module_& module) {
   BindLandingPattern(module);
   BindTags(module);
   BindHelipad(module);
+  BindOwnPad(module);
   BindMakeDetector(module);
 }
 

@@ -295,6 +295,9 @@ class RingWithTagsDetector(TargetDetector):
 class HelipadDetector(TargetDetector):
     def __init__(self, camera: _Camera, options: _Options = ..., **kwargs: Any) -> None: ...
 
+class OwnPadDetector(TargetDetector):
+    def __init__(self, camera: _Camera, shape: TargetShape, find: Callable[[NDArray[np.uint8], LandingHint], LandingDetection | None]) -> None: ...
+
 class ObjectModel:
     @property
     def class_names(self) -> list[str]: ...

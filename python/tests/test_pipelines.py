@@ -39,6 +39,33 @@ def test_a_detector_of_ones_own_choice(flight):
     assert not pipeline.process(flight[0].image, flight[0].time_ns)
 
 
+def test_a_pad_of_ones_own(calibration):
+    """A white dot, 4 m below."""
+
+    def find(image, hint):
+        rows, columns = np.nonzero(image > 200)
+        if len(rows) == 0:
+            return None
+        ray = camera.unproject([columns.mean(), rows.mean()])
+        pose = kestrel.RigidTransform(translation=4 * ray / ray[2], quaternion=[0, 1, 0, 0])
+        return kestrel.LandingDetection(
+            center_px=[columns.mean(), rows.mean()], camera_from_pattern=pose, method="other",
+            covariance=1e-4 * np.eye(6), quality=0.9, heading_symmetry=0)
+
+    camera = kestrel.CameraModel(calibration)
+    shape = kestrel.TargetShape(diameter_m=0.5, board_size_m=0.5)
+    detector = kestrel.OwnPadDetector(calibration, shape, find)
+    pipeline = kestrel.LandingPipeline(calibration, detector=detector)
+    image = np.zeros((480, 752), np.uint8)
+    assert pipeline.process(image, 0).report.reason == "the function has found nothing"
+    image[300:310, 400:410] = 255
+    found = pipeline.process(image, 1).detection
+    assert found.method == "other"
+    np.testing.assert_allclose(found.center_px, [404.5, 304.5])
+    broken = kestrel.OwnPadDetector(calibration, shape, lambda image, hint: 1 / 0)
+    assert "ZeroDivisionError" in broken.detect(image).reason
+
+
 def test_a_hunt_has_a_map(hunt_flight):
     pipeline = kestrel.HuntPipeline(hunt_flight.calibration, map={"confirm_count": 1})
     seen = fly(pipeline, hunt_flight)
