@@ -209,7 +209,7 @@ TEST_F(PatternPrintTest, TilesMeet) {
     ASSERT_EQ(std::system(command.c_str()), 0);
     std::vector<std::string> sheets;
     cv::glob(folder_ / (std::string(paper) + "-*.pgm"), sheets);
-    ASSERT_LT(std::ssize(sheets), tiling.count()) << "sheets without print are left out";
+    ASSERT_LE(std::ssize(sheets), tiling.count());
     const cv::Mat glued = Assemble(sheets, scale, tiling, PrintOf(pattern)) < 128;
     ASSERT_EQ(glued.size(), black.size());
     EXPECT_EQ(cv::countNonZero(thinner & ~glued), 0) << paper << ": white where black should be";
