@@ -256,7 +256,7 @@ TEST_F(KestrelCommandTest, WithoutACalibrationThePlaceInTheImageIsTold) {
   const std::string image = WriteRecording() + "/mav0/cam0/data/100000000.png";
   const Outcome outcome = Succeed("land " + image);
   EXPECT_THAT(outcome.err, HasSubstr("kestrel calibrate lens"));
-  EXPECT_THAT(outcome.out, HasSubstr("100000000.png,0,1,359.5"));
+  EXPECT_THAT(outcome.out, HasSubstr("100000000.png,0,1,359.49"));
   EXPECT_THAT(outcome.out, HasSubstr(",,,,,,,,,,,,")) << "no positions";
   // The lens of the image sees 77.3 degrees, and the pattern is 3 m before it.
   const Outcome guessed = Succeed("land " + image + " --fov 77.3");
@@ -288,7 +288,7 @@ TEST_F(KestrelCommandTest, ABrokenImageOfAFolderIsARow) {
 }
 
 TEST_F(KestrelCommandTest, HuntSaysThatItNeedsColour) {
-  ExpectInputError("hunt " + WriteRecording() + "/mav0/cam0/data/100000000.png",
+  ExpectInputError("hunt " + WriteRecording() + " --output " + (folder_ / "o"),
                    "is a gray image, expected images in colour");
 }
 

@@ -2,10 +2,7 @@
 #include "kestrel/io/bags/sqlite_bag.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <sqlite3.h>
 #include <string_view>
 #include <zstd.h>
@@ -41,19 +38,6 @@ std::string UriOf(const std::string& path) {
   return uri;
 }
 
-// Returns whether the file is shorter than its header says: bytes 16 and 17 are the size of a page,
-// 28 to 31 the number of pages, high bytes first (https://sqlite.org/fileformat.html, 1.3).
-bool IsCutOff(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::array<char, 32> header{};
-  if (!file.read(header.data(), header.size())) return false;
-  const auto byte = [&](int i) { return std::uintmax_t(static_cast<unsigned char>(header[i])); };
-  const std::uintmax_t page = byte(16) << 8 | byte(17);
-  const std::uintmax_t pages = byte(28) << 24 | byte(29) << 16 | byte(30) << 8 | byte(31);
-  std::error_code ignored;
-  return std::filesystem::file_size(path, ignored) < pages * (page == 1 ? 65536 : page);
-}
-
 }  // namespace
 
 void CloseSqlite::operator()(sqlite3* database) const { sqlite3_close(database); }
@@ -71,15 +55,7 @@ SqliteBag::SqliteBag(const std::string& path, bool has_compressed_messages)
       sqlite3_open_v2(uri.c_str(), &database, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
   database_.reset(database);
   if (status != SQLITE_OK) Fail();
-  is_cut_ = !has_journal && IsCutOff(path);
-  if (is_cut_) AllowCut();
   ReadTopics();
-}
-
-// A library that checks the length would refuse the file; with this switch it reads what is there.
-void SqliteBag::AllowCut() {
-  sqlite3_exec(database_.get(), "PRAGMA writable_schema=ON", nullptr, nullptr, nullptr);
-  remark_ = path_ + ": was not closed, or is cut off: it is read up to there";
 }
 
 SqliteStatement SqliteBag::Prepare(const std::string& sql) const {
@@ -94,11 +70,6 @@ bool SqliteBag::Step(sqlite3_stmt* statement) const {
   const int status = sqlite3_step(statement);
   if (status != SQLITE_ROW && status != SQLITE_DONE) Fail();
   return status == SQLITE_ROW;
-}
-
-bool SqliteBag::StepMessage() {
-  if (!is_cut_) return Step(messages_.get());
-  return sqlite3_step(messages_.get()) == SQLITE_ROW;
 }
 
 void SqliteBag::Fail() const {
@@ -133,7 +104,7 @@ void SqliteBag::Select(const std::vector<std::size_t>& topics) {
   for (const std::size_t topic : topics) ids.push_back(ids_.at(topic));
   messages_ = Prepare(fmt::format(
       "SELECT topic_id, timestamp, data FROM messages WHERE topic_id IN ({}) ORDER BY {}",
-      fmt::join(ids, ","), HasTimeIndex() && !is_cut_ ? "timestamp" : "id"));
+      fmt::join(ids, ","), HasTimeIndex() ? "timestamp" : "id"));
 }
 
 std::size_t SqliteBag::TopicOfId(std::int64_t id) const {
@@ -141,7 +112,7 @@ std::size_t SqliteBag::TopicOfId(std::int64_t id) const {
 }
 
 bool SqliteBag::Next(BagMessage* message) {
-  if (!messages_ || !StepMessage()) {
+  if (!messages_ || !Step(messages_.get())) {
     messages_.reset();
     return false;
   }

@@ -30,17 +30,13 @@ class SqliteBag : public BagReader {
  private:
   SqliteStatement Prepare(const std::string& sql) const;
   bool Step(sqlite3_stmt* statement) const;  // true when there is a row
-  // The same for the messages: those of a bag that was cut end where it was.
-  bool StepMessage();
   [[noreturn]] void Fail() const;
-  void AllowCut();
   bool HasTimeIndex() const;
   void ReadTopics();
   std::size_t TopicOfId(std::int64_t id) const;
 
   std::string path_;
   bool has_compressed_messages_;
-  bool is_cut_ = false;  // the file is shorter than it says
   SqliteDatabase database_;
   std::vector<BagTopic> topics_;
   std::vector<std::int64_t> ids_;  // the database's ids of the topics
