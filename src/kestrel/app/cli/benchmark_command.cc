@@ -37,12 +37,13 @@ std::string MachineInWords() {
 }
 
 void RunBenchmark() {
-  const std::vector<StepTimes> steps = MeasureSteps(
-      [](const std::string& what) { fmt::print(stderr, "kestrel: {} ...\n", what); });
+  const std::vector<StepTimes> steps =
+      MeasureSteps([](const std::string& what) { fmt::print(stderr, "kestrel: {} ...\n", what); });
   std::string line = fmt::format("kestrel {} | {}", kVersion, MachineInWords());
-  fmt::print("{}\n\n| step | median ms | p99 ms | images/s on a core | of a core at 30 images/s |\n"
-             "|---|---|---|---|---|\n",
-             MachineInWords());
+  fmt::print(
+      "{}\n\n| step | median ms | p99 ms | images/s on a core | of a core at 30 images/s |\n"
+      "|---|---|---|---|---|\n",
+      MachineInWords());
   for (const StepTimes& step : steps) {
     if (step.ms.empty()) {
       fmt::print("| {} | - | - | - | - |\n", step.step);

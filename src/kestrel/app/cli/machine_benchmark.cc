@@ -45,12 +45,12 @@ Images Rendered(const RecordingPlan& plan) {
 }
 
 Images RenderedLanding(const std::string& target) {
-  return Rendered(PlanLandingScenario(
-      "figure8",
-      {fmt::format("frames={}", kImages), "rate_hz=10", "ground.map_px=256",
-       "shutter.rays_per_pixel=4", "flight.start_altitude_m=9", "flight.end_altitude_m=1",
-       "target.kind=" + target},
-      PaperCalibration(), /*seed=*/7));
+  return Rendered(
+      PlanLandingScenario("figure8",
+                          {fmt::format("frames={}", kImages), "rate_hz=10", "ground.map_px=256",
+                           "shutter.rays_per_pixel=4", "flight.start_altitude_m=9",
+                           "flight.end_altitude_m=1", "target.kind=" + target},
+                          PaperCalibration(), /*seed=*/7));
 }
 
 Images RenderedHunt() {
@@ -110,9 +110,8 @@ StepTimes Objects(const Images& images) {
   const ObjectDetector detector(CameraModel(HuntCalibration().intrinsics), DefaultObjectModel());
   ObjectWorkspace workspace;
   ObjectReport report;
-  return Measure("coloured objects, whole image, 1280 x 720", images, [&](const cv::Mat& image) {
-    detector.Detect(image, {}, workspace, &report);
-  });
+  return Measure("coloured objects, whole image, 1280 x 720", images,
+                 [&](const cv::Mat& image) { detector.Detect(image, {}, workspace, &report); });
 }
 
 StepTimes RaysOfAllPixels(const CameraModel& camera, const Images& images) {
