@@ -17,7 +17,10 @@ constexpr double kTolerance = 0.01;  // of curves, points
 cairo_surface_t* MakeSurface(Canvas::Format format, const std::string& file,
                              const Eigen::Vector2d& size) {
   if (format == Canvas::Format::kSvg) {
-    return cairo_svg_surface_create(file.c_str(), size.x(), size.y());
+    cairo_surface_t* const drawing = cairo_svg_surface_create(file.c_str(), size.x(), size.y());
+    // Some versions of Cairo write a size without a unit, which is read as pixels.
+    cairo_svg_surface_set_document_unit(drawing, CAIRO_SVG_UNIT_PT);
+    return drawing;
   }
   cairo_surface_t* const surface = cairo_pdf_surface_create(file.c_str(), size.x(), size.y());
   // The default is the time of writing.
