@@ -45,15 +45,21 @@ constexpr char kPoses[] =
 
 class KestrelCommandTest : public CommandTest {
  protected:
-  // Writes two frames with poses. The pattern is 1 m in diameter, 3 m below the camera.
-  std::string WriteRecording() const {
+  // Writes two frames with poses. The pattern is 1 m in diameter, 3 m below the camera. 'channels':
+  // 1 or 3.
+  std::string WriteRecording(int channels = 1) const {
     const RigidTransform camera_from_pattern = {
         Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX())),
         {0.3, 0.2, 3}};
     const CameraModel camera({640, 480, 400, 400, 319.5, 239.5, DistortionModel::kNone, {}});
     const cv::Mat image = DrawPattern(camera, LandingPattern(), camera_from_pattern);
-    WriteTestImage(folder_, "flight/mav0/cam0/data/100000000.png", image);
-    WriteTestImage(folder_, "flight/mav0/cam0/data/200000000.png", cv::Mat(480, 640, CV_8UC1, 90));
+    const auto write = [&](const std::string& name, const cv::Mat& gray) {
+      cv::Mat shown;
+      cv::merge(std::vector<cv::Mat>(static_cast<std::size_t>(channels), gray), shown);
+      WriteTestImage(folder_, "flight/mav0/cam0/data/" + name, shown);
+    };
+    write("100000000.png", image);
+    write("200000000.png", cv::Mat(480, 640, CV_8UC1, 90));
     folder_.Write("flight/mav0/cam0/data.csv",
                   "#timestamp [ns],filename\n100000000,100000000.png\n200000000,200000000.png\n");
     folder_.Write("flight/mav0/cam0/sensor.yaml", kSensor);
@@ -177,9 +183,9 @@ TEST_F(KestrelCommandTest, ReplacesResultsOnlyWithForce) {
 }
 
 TEST_F(KestrelCommandTest, LandAndHuntWriteMcap) {
-  const std::string recording = WriteRecording();
   const std::string mcap = folder_ / "flight.mcap";
   for (const std::string command : {"land", "hunt"}) {
+    const std::string recording = WriteRecording(command == "land" ? 1 : 3);
     Succeed(command + " --force " + recording + " --mcap " + mcap);
     const auto messages = ReadMessages(mcap);
     EXPECT_EQ(messages.at("/camera/image").size(), 2u);
