@@ -56,6 +56,7 @@ class KestrelCommandTest : public CommandTest {
     const auto write = [&](const std::string& name, const cv::Mat& gray) {
       cv::Mat shown;
       cv::merge(std::vector<cv::Mat>(static_cast<std::size_t>(channels), gray), shown);
+      if (channels == 3) shown.row(0).setTo(cv::Scalar(0, 0, 200));  // else it is as good as gray
       WriteTestImage(folder_, "flight/mav0/cam0/data/" + name, shown);
     };
     write("100000000.png", image);
