@@ -124,7 +124,7 @@ class Demo {
   template <class Evaluate>
   Report Evaluated(const Evaluate& evaluate, const char* recording, const char* output) const {
     const fs::path result = folder_ / output;
-    const Report report = evaluate((folder_ / recording).string(), result.string());
+    Report report = evaluate((folder_ / recording).string(), result.string());
     WriteReport(report, OutputFolder(result / "evaluation", !forced_.empty()));
     return report;
   }
