@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a search for a pad is told, and what it returns.
+// Hint and result of a search for a pad.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -57,8 +57,8 @@ void BindShape(py::module_& module) {
                            self.diameter_m, self.board_size_m, self.outlines.size(),
                            self.tags.size());
       });
-  py::class_<PadView, std::shared_ptr<PadView>>(module, "PadView",
-                                                "What a pad that was seen is drawn by.")
+  py::class_<PadView, std::shared_ptr<PadView>>(
+      module, "PadView", "Camera and shape of a pad that was seen, for drawing it.")
       .def_readonly("camera", &PadView::camera, "CameraModel.")
       .def_readonly("shape", &PadView::shape, "TargetShape.")
       .def(py::pickle([](const PadView& self) { return py::make_tuple(self.camera, self.shape); },
@@ -190,7 +190,7 @@ void BindReport(py::module_& module) {
           "Time in each stage, ns, by the stages' names.")
       .Field("next_step", &SeenReport::next_step,
              "Step at which the search ran out of time; 0: it did not.")
-      .Field("view", &SeenReport::view, "What it is drawn by, or None.")
+      .Field("view", &SeenReport::view, "PadView for drawing it, or None.")
       .Repr([](const SeenReport& self) { return "<LandingReport: " + InWords(self) + ">"; })
       .py()
       .def("__bool__", [](const SeenReport& self) { return self.detection.has_value(); });

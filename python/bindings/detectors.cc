@@ -62,7 +62,6 @@ struct HelipadFinder : Detector {
 struct RingWithTagsFinder : Detector {
   using Detector::Detector;
 };
-
 struct OwnPadFinder : Detector {
   using Detector::Detector;
 };
@@ -85,6 +84,9 @@ class CalledDetector : public TargetDetector {
       report.reason = "the function has found nothing";
     } catch (const std::exception& error) {
       report.reason = Interned(error.what());
+      const auto* const raised = dynamic_cast<const py::error_already_set*>(&error);
+      // Ctrl-C is for the program: Python raises it again where the call returns to it.
+      if (raised != nullptr && raised->matches(PyExc_KeyboardInterrupt)) PyErr_SetInterrupt();
     }
     if (report.detection) {
       report.reached = LandingStage::kFound;

@@ -12,7 +12,7 @@
 
 namespace kestrel::python {
 
-// What one needs to draw a pad that was seen.
+// Camera and shape for drawing a pad that was seen.
 struct PadView {
   CameraModel camera;
   TargetShape shape;

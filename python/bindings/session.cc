@@ -44,7 +44,7 @@ struct SeenFrame {
   std::optional<Duration> latency;
 };
 
-// What the results of one session are drawn by.
+// Pad and objects of a session, for drawing its results.
 struct Views {
   std::shared_ptr<PadView> pad;
   std::shared_ptr<ObjectModel> model;

@@ -1,4 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
+import time
+
 import numpy as np
 import pytest
 
@@ -64,6 +66,17 @@ def test_a_pad_of_ones_own(calibration):
     np.testing.assert_allclose(found.center_px, [404.5, 304.5])
     broken = kestrel.OwnPadDetector(calibration, shape, lambda image, hint: 1 / 0)
     assert "ZeroDivisionError" in broken.detect(image).reason
+
+
+def test_ctrl_c_in_a_function_of_ones_own_is_for_the_program(calibration):
+    def interrupted(image, hint):
+        raise KeyboardInterrupt
+
+    shape = kestrel.TargetShape(diameter_m=0.5, board_size_m=0.5)
+    detector = kestrel.OwnPadDetector(calibration, shape, interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        detector.detect(np.zeros((480, 752), np.uint8))
+        time.sleep(5)
 
 
 def test_a_hunt_has_a_map(hunt_flight):

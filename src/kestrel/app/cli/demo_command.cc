@@ -68,9 +68,8 @@ class Demo {
     Hunt();
     Land();
     const std::string page = files_.NewFile("index.html").string();
-    verdict_.push_back("Videos, plots and figures: " + page);
     files_.OpenText("index.html") << ToHtml("Kestrel: what it sees", verdict_, chapters_);
-    fmt::print("\n{}\n", fmt::join(verdict_, "\n"));
+    fmt::print("\n{}\nVideos, plots and figures: {}\n", fmt::join(verdict_, "\n"), page);
   }
 
  private:

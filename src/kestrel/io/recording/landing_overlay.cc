@@ -114,7 +114,7 @@ void DrawMisfit(const LandingDetection& detection, const CameraModel& camera,
                 kYellow, 2);
 }
 
-// What was seen, as a person would say it.
+// Name of a find for people who do not know how it was made.
 const char* InWords(DetectionMethod method) {
   switch (method) {
     case DetectionMethod::kQuadrants:
@@ -147,8 +147,9 @@ void DrawDetection(const LandingDetection& detection, const CameraModel& camera,
     const Eigen::Vector3d end = shape.radius_m() * Eigen::Vector3d::Unit(axis);
     canvas->DrawLine(LineBetween(Eigen::Vector3d::Zero(), end), project, colors[axis]);
   }
-  if (!only_in_image && !only_in_image && detection.is_misfit() && detection.seen)
+  if (!only_in_image && detection.is_misfit() && detection.seen) {
     DrawMisfit(detection, camera, shape, canvas);
+  }
   canvas->DrawCenter(detection.center_px);
   const std::string id = detection.id ? fmt::format(" {}", *detection.id) : "";
   const std::string distance =
