@@ -45,17 +45,40 @@ void FinalizeSqlite::operator()(sqlite3_stmt* statement) const { sqlite3_finaliz
 
 SqliteBag::SqliteBag(const std::string& path, bool has_compressed_messages)
     : path_(path), has_compressed_messages_(has_compressed_messages) {
+  if (const auto cut = HasJournal() ? std::nullopt : FindSqliteCut(path)) {
+    OpenCut(*cut);
+  } else {
+    Open();
+  }
+  ReadTopics();
+}
+
+bool SqliteBag::HasJournal() const {
+  std::error_code error;
+  return std::filesystem::file_size(path_ + "-wal", error) > 0 && !error;
+}
+
+void SqliteBag::Open() {
   // A journal beside the file belongs to a bag that was not closed. Reading it needs some write
   // access to the file; without a journal the bag is opened so that it cannot change.
-  std::error_code ignored;
-  const bool has_journal = std::filesystem::file_size(path + "-wal", ignored) > 0 && !ignored;
-  const std::string uri = UriOf(path) + (has_journal ? "?mode=ro" : "?mode=ro&immutable=1");
+  const std::string uri = UriOf(path_) + (HasJournal() ? "?mode=ro" : "?mode=ro&immutable=1");
   sqlite3* database = nullptr;
   const int status =
       sqlite3_open_v2(uri.c_str(), &database, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
   database_.reset(database);
   if (status != SQLITE_OK) Fail();
-  ReadTopics();
+}
+
+void SqliteBag::OpenCut(const SqliteCut& cut) {
+  cut_ = std::make_unique<CutSqlite>(path_, cut);
+  sqlite3* database = nullptr;
+  const int status = sqlite3_open(":memory:", &database);
+  database_.reset(database);
+  if (status != SQLITE_OK || cut_->OpenIn(database) != SQLITE_OK) Fail();
+  remark_ = fmt::format(
+      "{}: was not closed, or is damaged (a power loss?): it is read up to there; its last whole "
+      "page ends at byte {} of {}",
+      path_, cut.whole_pages, cut.expected);
 }
 
 SqliteStatement SqliteBag::Prepare(const std::string& sql) const {
@@ -68,7 +91,8 @@ SqliteStatement SqliteBag::Prepare(const std::string& sql) const {
 
 bool SqliteBag::Step(sqlite3_stmt* statement) const {
   const int status = sqlite3_step(statement);
-  if (status != SQLITE_ROW && status != SQLITE_DONE) Fail();
+  const bool is_cut = cut_ != nullptr && status == SQLITE_CORRUPT;
+  if (status != SQLITE_ROW && status != SQLITE_DONE && !is_cut) Fail();
   return status == SQLITE_ROW;
 }
 
@@ -98,13 +122,14 @@ bool SqliteBag::HasTimeIndex() const {
 }
 
 // The order is that of the index on the time. Without an index it is the order of recording, as
-// sorting would need the memory or disk space of all messages.
+// sorting would need the memory or disk space of all messages. So it is where a bag was cut: the
+// index may lie behind the cut.
 void SqliteBag::Select(const std::vector<std::size_t>& topics) {
   std::vector<std::int64_t> ids;
   for (const std::size_t topic : topics) ids.push_back(ids_.at(topic));
   messages_ = Prepare(fmt::format(
       "SELECT topic_id, timestamp, data FROM messages WHERE topic_id IN ({}) ORDER BY {}",
-      fmt::join(ids, ","), HasTimeIndex() ? "timestamp" : "id"));
+      fmt::join(ids, ","), cut_ == nullptr && HasTimeIndex() ? "timestamp" : "id"));
 }
 
 std::size_t SqliteBag::TopicOfId(std::int64_t id) const {
