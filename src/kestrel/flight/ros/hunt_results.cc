@@ -5,7 +5,6 @@
 
 #include "kestrel/flight/ros/hunt_messages.h"
 #include "kestrel/flight/ros/landing_messages.h"
-#include "kestrel/io/recording/map_inset.h"
 #include "kestrel/io/recording/object_overlay.h"
 
 namespace kestrel {
@@ -26,11 +25,7 @@ void HuntResults::PublishMarkers(const HuntObservation& observation) {
 void HuntResults::PublishImage(const cv::Mat& image, const HuntObservation& observation,
                                const std::vector<MappedObject>& map) {
   if (!connection_->HasSubscribers(ResultTopic::kAnnotatedImage)) return;
-  cv::Mat annotated = DrawObjectOverlay(image, options_.model, observation);
-  const auto& camera = observation.world_from_camera;
-  if (camera && !map.empty()) {
-    DrawMapInset(map, options_.model, camera->translation.head<2>(), &annotated);
-  }
+  const cv::Mat annotated = DrawObjectOverlay(image, options_.model, observation, map);
   Publish(ResultTopic::kAnnotatedImage,
           ImageMessageOf(annotated, observation.time, options_.camera_frame));
 }

@@ -3,7 +3,6 @@
 
 #include <variant>
 
-#include "kestrel/io/recording/map_inset.h"
 #include "kestrel/io/recording/object_csv.h"
 #include "kestrel/io/recording/object_map_files.h"
 #include "kestrel/io/recording/object_overlay.h"
@@ -27,11 +26,8 @@ void HuntFiles::Take(const Observation& observation) {
   const ObjectModel& model = pipeline_->detector().model();
   results_.WriteRows(ObjectCsvRows(frame.name, seen, model));
   if (!results_.wants_pictures()) return;
-  cv::Mat drawn = DrawObjectOverlay(frame.image, model, seen);
-  if (const auto& pose = seen.world_from_camera) {
-    DrawMapInset(pipeline_->map().Confirmed(), model, pose->translation.head<2>(), &drawn);
-  }
-  results_.WritePicture(frame.name, drawn);
+  results_.WritePicture(frame.name,
+                        DrawObjectOverlay(frame.image, model, seen, pipeline_->map().Confirmed()));
 }
 
 void HuntFiles::Take(const BrokenFrame& frame) {

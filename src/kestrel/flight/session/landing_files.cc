@@ -13,6 +13,20 @@ namespace {
 constexpr char kTrack[] = "landing_track.csv";
 constexpr char kPrediction[] = "landing_prediction.csv";
 
+// Places of the target in the second from 'time' on, nothing without a track.
+std::vector<Eigen::Vector3d> NextSecond(const TargetTracker& tracker, Time time) {
+  constexpr int kSteps = 5;
+  constexpr Duration kStep = std::chrono::milliseconds(200);
+  std::vector<Eigen::Vector3d> places;
+  if (tracker.StateAt(time) == TrackState::kSearching) return places;
+  for (int i = 0; i <= kSteps; ++i) {
+    if (const auto target = tracker.Predict(time + i * kStep)) {
+      places.emplace_back(target->motion.position());
+    }
+  }
+  return places;
+}
+
 }  // namespace
 
 TrackFiles::TrackFiles(const OutputFolder& folder, const std::vector<double>& horizons_s)
@@ -51,8 +65,10 @@ void LandingFiles::Take(const Observation& observation) {
   if (track_) track_->Write(seen, pipeline_->tracker());
   if (!results_.wants_pictures()) return;
   const TargetDetector& detector = pipeline_->detector();
-  results_.WritePicture(frame.name, DrawLandingOverlay(frame.image, detector.camera(),
-                                                       detector.shape(), seen, only_in_image_));
+  results_.WritePicture(
+      frame.name,
+      DrawLandingOverlay(frame.image, detector.camera(), detector.shape(), seen,
+                         {only_in_image_, NextSecond(pipeline_->tracker(), seen.time)}));
 }
 
 void LandingFiles::Take(const BrokenFrame& frame) {

@@ -25,6 +25,7 @@ const cv::Scalar kGreen(60, 220, 60);
 const cv::Scalar kBlue(255, 120, 40);
 const cv::Scalar kYellow(0, 230, 255);
 const cv::Scalar kMagenta(255, 90, 255);
+const cv::Scalar kCyan(255, 220, 0);
 const cv::Scalar kOutline(0, 0, 0);
 
 // A lens bends lines; therefore an edge is drawn in this number of pieces.
@@ -59,18 +60,26 @@ class Canvas {
     }
   }
 
+  void DrawDot(const Eigen::Vector3d& point, const Projection& project, const cv::Scalar& color) {
+    Eigen::Vector2d pixel;
+    if (!project(point, &pixel) || !IsNear(pixel)) return;
+    const int radius = static_cast<int>(std::lround(2.5 * scale_ * kFixedOne));
+    cv::circle(image_, Fixed(pixel), radius, color, cv::FILLED, cv::LINE_AA, kFixedBits);
+  }
+
   void DrawCenter(const Eigen::Vector2d& pixel) {
     if (!IsNear(pixel)) return;
     const int radius = static_cast<int>(std::lround(4 * scale_ * kFixedOne));
     cv::circle(image_, Fixed(pixel), radius, kYellow, Thickness(), cv::LINE_AA, kFixedBits);
   }
 
-  // 'row': line of the text, from the top.
+  // 'row': line of the text, from the top; negative: from the bottom, -1 is the last.
   void Write(const std::string& text, const cv::Scalar& color, int row = 0) {
     const double font_scale = 0.6 * std::max(scale_, 0.7);
     const double line_height_px = 34 * font_scale;
+    const double first_px = row >= 0 ? 8 + 22 * font_scale : image_.rows - 8 + line_height_px;
     const cv::Point origin(static_cast<int>(8 * scale_),
-                           static_cast<int>(8 + 22 * font_scale + row * line_height_px));
+                           static_cast<int>(first_px + row * line_height_px));
     for (const auto& [thickness, ink] : {std::pair(3, kOutline), std::pair(1, color)}) {
       cv::putText(image_, text, origin, cv::FONT_HERSHEY_SIMPLEX, font_scale, ink,
                   thickness * Thickness(), cv::LINE_AA);
@@ -135,6 +144,17 @@ const char* InWords(DetectionMethod method) {
   return "";
 }
 
+// Draws the path of the track, with a dot at each place.
+void DrawPath(const Polyline& path_in_world, const RigidTransform& world_from_camera,
+              const CameraModel& camera, Canvas* canvas) {
+  const RigidTransform camera_from_world = world_from_camera.Inverse();
+  const Projection project = [&](const Eigen::Vector3d& point, Eigen::Vector2d* pixel) {
+    return camera.Project(camera_from_world * point, pixel) != ProjectionStatus::kOutsideModel;
+  };
+  canvas->DrawLine(path_in_world, project, kCyan);
+  for (const Eigen::Vector3d& place : path_in_world) canvas->DrawDot(place, project, kCyan);
+}
+
 void DrawDetection(const LandingDetection& detection, const CameraModel& camera,
                    const TargetShape& shape, bool only_in_image, Canvas* canvas) {
   const RigidTransform& pose = detection.camera_from_pattern;
@@ -163,11 +183,16 @@ void DrawDetection(const LandingDetection& detection, const CameraModel& camera,
 
 cv::Mat DrawLandingOverlay(const cv::Mat& image, const CameraModel& camera,
                            const TargetShape& shape, const LandingObservation& observation,
-                           bool only_in_image) {
+                           const LandingOverlayOptions& options) {
   Canvas canvas(image);
   const LandingReport& report = observation.report;
+  const bool has_path = observation.world_from_camera && !options.path_in_world.empty();
+  if (has_path) DrawPath(options.path_in_world, *observation.world_from_camera, camera, &canvas);
+  if (has_path) canvas.Write("cyan: where the track goes", kCyan, -1);
   if (report.detection) {
-    DrawDetection(*report.detection, camera, shape, only_in_image, &canvas);
+    DrawDetection(*report.detection, camera, shape, options.only_in_image, &canvas);
+    if (!report.detection->is_misfit())
+      canvas.Write("yellow: the pad", kYellow, has_path ? -2 : -1);
   } else {
     canvas.Write(fmt::format("not found: {}: {}", ToString(report.reached), report.reason), kRed);
   }

@@ -70,6 +70,26 @@ TEST(LandingOverlay, OfAMisfitBothOutlinesAreDrawn) {
   EXPECT_GT(cv::countNonZero(magenta), 50);
 }
 
+// The camera looks down from 2 m; the pad drives 0.5 m to the east, which is to the right.
+TEST(LandingOverlay, DrawsThePathOfTheTrack) {
+  LandingObservation observation;
+  observation.world_from_camera.emplace();
+  observation.world_from_camera->rotation =
+      Eigen::AngleAxisd(3.14159265358979, Eigen::Vector3d::UnitX());
+  observation.world_from_camera->translation = {0, 0, 2};
+  const auto is_cyan_at = [&](const std::vector<Eigen::Vector3d>& path, int x) {
+    const cv::Mat drawn = DrawLandingOverlay(kGray, kCamera, kShape, observation, {false, path});
+    const auto& pixel = drawn.at<cv::Vec3b>(239, x);
+    return pixel[0] > 180 && pixel[2] < 90;
+  };
+  const std::vector<Eigen::Vector3d> path = {{0, 0, 0}, {0.5, 0, 0}};
+  EXPECT_TRUE(is_cyan_at(path, 319 + 50)) << "between the two places";
+  EXPECT_FALSE(is_cyan_at(path, 319 - 50));
+  EXPECT_FALSE(is_cyan_at({}, 319 + 50));
+  observation.world_from_camera.reset();
+  EXPECT_FALSE(is_cyan_at(path, 319 + 50)) << "no pose";
+}
+
 TEST(LandingOverlay, SurvivesAPatternNextToOrBehindTheCamera) {
   for (const double z : {1e-9, 0.01, -1.0}) {
     EXPECT_EQ(DrawLandingOverlay(kGray, kCamera, kShape, FoundAt({0.2, 0.1, z})).size(),

@@ -2,6 +2,7 @@
 #include "kestrel/io/recording/map_inset.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -89,16 +90,32 @@ void DrawScale(const Plan& plan, const cv::Rect& frame, cv::Mat* image) {
               cv::FONT_HERSHEY_SIMPLEX, 0.35, kInk, 1, cv::LINE_AA);
 }
 
+// Returns the frame of the inset, in the corner where it covers least of 'seen'.
+cv::Rect InsetFrame(const cv::Size& image, const std::vector<cv::Rect>& seen) {
+  constexpr double kShare = 0.28;  // of the image's width
+  constexpr double kAspect = 0.7;
+  const auto width = static_cast<int>(kShare * image.width);
+  const int height = std::min(static_cast<int>(kAspect * width), image.height);
+  const int right = image.width - width, bottom = image.height - height;
+  const std::array<cv::Rect, 4> corners = {
+      cv::Rect(right, bottom, width, height), cv::Rect(0, bottom, width, height),
+      cv::Rect(right, 0, width, height), cv::Rect(0, 0, width, height)};
+  const auto covered = [&](const cv::Rect& corner) {
+    int area = 0;
+    for (const cv::Rect& box : seen) area += (box & corner).area();
+    return area;
+  };
+  return *std::min_element(corners.begin(), corners.end(),
+                           [&](const auto& a, const auto& b) { return covered(a) < covered(b); });
+}
+
 }  // namespace
 
 void DrawMapInset(const std::vector<MappedObject>& objects, const ObjectModel& model,
-                  const std::optional<Eigen::Vector2d>& uav, cv::Mat* image) {
-  constexpr double kShare = 0.28;  // of the image's width
-  constexpr double kAspect = 0.7;
+                  const std::optional<Eigen::Vector2d>& uav, const std::vector<cv::Rect>& seen,
+                  cv::Mat* image) {
   if (objects.empty()) return;
-  const auto width = static_cast<int>(kShare * image->cols);
-  const int height = std::min(static_cast<int>(kAspect * width), image->rows);
-  const cv::Rect frame(image->cols - width, image->rows - height, width, height);
+  const cv::Rect frame = InsetFrame(image->size(), seen);
   cv::Mat inset = (*image)(frame);
   cv::addWeighted(inset, 0.2, cv::Mat(inset.size(), inset.type(), kPaper), 0.8, 0, inset);
   cv::rectangle(*image, frame, kInk);

@@ -30,9 +30,10 @@ Eigen::Vector2d RedPlace(const cv::Mat& image) {
   return sum / count;
 }
 
-cv::Mat Draw(const std::vector<MappedObject>& objects, const std::optional<Eigen::Vector2d>& uav) {
+cv::Mat Draw(const std::vector<MappedObject>& objects, const std::optional<Eigen::Vector2d>& uav,
+             const std::vector<cv::Rect>& seen = {}) {
   cv::Mat image(480, 640, CV_8UC3, cv::Scalar::all(100));
-  DrawMapInset(objects, DefaultObjectModel(), uav, &image);
+  DrawMapInset(objects, DefaultObjectModel(), uav, seen, &image);
   return image;
 }
 
@@ -51,6 +52,14 @@ TEST(DrawMapInset, LeavesTheRestOfTheImageAlone) {
   EXPECT_EQ(image.at<cv::Vec3b>(10, 10), cv::Vec3b::all(100));
   EXPECT_EQ(image.at<cv::Vec3b>(470, 10), cv::Vec3b::all(100));
   EXPECT_NE(image.at<cv::Vec3b>(470, 600), cv::Vec3b::all(100));
+}
+
+TEST(DrawMapInset, LiesWhereItCoversLeastOfWhatIsSeen) {
+  const cv::Rect lower_right(560, 420, 40, 40), lower_left(30, 400, 20, 20);
+  const cv::Mat image = Draw({RedDiscAt(3, 4)}, std::nullopt, {lower_right, lower_left});
+  EXPECT_EQ(image.at<cv::Vec3b>(470, 600), cv::Vec3b::all(100));
+  EXPECT_EQ(image.at<cv::Vec3b>(470, 10), cv::Vec3b::all(100));
+  EXPECT_NE(image.at<cv::Vec3b>(10, 600), cv::Vec3b::all(100));
 }
 
 TEST(DrawMapInset, EmptyMapIsNotDrawn) {

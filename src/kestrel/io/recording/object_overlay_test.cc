@@ -43,6 +43,16 @@ TEST(ObjectOverlay, PartsAreGray) {
   EXPECT_LT(BrightestOutside(drawn, 100, 90), 180);
 }
 
+TEST(ObjectOverlay, DecoysAreGrayAndSayWhy) {
+  HuntObservation observation = DiscAt({100, 90}, Completeness::kWhole);
+  std::swap(observation.report.detections, observation.report.elsewhere);
+  const cv::Mat drawn = DrawObjectOverlay(kImage, DefaultObjectModel(), observation);
+  EXPECT_GT(BrightestOutside(drawn, 100, 90), 100);
+  EXPECT_LT(BrightestOutside(drawn, 100, 90), 180);
+  EXPECT_GT(cv::norm(drawn(cv::Rect(220, 70, 80, 40)), kImage(cv::Rect(220, 70, 80, 40))), 0)
+      << "the reason";
+}
+
 TEST(ObjectOverlay, NothingFoundIsTheImageItself) {
   const cv::Mat drawn = DrawObjectOverlay(kImage, DefaultObjectModel(), HuntObservation());
   EXPECT_EQ(cv::norm(drawn, kImage, cv::NORM_INF), 0);
