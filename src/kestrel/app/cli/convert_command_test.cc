@@ -122,6 +122,20 @@ TEST_F(ConvertCommandTest, WritesFoxglovesMessages) {
   EXPECT_EQ(image.fields.time(1), image.time);
   ExpectInputError("convert " + flight + " " + folder_ / "flight.mcap --foxglove",
                    "flight.mcap: is there already");
+  // The file is a recording as any other one.
+  const std::string back = Convert(folder_ / "flight.mcap", "back");
+  const std::string poses = "/mav0/nav0/data.csv";
+  EXPECT_EQ(Lines(ReadFile(back + poses)), Lines(ReadFile(flight + poses)));
+  const std::string sensor = "/mav0/cam0/sensor.yaml";
+  const CameraCalibration found = ReadCalibration(back + sensor);
+  const CameraCalibration written = ReadCalibration(flight + sensor);
+  EXPECT_EQ(found.intrinsics.distortion, written.intrinsics.distortion);
+  EXPECT_EQ(found.intrinsics.fx_px, written.intrinsics.fx_px);
+  ASSERT_TRUE(found.body_from_camera);
+  EXPECT_TRUE(found.body_from_camera->rotation.isApprox(written.body_from_camera->rotation, 1e-9));
+  const std::string detections = Result("land", folder_ / "flight.mcap", "landing_detections.csv");
+  EXPECT_EQ(Lines(detections), 4);
+  EXPECT_THAT(detections, HasSubstr("camera/image/100"));
   ExpectInputError("convert " + flight + " " + folder_ / "flight.bag --foxglove",
                    "flight.bag: expected a name that ends in .mcap");
 }

@@ -15,9 +15,10 @@ namespace kestrel {
 
 // Serialization of a topic's messages.
 enum class WireFormat {
-  kRos1,   // ROS 1
-  kCdr,    // ROS 2: XCDR1 after a header of four bytes
-  kOther,  // JSON, Protobuf, ...: not read
+  kRos1,      // ROS 1
+  kCdr,       // ROS 2: XCDR1 after a header of four bytes
+  kProtobuf,  // messages of Foxglove, by the types of ROS that they correspond to
+  kOther,     // JSON, other messages in protobuf, ...: not read
 };
 
 // A name and type of a bag.

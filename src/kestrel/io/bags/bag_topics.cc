@@ -28,6 +28,8 @@ TopicUse UseOf(const BagTopic& topic) {
   }
   if (topic.type == CameraInfoMessage::kType) return TopicUse::kCameraInfo;
   if (topic.type == TfMessage::kType || topic.type == "tf/tfMessage") return TopicUse::kTransforms;
+  // Other poses in files for viewers are those of the camera and of what was found.
+  if (topic.wire_format == WireFormat::kProtobuf && topic.name != "/pose") return TopicUse::kNone;
   return IsPoseType(topic.type) ? TopicUse::kPose : TopicUse::kNone;
 }
 

@@ -12,6 +12,7 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/io/bags/byte_cursor.h"
 #include "kestrel/io/bags/checksum.h"
+#include "kestrel/io/bags/foxglove_message.h"
 #include "kestrel/io/bags/mcap_opcodes.h"
 
 namespace kestrel {
@@ -277,7 +278,13 @@ void McapReader::AddChannel(std::string_view content, const std::string& name) {
   topic.name = PlainTopicName(cursor.Text());
   if (schema != schemas_.end()) {
     topic.type = PlainTopicName(NormalTypeName(schema->second.name));
-    topic.wire_format = WireFormatOf(cursor.Text(), schema->second.encoding);
+    const std::string_view encoding = cursor.Text();
+    topic.wire_format = WireFormatOf(encoding, schema->second.encoding);
+    const auto ros_type = RosTypeOfFoxglove(schema->second.name);
+    if (encoding == "protobuf" && ros_type) {
+      topic.type = *ros_type;
+      topic.wire_format = WireFormat::kProtobuf;
+    }
   }
   topics_of_channels_[id] = TopicOf(topic);
 }

@@ -13,6 +13,7 @@
 
 #include "kestrel/core/base/time.h"
 #include "kestrel/io/bags/bag_reader.h"
+#include "kestrel/io/bags/foxglove_message.h"
 #include "kestrel/io/bags/messages.h"
 
 namespace kestrel {
@@ -123,8 +124,14 @@ class WireWriter {
 // when they are not such a message.
 template <class Message>
 Message ParseMessage(std::string_view bytes, WireFormat format, const std::string& name) {
-  WireReader reader(bytes, format, name);
   Message message;
+  if constexpr (HasFoxgloveForm<Message>) {
+    if (format == WireFormat::kProtobuf) {
+      ParseFoxglove(bytes, name, &message);
+      return message;
+    }
+  }
+  WireReader reader(bytes, format, name);
   reader(message);
   return message;
 }
