@@ -2,6 +2,8 @@
 #include "kestrel/app/evaluation/evaluate_hunt.h"
 
 #include <filesystem>
+#include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -21,26 +23,43 @@ Points2d Positions(const std::vector<TrueSighting>& sightings) {
   return points;
 }
 
-Points2d Positions(const std::vector<ObjectRow>& objects) {
-  Points2d points;
-  for (const ObjectRow& row : objects) {
-    if (row.center_in_world) points.push_back(row.center_in_world->head<2>());
-  }
-  return points;
-}
-
 Points2d Positions(const std::vector<MapRow>& map) {
   Points2d points;
   for (const MapRow& row : map) points.push_back(row.position_in_world.head<2>());
   return points;
 }
 
+// Returns a colour for the points of a class, by the word for its colour; empty for other words.
+std::string ColorOf(const std::string& class_name) {
+  static const std::map<std::string, std::string> kColors = {
+      {"red", "#d62728"},    {"green", "#2ca02c"},  {"blue", "#1f77b4"},   {"orange", "#ff7f0e"},
+      {"yellow", "#d4c20e"}, {"violet", "#9467bd"}, {"purple", "#9467bd"}, {"pink", "#e377c2"}};
+  const auto color = kColors.find(class_name);
+  return color == kColors.end() ? "" : color->second;
+}
+
+// Returns a series for each class, in its colour.
+std::vector<PlotSeries> DetectedByClass(const std::vector<ObjectRow>& objects) {
+  std::map<std::string, Points2d> places;
+  for (const ObjectRow& row : objects) {
+    if (row.center_in_world) places[row.class_name].push_back(row.center_in_world->head<2>());
+  }
+  std::vector<PlotSeries> series;
+  for (auto& [name, points] : places) {
+    series.push_back(
+        {name + ", detected", PlotStyle::kPoints, std::move(points), {}, ColorOf(name)});
+  }
+  return series;
+}
+
 Plot MapPlot(const std::vector<TrueSighting>& sightings, const ObjectRows& rows,
              const std::vector<MapRow>& map) {
+  constexpr const char* kBlack = "#000000";
   PlotPanel panel{"x (east), m", "y (north), m", {}, /*equal_axes=*/true};
-  panel.series = {{"true, when in view", PlotStyle::kCircles, Positions(sightings), {}},
-                  {"detected", PlotStyle::kPoints, Positions(rows.objects), {}},
-                  {"in the map", PlotStyle::kCrosses, Positions(map), {}}};
+  panel.series = DetectedByClass(rows.objects);
+  panel.series.push_back(
+      {"true, when in view", PlotStyle::kCircles, Positions(sightings), {}, kBlack});
+  panel.series.push_back({"in the map", PlotStyle::kCrosses, Positions(map), {}, kBlack});
   return {"map", "Objects, seen from above", {panel}};
 }
 

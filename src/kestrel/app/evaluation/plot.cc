@@ -87,9 +87,11 @@ std::string PanelScript(const PlotPanel& panel, std::size_t index) {
     if (series.points.empty()) continue;
     const std::string name = fmt::format("$panel{}_{}", index, curves.size());
     blocks += DataBlock(series, name);
+    const auto of_palette = static_cast<std::size_t>(&series - panel.series.data());
+    const std::string color =
+        series.color.empty() ? kColors[of_palette % kColors.size()] : series.color;
     curves.push_back(fmt::format("{} {} lc rgb '{}' title {}", name, StyleWords(series.style),
-                                 kColors[(&series - panel.series.data()) % kColors.size()],
-                                 Quoted(series.label)));
+                                 color, Quoted(series.label)));
   }
   if (curves.empty()) return "";
   return blocks + fmt::format("set xlabel {}\nset ylabel {}\nset size {}\nset yrange {}\nplot {}\n",

@@ -20,6 +20,7 @@ struct PlotSeries {
   PlotStyle style = PlotStyle::kLine;
   Points2d points;
   std::vector<Interval> bars;  // for kErrorBars: low and high y, one for each point
+  std::string color = "";      // as "#d55e00"; empty: one of the plot's palette
 };
 
 struct PlotPanel {

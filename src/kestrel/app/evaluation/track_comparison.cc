@@ -75,7 +75,9 @@ ReportTable TrackTable(std::span<const TrackErrors> errors) {
   ReportTable table{"track",
                     "Errors of the track",
                     "In the world. NEES against the one standard deviation of all three axes that "
-                    "the output has: 3 is right.",
+                    "the output has: 3 is right. The velocity is the board's: where it sways on "
+                    "its vehicle by more than landing.tracker.sway_sigma_m, the track follows the "
+                    "vehicle, and the NEES of the velocity is larger.",
                     {"altitude, m", "rows", "position RMS, m", "95 %, m", "velocity RMS, m/s",
                      "95 %, m/s", "position NEES, mean", "velocity NEES, mean"},
                     {}};
