@@ -42,6 +42,8 @@ export interface Calibration {
   residuals: Residuals;
   warnings: string[];
   can_save: boolean;
+  /** Why the result is not worth keeping; else empty. */
+  no_use: string;
   saved: string;
   save_error: string;
 }

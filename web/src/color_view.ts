@@ -31,6 +31,14 @@ export const firstColorView: ColorView = {
   isKeeping: false,
 };
 
+/** The next thing to do to teach a colour, in a line. */
+export function nextColorStep(colors: Colors): string {
+  if (colors.frames === 0) return "Keep a frame of the camera first (k)";
+  if (colors.strokes === 0) return "First choose a colour, then paint over pixels that have it";
+  if (colors.difference.length === 0) return "Paint more, or teach what is marked (e)";
+  return "Look at the preview in other frames, then save the model (s)";
+}
+
 /** When the server has answered; of another recording it may have fewer frames. */
 export function viewAfter(view: ColorView, colors: Colors): ColorView {
   const frame = view.isKeeping && !colors.refused ? colors.frames - 1 : view.frame;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { expect, test } from "vitest";
 import type { Colors } from "./color_protocol";
-import { canKeep, firstColorView, frameInside, nextMarked, resized, strokeOf, viewAfter } from "./color_view";
+import { canKeep, firstColorView, frameInside, nextColorStep, nextMarked, resized, strokeOf, viewAfter } from "./color_view";
 
 const view = { ...firstColorView, frame: 3 };
 
@@ -25,6 +25,15 @@ test("a rectangle has two corners, what grows one point, and none has no colour"
     frame: 3, color: "", tool: "rectangle", size: 0, points: [1, 1, 8, 3],
   });
   expect(strokeOf({ ...view, tool: "grow" }, "red", way, 40, 30)?.points).toEqual([8, 3]);
+});
+
+test("the next step goes from a frame to the saved model", () => {
+  const colors = (frames: number, strokes: number, difference: string[]) =>
+    nextColorStep({ frames, strokes, difference } as unknown as Colors);
+  expect(colors(0, 0, [])).toContain("Keep a frame");
+  expect(colors(9, 0, [])).toContain("choose a colour");
+  expect(colors(9, 2, [])).toContain("teach");
+  expect(colors(9, 2, ["red: 1 component more"])).toContain("save");
 });
 
 test("sizes stay within what the server takes", () => {

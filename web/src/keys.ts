@@ -50,7 +50,7 @@ const mainKeys: Key[] = [
     isOffered: () => store.state.team !== null,
     act: toggleTeam,
   },
-  { keys: ["k"], meaning: "freeze the image; play or hold a recording", act: togglePlaying },
+  { keys: ["k", " "], meaning: "freeze the image; play or hold a recording", act: togglePlaying },
   { keys: ["."], meaning: "a frame forward", isOffered: has("step"), act: () => step(1) },
   { keys: [","], meaning: "a frame back", isOffered: has("step"), act: () => step(-1) },
   { keys: ["n"], meaning: "to the next lost or false frames", isOffered: has("seek"), act: () => seekTrouble(1) },
@@ -100,6 +100,7 @@ function isTyping(target: EventTarget | null): boolean {
 
 export function handleKey(event: KeyboardEvent): void {
   if (isTyping(event.target)) return;
+  if (event.key === " " && event.target instanceof HTMLButtonElement) return; // presses the button
   if (event.ctrlKey || event.altKey || event.metaKey) return;
   if (event.key === "Escape" && store.state.isHelpShown) return toggleHelp();
   const key = keys().find((one) => one.keys.includes(event.key));

@@ -33,6 +33,8 @@ export interface Series {
   name: string;
   unit: string;
   label: string;
+  /** Whole numbers. */
+  is_count: boolean;
 }
 
 export type CommandName =

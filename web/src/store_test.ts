@@ -9,7 +9,7 @@ const hello: Hello = {
   kind: "hello",
   title: "test",
   live: true,
-  series: [{ name: "height", unit: "m", label: "Height" }],
+  series: [{ name: "height", unit: "m", label: "Height", is_count: false }],
   layers: [],
   views: [],
   offers: [],

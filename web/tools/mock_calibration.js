@@ -22,6 +22,7 @@ const nothing = {
   residuals: { of: "", unit: "", over: "", rms_before: null, rms_after: null, points: [] },
   warnings: [],
   can_save: true,
+  no_use: "",
   saved: "",
   save_error: "",
 };

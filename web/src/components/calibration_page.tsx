@@ -152,7 +152,8 @@ function Result({ calibration, subject }: { calibration: Calibration; subject: s
 }
 
 function Save({ calibration }: { calibration: Calibration }) {
-  const { number, can_save, saved, save_error } = calibration;
+  const { number, can_save, no_use, saved, save_error } = calibration;
+  if (no_use !== "") return <p class="hint">Nothing to save: {no_use}.</p>;
   return (
     <>
       <div class="replay-buttons">

@@ -77,7 +77,7 @@ function plotOptions(series: Series, width: number): uPlot.Options {
     scales: { x: { time: false } },
     axes: [
       { ...axis, size: 22, values: (_, ticks) => ticks.map((tick) => `${tick} s`) },
-      { ...axis, size: 48, values: (_, ticks) => ticks.map((tick) => numberText(tick)) },
+      { ...axis, size: 48, values: (_, ticks) => ticks.map((tick) => numberText(tick, series.is_count)) },
     ],
     series: [{}, { label: series.label, stroke: themeColor("line"), width: 2, spanGaps: false }],
   };

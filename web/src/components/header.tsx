@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { nextTheme, takeSnapshot, toggleHelp, toggleRecording } from "../actions";
+import { nextColorStep } from "../color_view";
 import type { Status } from "../protocol";
 import type { ConnectionState } from "../store";
 import { useClock, useStore } from "../use_store";
@@ -27,6 +28,7 @@ function State() {
   const connection = useStore((state) => state.connection);
   const title = useStore((state) => state.hello?.title);
   const status = useStore((state) => state.status);
+  const teaching = useStore((state) => (state.page === "colors" ? state.colors : null));
   const isOpen = connection === "open";
   // The program ends with the flight: what is gone then is no fault. Another may come at its address.
   if (status?.over && connection !== "refused") return <FlightOver title={title ?? "Kestrel"} status={status} />;
@@ -34,9 +36,9 @@ function State() {
     <div class="state" data-state={isOpen ? status?.state.split(", ").at(-1) : "offline"}>
       <h1>{title ?? "Kestrel"}</h1>
       <p class="state-word" role="status">
-        {isOpen ? (status?.state ?? "waiting") : connectionInWords[connection]}
+        {!isOpen ? connectionInWords[connection] : teaching ? "Teaching colours" : (status?.state ?? "waiting")}
       </p>
-      <p class="state-reason">{isOpen ? status?.reason : ""}</p>
+      <p class="state-reason">{!isOpen ? "" : teaching ? nextColorStep(teaching) : status?.reason}</p>
     </div>
   );
 }
@@ -95,7 +97,7 @@ function Numbers() {
         <div key={one.name}>
           <dt>{one.label}</dt>
           <dd>
-            {numberText(series.newest(i))} <small>{one.unit}</small>
+            {numberText(series.newest(i), one.is_count)} <small>{one.unit}</small>
           </dd>
         </div>
       ))}
@@ -103,8 +105,9 @@ function Numbers() {
   );
 }
 
-export function numberText(value: number | null): string {
+export function numberText(value: number | null, isCount: boolean): string {
   if (value === null) return "–";
+  if (isCount) return value.toFixed(0);
   return value.toFixed(Math.abs(value) < 10 ? 2 : Math.abs(value) < 100 ? 1 : 0);
 }
 

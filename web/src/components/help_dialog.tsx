@@ -4,6 +4,8 @@ import { toggleHelp } from "../actions";
 import { keys } from "../keys";
 import { useStore } from "../use_store";
 
+const keyName = (key: string) => (key === " " ? "space" : key);
+
 export function HelpDialog() {
   const isShown = useStore((state) => state.isHelpShown);
   const dialog = useRef<HTMLDialogElement>(null);
@@ -19,7 +21,7 @@ export function HelpDialog() {
           {keys().map((key) => (
             <tr key={key.keys[0]}>
               <th scope="row">
-                <kbd>{key.keys.join(" or ")}</kbd>
+                <kbd>{key.keys.map(keyName).join(" or ")}</kbd>
               </th>
               <td>{key.meaning}</td>
             </tr>

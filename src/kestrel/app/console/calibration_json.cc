@@ -80,6 +80,7 @@ Json CalibrationJson(const ConsoleCalibration& calibration) {
           {"residuals", ResidualsJson(calibration.residuals)},
           {"warnings", calibration.warnings},
           {"can_save", calibration.can_save},
+          {"no_use", calibration.no_use},
           {"saved", calibration.saved},
           {"save_error", calibration.save_error}};
 }

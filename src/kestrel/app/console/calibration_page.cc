@@ -99,7 +99,7 @@ ExportAnswer CalibrationPage::File(std::size_t number) const {
 
 void CalibrationPage::Tell() {
   told_ = Now();
-  report_.can_save = tools_.save != nullptr;
+  report_.can_save = tools_.save != nullptr && report_.no_use.empty();
   if (report_.state == CalibrationState::kRunning) report_.done = run_.done();
   feed_->Add(report_);
 }

@@ -70,6 +70,7 @@ struct ConsoleCalibration {
   CalibrationResiduals residuals;
   std::vector<std::string> warnings;
   bool can_save = false;   // the user gave a folder
+  std::string no_use;      // why the result is not worth keeping; else empty
   std::string saved;       // path of the saved file
   std::string save_error;  // why it was not saved
 };

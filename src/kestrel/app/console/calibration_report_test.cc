@@ -76,6 +76,23 @@ TEST(CalibrationReportTest, HasTheNumbersOfAFlightWithTheirUncertainty) {
   EXPECT_EQ(clock_only.numbers.size(), 1u);
 }
 
+TEST(CalibrationReportTest, KeepsNothingThatAFlightDoesNotTell) {
+  const auto no_use = [](double angle_sigma, double clock_sigma_s, double rms_after_m) {
+    FlightCalibration result;
+    result.angle_sigmas.setConstant(angle_sigma);
+    result.clock_sigma_s = clock_sigma_s;
+    result.rms_before_m = 0.5;
+    result.rms_after_m = rms_after_m;
+    ConsoleCalibration report;
+    AddFlight(result, {}, {}, &report);
+    return report.no_use;
+  };
+  EXPECT_EQ(no_use(0.01, 0.01, 0.5), "");
+  EXPECT_EQ(no_use(0.4, 0.01, 0.4), "the flight leaves the mount uncertain by 23 degrees");
+  EXPECT_EQ(no_use(0.01, 0.2, 0.4), "the flight leaves the clock uncertain by 0.2 s");
+  EXPECT_EQ(no_use(0.01, 0.01, 0.6), "the positions agree less than before");
+}
+
 TEST(CalibrationReportTest, ComparesALensWithTheGivenOneOnTheSameViews) {
   const CameraIntrinsics truth{640, 480, 400, 400, 325, 236, DistortionModel::kNone, {}};
   CameraIntrinsics given = truth;

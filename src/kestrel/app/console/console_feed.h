@@ -55,9 +55,10 @@ struct ImageView {
 
 // A quantity that the page plots over time.
 struct SeriesDescription {
-  std::string name;   // as "height"
-  std::string unit;   // as "m"; empty for a pure number
-  std::string label;  // for people
+  std::string name;       // as "height"
+  std::string unit;       // as "m"; empty for a pure number
+  std::string label;      // for people
+  bool is_count = false;  // whole numbers
 };
 
 // One value per series; NaN where unknown.

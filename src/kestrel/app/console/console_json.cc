@@ -190,7 +190,8 @@ std::string ToJson(const ConsoleFeed::Description& description) {
   Json series = Json::array(), layers = Json::array(), offers = Json::array();
   Json views = Json::array();
   for (const SeriesDescription& one : description.series) {
-    series.push_back({{"name", one.name}, {"unit", one.unit}, {"label", one.label}});
+    series.push_back(
+        {{"name", one.name}, {"unit", one.unit}, {"label", one.label}, {"is_count", one.is_count}});
   }
   for (const OverlayLayer layer : description.layers) layers.push_back(ToString(layer));
   for (const ImageView& view : description.views) views.push_back(view.name);

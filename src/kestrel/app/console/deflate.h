@@ -10,4 +10,8 @@ namespace kestrel {
 // than size. Throws std::bad_alloc when there is no memory.
 std::string Deflate(std::string_view bytes);
 
+// Decompresses the bytes of a gzip file that the build made. Throws std::bad_alloc when there is no
+// memory.
+std::string Gunzip(std::string_view bytes);
+
 }  // namespace kestrel

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/app/console/deflate.h"
 #include "kestrel/app/console/socket_session.h"
 #include "kestrel/app/console/viewer_session.h"
 
@@ -169,13 +170,13 @@ void HttpSession::Upgrade(const Request& request) {
 }
 
 void HttpSession::SendAsset(const Request& request, const WebAsset& asset) {
-  if (asset.is_gzipped &&
-      View(request[http::field::accept_encoding]).find("gzip") == std::string_view::npos) {
-    return Refuse(Status::not_acceptable, "the page goes out gzipped only");
-  }
-  Response response(Status::ok, 11, std::string(asset.content));
+  const bool takes_gzip =
+      View(request[http::field::accept_encoding]).find("gzip") != std::string_view::npos;
+  const bool is_unpacked = asset.is_gzipped && !takes_gzip;
+  Response response(Status::ok, 11,
+                    is_unpacked ? Gunzip(asset.content) : std::string(asset.content));
   response.set(http::field::content_type, beast::string_view(asset.type.data(), asset.type.size()));
-  if (asset.is_gzipped) response.set(http::field::content_encoding, "gzip");
+  if (asset.is_gzipped && takes_gzip) response.set(http::field::content_encoding, "gzip");
   // File names below /assets/ contain the hash of their content.
   if (asset.path.starts_with("/assets/")) {
     response.set(http::field::cache_control, "private, max-age=31536000, immutable");

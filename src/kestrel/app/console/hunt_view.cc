@@ -51,7 +51,7 @@ std::string Rejections(const ObjectReport& report) {
 }  // namespace
 
 std::vector<SeriesDescription> HuntSeries() {
-  return {{"objects", "", "Objects in view"}, {"detect", "ms", "Detection"}};
+  return {{"objects", "", "Objects in view", true}, {"detect", "ms", "Detection"}};
 }
 
 ConsoleSample HuntSample(const HuntObservation& observation) {
@@ -85,7 +85,7 @@ std::vector<ImageView> HuntImageViews(const HuntView& view) {
 ConsoleStatus HuntStatus(const HuntObservation& observation) {
   const std::size_t objects = observation.report.detections.size();
   ConsoleStatus status;
-  status.state = objects == 0 ? "searching" : fmt::format("{} in view", objects);
+  status.state = objects == 0 ? "nothing in view" : fmt::format("{} in view", objects);
   if (objects == 0) status.reason = Rejections(observation.report);
   if (!observation.world_from_camera) status.reason = "where the UAV was is not known";
   return status;

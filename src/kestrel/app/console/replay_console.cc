@@ -64,6 +64,7 @@ void ReplayConsole::Play(ReplayResult first, Recording recording,
   recording_ = std::move(recording);
   read_ = recording_.open();
   playhead_.emplace(FrameTimes());
+  playhead_->Step(static_cast<double>(FirstFound(first_->frames)));
   SendTimeline();
   feed_.Add(subject_.options);
   if (tools_.calibrate) calibration_.emplace(tools_, first_->frames.size(), &feed_);

@@ -44,6 +44,13 @@ std::vector<OverlayShape> ShapesOf(const ReplayResult& first, const ReplayResult
   return shapes;
 }
 
+std::size_t FirstFound(const std::vector<ReplayFrame>& frames) {
+  const auto found = std::find_if(frames.begin(), frames.end(), [](const ReplayFrame& frame) {
+    return frame.mark == FrameMark::kFound;
+  });
+  return found == frames.end() ? 0 : static_cast<std::size_t>(found - frames.begin());
+}
+
 void MarkLost(std::vector<ReplayFrame>* frames) {
   const auto has_pattern = [](const ReplayFrame& frame) {
     return frame.mark != FrameMark::kNothing;

@@ -46,6 +46,9 @@ struct ReplayResult {
 std::vector<OverlayShape> ShapesOf(const ReplayResult& first, const ReplayResult* second,
                                    std::size_t frame);
 
+// Returns the index of the first frame with something found, 0 where nothing was.
+std::size_t FirstFound(const std::vector<ReplayFrame>& frames);
+
 // Marks as lost all unmarked frames between the first and the last frame with a mark.
 void MarkLost(std::vector<ReplayFrame>* frames);
 

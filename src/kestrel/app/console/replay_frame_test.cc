@@ -38,6 +38,14 @@ TEST(MarkLostTest, LostIsBetweenFoundAndFalseWhatTheTrackDoesNotTake) {
   EXPECT_EQ(Marks(nothing), "---");
 }
 
+TEST(FirstFoundTest, IsTheFirstFrameWithSomethingToSee) {
+  std::vector<ReplayFrame> frames(4);
+  EXPECT_EQ(FirstFound(frames), 0u);
+  frames[1].mark = FrameMark::kLost;
+  frames[2].mark = frames[3].mark = FrameMark::kFound;
+  EXPECT_EQ(FirstFound(frames), 2u);
+}
+
 TEST(ReplayFrameTest, AHuntShowsItsObjects) {
   HuntView view;
   view.model.classes.resize(2);

@@ -82,6 +82,15 @@ TEST_F(WebServerTest, ThePageThatIsBuiltInIsServed) {
   EXPECT_EQ(browser.Send(request).result_int(), 200u);
 }
 
+TEST_F(WebServerTest, ThePageIsUnpackedForClientsWithoutGzip) {
+  const WebServer server(AnyPort(), &feed_);
+  TestBrowser browser(server.port());
+  const auto page = browser.Send(browser.Get("/"));
+  EXPECT_EQ(page.result_int(), 200u);
+  EXPECT_EQ(page.count(http::field::content_encoding), 0u);
+  EXPECT_THAT(page.body(), testing::HasSubstr("<title>"));
+}
+
 TEST_F(WebServerTest, NothingElseIsServed) {
   const WebServer server(AnyPort(), &feed_, kAssets);
   for (const char* target :
