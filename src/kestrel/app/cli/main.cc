@@ -23,6 +23,11 @@ void SilenceLibraries() {
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
 }
 
+void UnsilenceLibraries() {
+  kestrel::UnsilenceGstreamer();
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_INFO);
+}
+
 // Returns the words of the command as given, for example "kestrel simulate landing".
 std::string CommandOf(const CLI::App& app) {
   std::string words = app.get_name();
@@ -40,6 +45,9 @@ int main(int argc, char** argv) {
   SilenceLibraries();
   CLI::App app("Kestrel gives UAVs eyes for landing on moving targets.", "kestrel");
   app.set_version_flag("--version", fmt::format("kestrel {}", kestrel::kVersion));
+  app.add_flag_callback("--verbose", UnsilenceLibraries,
+                        "Print the messages of GStreamer and OpenCV too");
+  app.fallthrough();  // also behind the subcommand
   app.require_subcommand(1);
   kestrel::AddDemoCommand(&app);
   kestrel::AddLandCommand(&app);

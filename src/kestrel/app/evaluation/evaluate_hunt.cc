@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/app/evaluation/evaluate_hunt.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -56,10 +58,9 @@ Plot MapPlot(const std::vector<TrueSighting>& sightings, const ObjectRows& rows,
              const std::vector<MapRow>& map) {
   constexpr const char* kBlack = "#000000";
   PlotPanel panel{"x (east), m", "y (north), m", {}, /*equal_axes=*/true};
-  panel.series = DetectedByClass(rows.objects);
-  panel.series.push_back(
-      {"true, when in view", PlotStyle::kCircles, Positions(sightings), {}, kBlack});
-  panel.series.push_back({"in the map", PlotStyle::kCrosses, Positions(map), {}, kBlack});
+  panel.series = {{"true, when in view", PlotStyle::kCircles, Positions(sightings), {}, kBlack},
+                  {"in the map", PlotStyle::kCrosses, Positions(map), {}, kBlack}};
+  std::ranges::move(DetectedByClass(rows.objects), std::back_inserter(panel.series));
   return {"map", "Objects, seen from above", {panel}};
 }
 

@@ -12,4 +12,10 @@ void SilenceGstreamer() {
   g_log_set_default_handler([](const gchar*, GLogLevelFlags, const gchar*, gpointer) {}, nullptr);
 }
 
+void UnsilenceGstreamer() {
+  gst_debug_set_active(TRUE);
+  gst_debug_set_default_threshold(GST_LEVEL_WARNING);
+  g_log_set_default_handler(g_log_default_handler, nullptr);
+}
+
 }  // namespace kestrel

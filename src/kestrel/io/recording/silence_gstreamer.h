@@ -7,4 +7,7 @@ namespace kestrel {
 // words. Does nothing where the environment has GST_DEBUG: somebody wants to read them.
 void SilenceGstreamer();
 
+// Lets GStreamer and GLib print again: errors and warnings.
+void UnsilenceGstreamer();
+
 }  // namespace kestrel
