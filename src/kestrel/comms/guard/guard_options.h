@@ -19,7 +19,7 @@ struct GuardOptions {
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("enabled", self.enabled, "", "a guard holds the line while guidance may fly");
     visitor("silence_s", self.silence_s, "s",
-            "without a sign of life for so long the guard stops the UAV");
+            "time without a sign of life after which the guard stops the UAV");
     visitor("program", self.program, "",
             "the guard's program; empty: kestrel-guard beside this one, or in PATH");
   }

@@ -23,10 +23,10 @@ struct ContactOptions {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("height_m", self.height_m, "m", "the feet are at most so high above the deck");
-    visitor("reach_m", self.reach_m, "m", "and so far from its middle");
-    visitor("speed_mps", self.speed_mps, "m/s", "and come nearer to it by less than this");
-    visitor("time_s", self.time_s, "s", "for so long");
+    visitor("height_m", self.height_m, "m", "largest height of the feet above the deck in contact");
+    visitor("reach_m", self.reach_m, "m", "largest distance of the feet from its middle");
+    visitor("speed_mps", self.speed_mps, "m/s", "largest closing speed");
+    visitor("time_s", self.time_s, "s", "shortest duration of these conditions");
   }
   std::vector<std::string> Validate() const;
 };

@@ -26,13 +26,14 @@ struct FlightLimitsOptions {
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("geofence_radius_m", self.geofence_radius_m, "m",
-            "how far it may fly from the home position");
-    visitor("ceiling_m", self.ceiling_m, "m", "how high, above the world's z = 0");
-    visitor("floor_m", self.floor_m, "m", "how low while no target is followed");
+            "largest horizontal distance from home");
+    visitor("ceiling_m", self.ceiling_m, "m", "largest height above the world's z = 0");
+    visitor("floor_m", self.floor_m, "m", "smallest height without a followed target");
     visitor("max_speed_mps", self.max_speed_mps, "m/s", "largest horizontal speed");
     visitor("max_climb_mps", self.max_climb_mps, "m/s", "fastest climb");
     visitor("max_sink_mps", self.max_sink_mps, "m/s", "fastest descent");
-    visitor("max_tilt_deg", self.max_tilt_deg, "deg", "the acceleration commanded needs no more");
+    visitor("max_tilt_deg", self.max_tilt_deg, "deg",
+            "largest tilt that a commanded acceleration may require");
   }
   std::vector<std::string> Validate() const;
 

@@ -23,10 +23,9 @@ struct FlightModelOptions {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor("is_used", self.is_used, "", "what the flight tells is used");
-    visitor("delay_s", self.delay_s, "s",
-            "of attitude and thrust after the autopilot's command, before it is known");
-    visitor("memory_s", self.memory_s, "s", "what is longer ago is forgotten");
+    visitor("is_used", self.is_used, "", "use the response that is measured in flight");
+    visitor("delay_s", self.delay_s, "s", "delay of attitude and thrust until it is measured");
+    visitor("memory_s", self.memory_s, "s", "age after which measurements are forgotten");
   }
   std::vector<std::string> Validate() const;
 };

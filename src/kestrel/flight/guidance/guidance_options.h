@@ -104,61 +104,71 @@ struct GuidanceOptions {
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("leg_m", self.leg_m, "m", "from the body's origin down to the feet");
     visitor("search_altitude_m", self.search_altitude_m, "m", "height above ground of the search");
-    visitor("search_wait_s", self.search_wait_s, "s", "waits so long before it circles outwards");
-    visitor("search_radius_m", self.search_radius_m, "m", "circles so far out; 0: it stays");
-    visitor("search_speed_mps", self.search_speed_mps, "m/s", "speed of that");
+    visitor("search_wait_s", self.search_wait_s, "s",
+            "time at the search point before the UAV circles outwards");
+    visitor("search_radius_m", self.search_radius_m, "m",
+            "largest radius of the search spiral; 0: no spiral");
+    visitor("search_speed_mps", self.search_speed_mps, "m/s", "speed on the search spiral");
     visitor("search_distance_m", self.search_distance_m, "m",
             "distance to which a lost target is searched for");
     visitor("search_limit_s", self.search_limit_s, "s",
             "time after which the search for a lost target is given up");
     visitor("cannot_follow_s", self.cannot_follow_s, "s",
-            "gives up after so long beyond the limits; 0: never");
+            "time beyond the limits after which guidance gives up; 0: never");
     visitor("follow_height_m", self.follow_height_m, "m", "height above the board to follow in");
     visitor("glide", self.glide, "m/m", "height in approach, per metre of distance");
     visitor("position_gain", self.position_gain, "1/s", "speed towards the target per metre");
-    visitor("braking", self.braking, "m/s^2", "deceleration that it counts on when far away");
+    visitor("braking", self.braking, "m/s^2",
+            "assumed deceleration of the UAV far from the target");
     visitor("autopilot_jerk", self.autopilot_jerk, "m/s^3",
-            "with which the autopilot changes the acceleration; 0: at once");
+            "jerk limit of the autopilot; 0: unlimited");
     visitor("integral_gain", self.integral_gain, "1/s^2",
-            "speed per metre and second that it stays off");
+            "integral gain: speed per metre and second of offset");
     visitor("smoothing_s", self.smoothing_s, "s",
-            "over how long the target's velocity is smoothed");
+            "time constant of the filter of the target's velocity");
     visitor("sink_gain", self.sink_gain, "1/s", "speed of the descent per metre of height");
     visitor("touchdown_sink_mps", self.touchdown_sink_mps, "m/s", "slowest descent");
-    visitor("cone_m", self.cone_m, "m", "how far off it may be at the board to go down");
-    visitor("cone_slope", self.cone_slope, "m/m", "and more, per metre of height");
-    visitor("commit_height_m", self.commit_height_m, "m", "below it goes through with it");
+    visitor("cone_m", self.cone_m, "m", "radius of the descent cone at the board");
+    visitor("cone_slope", self.cone_slope, "m/m", "growth of that radius per metre of height");
+    visitor("commit_height_m", self.commit_height_m, "m",
+            "height below which the UAV commits to the landing");
     visitor("touchdown_heading", self.touchdown_heading, "deg",
-            "of the nose over the pad, from the pad's x axis, counterclockwise from above; or any");
+            "heading of the nose over the pad, from the pad's x axis, counterclockwise from above; "
+            "or any");
     visitor("heading_tolerance_deg", self.heading_tolerance_deg, "deg",
-            "how far off it the nose may be to go through with the landing");
+            "largest heading error at which the UAV commits to the landing");
     visitor("heading_wait_s", self.heading_wait_s, "s",
-            "gives up after so long above the target without that heading");
+            "time above the target without that heading after which guidance gives up");
     visitor("max_turn_dps", self.max_turn_dps, "deg/s",
-            "fastest turn to that heading, against the pad");
-    visitor("max_sigma_m", self.max_sigma_m, "m", "known no better it does not go down");
-    visitor("sight_s", self.sight_s, "s", "in sight is what a frame showed so recently");
+            "largest turn rate to that heading, relative to the pad");
+    visitor("max_sigma_m", self.max_sigma_m, "m",
+            "largest standard deviation of the target's position for a descent");
+    visitor("sight_s", self.sight_s, "s",
+            "age of the last sighting up to which the target is in sight");
     visitor("sight_height_m", self.sight_height_m, "m",
-            "lower than this it climbs without a target in sight");
+            "height below which the UAV climbs when the target is out of sight");
     visitor("commit_sight_s", self.commit_sight_s, "s",
-            "the last bit it goes down when a frame showed it so recently");
+            "age of the last sighting up to which a committed landing continues");
     visitor("max_target_climb_mps", self.max_target_climb_mps, "m/s",
-            "a target that rises or sinks faster is none");
-    visitor("hold_pose_s", self.hold_pose_s, "s", "flies on level for so long without a pose");
-    visitor("lose_pose_s", self.lose_pose_s, "s", "gives up after so long without a pose");
-    visitor("lose_camera_s", self.lose_camera_s, "s", "gives up after so long without images");
+            "largest vertical speed of a target");
+    visitor("hold_pose_s", self.hold_pose_s, "s", "time of level flight without a pose");
+    visitor("lose_pose_s", self.lose_pose_s, "s",
+            "time without a pose after which guidance gives up");
+    visitor("lose_camera_s", self.lose_camera_s, "s",
+            "time without images after which guidance gives up");
     visitor("lose_link_s", self.lose_link_s, "s",
-            "after so long without the link it waits for the mode and goes around");
+            "link outage after which guidance waits for the mode and goes around");
     visitor("disobey_mps", self.disobey_mps, "m/s",
-            "so far from the velocity commanded is disobedience");
-    visitor("disobey_s", self.disobey_s, "s", "for so long: gives up");
+            "velocity error above which the autopilot does not obey");
+    visitor("disobey_s", self.disobey_s, "s",
+            "duration of that error after which guidance gives up");
     visitor("stream_before_start", self.stream_before_start, "",
-            "set-points of standing still before the mode is given");
-    visitor("land_in_contact", self.land_in_contact, "", "asks for the LAND mode in contact");
+            "send set-points of standing still before the mode is given");
+    visitor("land_in_contact", self.land_in_contact, "", "ask for the LAND mode in contact");
     visitor("disarm_after_s", self.disarm_after_s, "s",
-            "disarms by force after so long in contact; 0: never");
+            "time in contact after which the UAV is disarmed by force; 0: never");
     visitor("accept_unsafe_loss", self.accept_unsafe_loss, "",
-            "flies although the autopilot does not hold when set-points stop");
+            "fly although the autopilot does not hold when set-points stop");
     visitor.Group("contact", self.contact);
     visitor.Group("stale", self.stale);
     visitor.Group("limits", self.limits);

@@ -34,9 +34,10 @@ struct VehicleWorldOptions : LandingSceneOptions {
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("drive_altitude_m", self.drive_altitude_m, "m",
-            "the vehicle waits until the UAV has been so high; 0: it drives all the time");
-    visitor("drive_delay_s", self.drive_delay_s, "s", "and so much longer");
-    visitor("drive_acceleration", self.drive_acceleration, "m/s^2", "with which it drives off");
+            "height of the UAV that the vehicle waits for; 0: it drives all the time");
+    visitor("drive_delay_s", self.drive_delay_s, "s", "further wait before the vehicle drives off");
+    visitor("drive_acceleration", self.drive_acceleration, "m/s^2",
+            "acceleration of the vehicle when it drives off");
     LandingSceneOptions::Visit(self, visitor);
   }
   std::vector<std::string> Validate() const;

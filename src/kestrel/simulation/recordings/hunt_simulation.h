@@ -68,7 +68,7 @@ struct HuntSimulationOptions {
     visitor.Group("ground", self.ground);
     visitor.Group("light", self.light);
     visitor("field_seed", self.field_seed, "",
-            "seed of what lies around, for several flights over one field; 0: that of --seed");
+            "seed of the surroundings, for several flights over one field; 0: that of --seed");
     visitor("banners", self.banners, "1", "banners around");
     visitor("vehicles", self.vehicles, "1", "parked vehicles");
     visitor("uav_shadow", self.uav_shadow, "", "the UAV's shadow");
