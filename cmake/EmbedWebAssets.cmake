@@ -4,7 +4,7 @@
 #   cmake -DFOLDER=web/dist -DPLAIN_PAGE=plain_page.html -DOUTPUT=web_assets.cc -P EmbedWebAssets.cmake
 #
 # web/'s build gzips its files; a name that ends in .gz is served without it.
-cmake_minimum_required(VERSION 3.25)
+cmake_minimum_required(VERSION 3.22)
 
 function(web_type name result)
   if(name MATCHES "\\.html$")

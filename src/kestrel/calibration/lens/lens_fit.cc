@@ -11,6 +11,7 @@
 #include <ceres/rotation.h>
 
 #include "kestrel/calibration/lens/lens_projection.h"
+#include "kestrel/core/base/held_parameters.h"
 #include "kestrel/core/base/robust_statistics.h"
 
 namespace kestrel {
@@ -140,7 +141,7 @@ class Adjustment {
     if (fixed.size() == kLensParameters) {
       problem_.SetParameterBlockConstant(lens_.data());
     } else if (!fixed.empty()) {
-      problem_.SetManifold(lens_.data(), new ceres::SubsetManifold(kLensParameters, fixed));
+      HoldParameters(&problem_, lens_.data(), kLensParameters, fixed);
     }
   }
 

@@ -14,6 +14,7 @@
 #include "kestrel/calibration/mount/pose_smoothing.h"
 #include "kestrel/calibration/mount/target_path.h"
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/base/held_parameters.h"
 #include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/core/geometry/angles.h"
 
@@ -160,9 +161,7 @@ Parameters Refine(const FlightFit& fit, Parameters parameters,
   for (int k = 0; k < kParameters; ++k) {
     if (IsFixed(k, options)) fixed.push_back(k);
   }
-  if (!fixed.empty()) {
-    problem.SetManifold(parameters.data(), new ceres::SubsetManifold(kParameters, fixed));
-  }
+  if (!fixed.empty()) HoldParameters(&problem, parameters.data(), kParameters, fixed);
   // Limits the offset to the times that have poses.
   problem.SetParameterLowerBound(parameters.data(), kClock,
                                  std::min(options.min_offset_s, parameters(kClock)));

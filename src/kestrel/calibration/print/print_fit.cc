@@ -11,6 +11,7 @@
 #include <ceres/ceres.h>
 #include <ceres/rotation.h>
 
+#include "kestrel/core/base/held_parameters.h"
 #include "kestrel/core/base/robust_statistics.h"
 
 namespace kestrel {
@@ -211,9 +212,7 @@ class LineFit {
     state_[kZoom] = std::clamp(state_[kZoom], assumed - kMaxZoom, assumed + kMaxZoom);
     hold(kBend, 0, lens_.bend_sigma);
     hold(kSpread, 0, kSpreadSigma_px * start_.pixel_m);
-    if (!with_ends) {
-      problem.SetManifold(state_.data(), new ceres::SubsetManifold(kParameters, {kArmHalfLength}));
-    }
+    if (!with_ends) HoldParameters(&problem, state_.data(), kParameters, {kArmHalfLength});
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::DENSE_QR;
     options.logging_type = ceres::SILENT;

@@ -44,11 +44,21 @@ int Close(thandle_t /*handle*/) { return 0; }
 
 toff_t Size(thandle_t handle) { return static_cast<TiffFile*>(handle)->bytes.size(); }
 
-// Returns 1: the fault is handled and not printed.
-int KeepFault(TIFF* /*tiff*/, void* file, const char* /*module*/, const char* format,
-              va_list arguments) {
-  auto& fault = static_cast<TiffFile*>(file)->fault;
+void KeepFault(thandle_t handle, const char* format, va_list arguments) {
+  auto& fault = static_cast<TiffFile*>(handle)->fault;
   if (fault[0] == '\0') std::vsnprintf(fault.data(), fault.size(), format, arguments);
+}
+
+struct TiffCloser {
+  void operator()(TIFF* tiff) const { TIFFClose(tiff); }
+};
+using TiffPointer = std::unique_ptr<TIFF, TiffCloser>;
+
+#if TIFFLIB_VERSION >= 20221213  // 4.5
+// Returns 1: the fault is handled and not printed.
+int TakeFault(TIFF* /*tiff*/, void* file, const char* /*module*/, const char* format,
+              va_list arguments) {
+  KeepFault(file, format, arguments);
   return 1;
 }
 
@@ -57,20 +67,32 @@ int IgnoreWarning(TIFF* /*tiff*/, void* /*file*/, const char* /*module*/, const 
   return 1;
 }
 
-struct TiffCloser {
-  void operator()(TIFF* tiff) const { TIFFClose(tiff); }
+struct OptionsFree {
   void operator()(TIFFOpenOptions* options) const { TIFFOpenOptionsFree(options); }
 };
-using TiffPointer = std::unique_ptr<TIFF, TiffCloser>;
 
 TiffPointer Open(TiffFile* file, std::size_t max_bytes) {
-  const std::unique_ptr<TIFFOpenOptions, TiffCloser> options(TIFFOpenOptionsAlloc());
+  const std::unique_ptr<TIFFOpenOptions, OptionsFree> options(TIFFOpenOptionsAlloc());
   TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), static_cast<tmsize_t>(max_bytes));
-  TIFFOpenOptionsSetErrorHandlerExtR(options.get(), KeepFault, file);
+  TIFFOpenOptionsSetErrorHandlerExtR(options.get(), TakeFault, file);
   TIFFOpenOptionsSetWarningHandlerExtR(options.get(), IgnoreWarning, file);
   return TiffPointer(TIFFClientOpenExt("image", "rm", file, Read, RefuseToWrite, Seek, Close, Size,
                                        nullptr, nullptr, options.get()));
 }
+#else
+void TakeFault(thandle_t file, const char* /*module*/, const char* format, va_list arguments) {
+  KeepFault(file, format, arguments);
+}
+
+// These handlers are the process's, and what libtiff allocates has only its own limits.
+TiffPointer Open(TiffFile* file, std::size_t /*max_bytes*/) {
+  TIFFSetErrorHandler(nullptr);
+  TIFFSetErrorHandlerExt(TakeFault);
+  TIFFSetWarningHandler(nullptr);
+  return TiffPointer(TIFFClientOpen("image", "rm", file, Read, RefuseToWrite, Seek, Close, Size,
+                                    nullptr, nullptr));
+}
+#endif
 
 std::uint16_t NumberOf(TIFF* tiff, std::uint32_t tag) {
   std::uint16_t number = 0;
