@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The results of a study: one SQLite file, and tables as CSV that are the same to the byte whatever
+the order in which the units were done, and however often the study was interrupted."""
+import csv
+import os
+import sqlite3
+from pathlib import Path
+
+DATABASE = "study.db"
+# The columns of each table, in order; `key` names a unit of work (`plan.Unit.key`).
+TABLES = {
+    "unit": {"key": "TEXT PRIMARY KEY", "recording": "TEXT", "piece": "INTEGER",
+             "configuration": "TEXT", "version": "TEXT", "task": "TEXT", "seed": "INTEGER",
+             "state": "TEXT", "reason": "TEXT", "frames": "INTEGER", "path": "TEXT"},
+    "bin": {"key": "TEXT", "quantity": "TEXT", "lower": "REAL", "upper": "REAL",
+            "frames": "INTEGER", "found": "INTEGER", "false": "INTEGER", "error_sum": "REAL",
+            "error_squares": "REAL", "nees_sum": "REAL", "nees_count": "INTEGER",
+            "quality_sum": "REAL"},
+    "summary": {"key": "TEXT", "name": "TEXT", "value": "REAL"},
+    "worst": {"key": "TEXT", "rank": "INTEGER", "time_ns": "INTEGER", "frame": "TEXT",
+              "what": "TEXT", "value": "REAL"},
+    "detection": {"key": "TEXT", "time_ns": "INTEGER", "frame": "TEXT", "found": "INTEGER",
+                  "false": "INTEGER", "error_m": "REAL"},
+    "resource": {"key": "TEXT", "seconds": "REAL", "cpu_s": "REAL", "memory_mb": "REAL",
+                 "frame_ms_median": "REAL", "frame_ms_p99": "REAL", "worker": "TEXT",
+                 "log": "TEXT"},
+}
+# What a unit took differs from run to run.
+EXPORTED = [table for table in TABLES if table != "resource"]
+# The recordings whose content was hashed already, by what says that they have not changed.
+_HASHES = ("CREATE TABLE IF NOT EXISTS content"
+           "(source TEXT PRIMARY KEY, fingerprint TEXT, hash TEXT)")
+
+
+class StoreError(Exception):
+    """A file of the study cannot be read or written; the message is one line."""
+
+
+def _create(connection):
+    for table, columns in TABLES.items():
+        described = ", ".join(f'"{name}" {kind}' for name, kind in columns.items())
+        connection.execute(f'CREATE TABLE IF NOT EXISTS "{table}" ({described})')
+        if table != "unit":
+            connection.execute(f'CREATE INDEX IF NOT EXISTS "{table}_key" ON "{table}"(key)')
+    connection.execute(_HASHES)
+    connection.commit()
+
+
+class Store:
+    """The file study.db of a folder. One process writes; others may read meanwhile.
+
+    Raises StoreError where the file cannot be read or written.
+    """
+
+    def __init__(self, folder):
+        self.folder = Path(folder)
+        self.path = self.folder / DATABASE
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            self._connection = sqlite3.connect(self.path, isolation_level="DEFERRED")
+            # A kill between two commits costs what was not committed, never the file.
+            self._connection.execute("PRAGMA journal_mode=WAL")
+            self._connection.execute("PRAGMA synchronous=NORMAL")
+            _create(self._connection)
+        except (OSError, sqlite3.Error) as error:
+            raise StoreError(f"{self.path}: {error}") from None
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, error, trace):
+        self.close()
+
+    def state(self, key):
+        """Returns 'done', 'failed', or None where the unit has no result."""
+        row = self._connection.execute("SELECT state FROM unit WHERE key=?", (key,)).fetchone()
+        return row[0] if row else None
+
+    def count(self, state):
+        """Returns how many units are in a state."""
+        query = "SELECT count(*) FROM unit WHERE state=?"
+        return self._connection.execute(query, (state,)).fetchone()[0]
+
+    def add(self, unit, result):
+        """Adds the result of a unit, unless it is there: a result that came twice counts once.
+
+        unit: a dict with the columns of `unit` but state, reason and frames. result: what
+        `unit.run_unit` returns. `commit` makes it last.
+        """
+        row = {**unit, "state": result["state"], "reason": result.get("reason", ""),
+               "frames": result.get("frames", 0)}
+        try:
+            added = self._insert("unit", [row], "INSERT OR IGNORE").rowcount
+            if not added:
+                return
+            key = unit["key"]
+            summary = sorted(result.get("summary", {}).items())
+            self._insert("summary", [{"key": key, "name": name, "value": value}
+                                     for name, value in summary])
+            for table, rows in (("bin", "bins"), ("worst", "worst"), ("detection", "detections")):
+                self._insert(table, [{**row, "key": key} for row in result.get(rows, [])])
+            self._insert("resource", [{**result.get("resource", {}), "key": key}])
+        except sqlite3.Error as error:
+            raise self._write_error(error) from None
+
+    def _insert(self, table, rows, how="INSERT"):
+        columns = TABLES[table]
+        names = ", ".join(f'"{name}"' for name in columns)
+        places = ", ".join("?" * len(columns))
+        values = [tuple(row.get(name) for name in columns) for row in rows]
+        return self._connection.executemany(
+            f'{how} INTO "{table}" ({names}) VALUES ({places})', values)
+
+    def _write_error(self, error):
+        return StoreError(f"{self.path}: {error}; what it has is kept, the same command goes on")
+
+    def commit(self):
+        """Makes what was added last."""
+        try:
+            self._connection.commit()
+        except sqlite3.Error as error:
+            raise self._write_error(error) from None
+
+    def forget_failed(self):
+        """Removes the units that failed, so that they are tried again."""
+        failed = "SELECT key FROM unit WHERE state='failed'"
+        for table in reversed(TABLES):
+            self._connection.execute(f'DELETE FROM "{table}" WHERE key IN ({failed})')
+        self.commit()
+
+    def content_hash(self, source, fingerprint):
+        """Returns the hash of a recording that has not changed since, or None."""
+        query = "SELECT hash FROM content WHERE source=? AND fingerprint=?"
+        row = self._connection.execute(query, (source, fingerprint)).fetchone()
+        return row[0] if row else None
+
+    def remember_content(self, source, fingerprint, content_hash):
+        """Keeps the hash of a recording, until its fingerprint is another."""
+        self._connection.execute("INSERT OR REPLACE INTO content VALUES (?, ?, ?)",
+                                 (source, fingerprint, content_hash))
+
+    def export(self):
+        """Writes the tables as TABLE.csv beside study.db, all but `resource`, in an order that
+        depends on the rows alone."""
+        for table in EXPORTED:
+            self._export(table)
+
+    def _export(self, table):
+        columns = list(TABLES[table])
+        names = ", ".join(f'"{name}"' for name in columns)
+        # `rowid` within a unit: its worker's order.
+        order = "recording, piece, configuration, version, task, seed, key" if table == "unit" \
+            else "key, rowid"
+        rows = self._connection.execute(f'SELECT {names} FROM "{table}" ORDER BY {order}')
+        part = self.folder / f"{table}.csv.part"
+        try:
+            with open(part, "w", newline="") as file:
+                writer = csv.writer(file, lineterminator="\n")
+                writer.writerow(columns)
+                writer.writerows(rows)
+            os.replace(part, self.folder / f"{table}.csv")
+        except OSError as error:
+            part.unlink(missing_ok=True)
+            raise StoreError(f"{self.folder / f'{table}.csv'}: {error.strerror}") from None
+
+    def close(self):
+        """Closes the file, which then is one file. What was not committed is lost."""
+        try:
+            self._connection.rollback()
+            self._connection.execute("PRAGMA journal_mode=DELETE")
+        except sqlite3.Error:
+            pass  # a reader has it open: the journal stays beside it and is read with it
+        self._connection.close()
