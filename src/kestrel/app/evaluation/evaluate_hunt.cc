@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 
-#include "kestrel/app/evaluation/object_comparison.h"
 #include "kestrel/app/evaluation/object_tables.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/read_file.h"
@@ -66,13 +65,19 @@ Plot MapPlot(const std::vector<TrueSighting>& sightings, const ObjectRows& rows,
 
 }  // namespace
 
-Report EvaluateHunt(const std::string& recording, const std::string& output) {
+ComparedHunt CompareHuntOutput(const std::string& recording, const std::string& output) {
   const FlightTruth flight(recording);
-  const auto [objects, sightings] = ReadObjectTruth(flight.root());
-  const std::string rows_file = (fs::path(output) / "object_detections.csv").string();
-  const ObjectRows rows = ParseObjectRows(ReadFile(rows_file), rows_file);
-  if (rows.frames.empty()) throw InputError(rows_file + ": no rows, expected some for every image");
-  const auto comparisons = CompareObjects(flight, objects, sightings, rows, rows_file);
+  ObjectTruth truth = ReadObjectTruth(flight.root());
+  const std::string file = (fs::path(output) / "object_detections.csv").string();
+  ObjectRows rows = ParseObjectRows(ReadFile(file), file);
+  if (rows.frames.empty()) throw InputError(file + ": no rows, expected some for every image");
+  auto comparisons = CompareObjects(flight, truth.objects, truth.sightings, rows, file);
+  return {std::move(truth), std::move(rows), std::move(comparisons)};
+}
+
+Report EvaluateHunt(const std::string& recording, const std::string& output) {
+  const auto [truth, rows, comparisons] = CompareHuntOutput(recording, output);
+  const auto& [objects, sightings] = truth;
 
   Report report;
   report.title = fmt::format("Hunt: {}", fs::path(recording).lexically_normal().string());

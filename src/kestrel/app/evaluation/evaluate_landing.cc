@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include "kestrel/app/evaluation/landing_comparison.h"
 #include "kestrel/app/evaluation/landing_plots.h"
 #include "kestrel/app/evaluation/landing_tables.h"
 #include "kestrel/app/evaluation/track_comparison.h"
@@ -44,16 +44,21 @@ ReportTable ImageTable(const FlightTruth& flight,
 
 }  // namespace
 
-Report EvaluateLanding(const std::string& recording, const std::string& output) {
-  const FlightTruth flight(recording);
+ComparedLanding CompareLandingOutput(const std::string& recording, const std::string& output) {
+  FlightTruth flight(recording);
   const std::string truth_file =
       (fs::path(flight.root()) / "landing_pattern0" / "data.csv").string();
-  const auto patterns = ParseTruePatterns(ReadFile(truth_file), truth_file);
-  const fs::path folder(output);
-  const std::string file = (folder / "landing_detections.csv").string();
+  auto patterns = ParseTruePatterns(ReadFile(truth_file), truth_file);
+  const std::string file = (fs::path(output) / "landing_detections.csv").string();
   const auto rows = ParseDetectionRows(ReadFile(file), file);
   if (rows.empty()) throw InputError(file + ": no rows, expected one for every image");
-  const auto comparisons = CompareLanding(flight, patterns, rows, file);
+  auto comparisons = CompareLanding(flight, patterns, rows, file);
+  return {std::move(flight), std::move(patterns), std::move(comparisons)};
+}
+
+Report EvaluateLanding(const std::string& recording, const std::string& output) {
+  const auto [flight, patterns, comparisons] = CompareLandingOutput(recording, output);
+  const fs::path folder(output);
   const auto track = ReadIfThere(folder / "landing_track.csv", ParseTrackRows);
   const auto predictions = ReadIfThere(folder / "landing_prediction.csv", ParsePredictionRows);
   const auto track_errors = CompareTrack(patterns, track);
