@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The rows of a study that are made of a run's output, with and without truth."""
+import shutil
+
+import pytest
+
+import kestrel
+from kestrel.study import scoring
+
+
+@pytest.fixture(scope="module")
+def landing(tmp_path_factory):
+    """A flight down over a pad that drives, and what was found in it."""
+    folder = tmp_path_factory.mktemp("landing")
+    kestrel.simulate("figure8", frames=40, rate_hz=10, shutter={"rays_per_pixel": 1},
+                     flight={"start_altitude_m": 8}).write(folder / "flight")
+    kestrel.Session(folder / "flight", output=str(folder / "output")).run()
+    return folder
+
+
+@pytest.fixture(scope="module")
+def missing(landing, tmp_path_factory):
+    """The same output without the detections of ten images in a row."""
+    output = tmp_path_factory.mktemp("missing")
+    lines = (landing / "output" / "landing_detections.csv").read_text().splitlines()
+    for number in range(16, 26):
+        frame, time = lines[number].split(",")[:2]
+        lines[number] = f"{frame},{time},0" + "," * (lines[0].count(",") - 2)
+    (output / "landing_detections.csv").write_text("\n".join(lines) + "\n")
+    return output
+
+
+@pytest.fixture(scope="module")
+def without_truth(landing, tmp_path_factory):
+    flight = tmp_path_factory.mktemp("unknown") / "flight"
+    shutil.copytree(landing / "flight", flight)
+    shutil.rmtree(flight / "mav0" / "landing_pattern0")
+    shutil.rmtree(flight / "mav0" / "state_groundtruth_estimate0")
+    (flight / "mav0" / "scene.yaml").unlink()
+    return flight
+
+
+def of(rows, quantity):
+    return [row for row in rows if row["quantity"] == quantity]
+
+
+def test_truth_gives_the_counts_of_evaluate(landing):
+    flight, output = landing / "flight", landing / "output"
+    result = scoring.score(str(flight), str(output), "land")
+    images = kestrel.evaluate(flight, output).tables[0].rows[0]
+    whole, = of(result["bins"], "all")
+    assert [whole["frames"], whole["false"]] == [int(images[3]), int(images[5])]
+    assert result["frames"] == 40 == result["summary"]["images"]
+    for quantity in ("altitude_m", "tilt_deg", "light", "speed_mps"):
+        rows = of(result["bins"], quantity)
+        assert sum(row["frames"] for row in rows) == whole["frames"], quantity
+        assert sum(row["found"] for row in rows) == whole["found"], quantity
+    assert 0 < whole["error_sum"] / whole["found"] < 0.3
+    assert whole["nees_count"] == whole["found"]
+    said = of(result["bins"], "quality")
+    assert sum(row["frames"] for row in said) == whole["found"] + whole["false"]
+    assert result["resource"]["frame_ms_median"] > 0
+
+
+def test_what_was_not_found_is_missed(landing, missing):
+    result = scoring.score(str(landing / "flight"), str(missing), "land")
+    complete = scoring.score(str(landing / "flight"), str(landing / "output"), "land")
+    assert result["summary"]["missed"] == complete["summary"]["missed"] + 10
+    assert [row["what"] for row in result["worst"]].count("missed") == 4
+    heights = [row["value"] for row in result["worst"] if row["what"] == "missed"]
+    assert heights == sorted(heights)
+    lost = {row["frame"] for row in result["detections"] if not row["found"]}
+    assert {row["frame"] for row in result["worst"] if row["what"] == "missed"} <= lost
+    assert result["summary"]["longest_gap_s"] >= 1
+
+
+def test_misses_are_estimated_without_truth(landing, missing, without_truth):
+    true = scoring.score(str(landing / "flight"), str(missing), "land")
+    result = scoring.score(str(without_truth), str(missing), "land")
+    summary = result["summary"]
+    assert summary["has_truth"] == 0 and true["summary"]["has_truth"] == 1
+    assert abs(summary["missed"] - true["summary"]["missed"]) <= 2
+    assert summary["missed_seen"] >= 8
+    assert abs(summary["in_view"] - true["summary"]["in_view"]) <= 3
+    whole, = of(result["bins"], "all")
+    assert whole["false"] == 0 and whole["frames"] == summary["in_view"]
+    true_heights = [row["frames"] for row in of(true["bins"], "altitude_m")]
+    heights = [row["frames"] for row in of(result["bins"], "altitude_m")]
+    assert sum(abs(a - b) for a, b in zip(heights, true_heights)) <= 6
+
+
+def test_a_detection_away_from_the_trajectory_is_false(landing, without_truth, tmp_path):
+    lines = (landing / "output" / "landing_detections.csv").read_text().splitlines()
+    columns = lines[0].split(",")
+    cells = lines[20].split(",")
+    assert cells[2] == "1"
+    for name, off in (("u_px", 60), ("p_CP_C_x_m", 1.5)):
+        cells[columns.index(name)] = str(float(cells[columns.index(name)]) + off)
+    lines[20] = ",".join(cells)
+    (tmp_path / "landing_detections.csv").write_text("\n".join(lines) + "\n")
+    result = scoring.score(str(without_truth), str(tmp_path), "land")
+    false = [row for row in result["worst"] if row["what"] == "false"]
+    assert [row["frame"] for row in false] == [cells[0]]
+
+
+def test_a_score_is_the_same_each_time(without_truth, missing):
+    first, again = (scoring.score(str(without_truth), str(missing), "land") for _ in range(2))
+    assert first == again
+
+
+def test_a_hunt_has_rows(hunt_flight, tmp_path):
+    hunt_flight.write(tmp_path / "field")
+    kestrel.Session(tmp_path / "field", hunt=True, output=str(tmp_path / "output")).run()
+    result = scoring.score(str(tmp_path / "field"), str(tmp_path / "output"), "hunt")
+    detection = kestrel.evaluate(tmp_path / "field", tmp_path / "output", hunt=True).tables[0]
+    whole, = of(result["bins"], "all")
+    total = dict(zip(detection.columns, detection.rows[-1]))
+    assert whole["frames"] == int(total["wanted"])
+    assert sum(row["frames"] for row in of(result["bins"], "altitude_m")) == whole["frames"]
+    assert sum(row["found"] for row in result["detections"]) >= whole["found"] > 0
+
+
+def test_a_flight_whose_images_are_not_kept_has_its_track(landing, tmp_path):
+    shutil.copy(landing / "output" / "landing_detections.csv", tmp_path)
+    result = scoring.score(str(tmp_path), str(tmp_path), "fly")
+    assert result["bins"] == [] and result["frames"] == 40
+    assert result["summary"]["jumps"] == 0 and 0.5 < result["summary"]["found_share"] <= 1
+    assert scoring.score(str(tmp_path), str(tmp_path / "none"), "fly")["frames"] == 0
+
+
+def test_a_missing_table_is_one_line(tmp_path):
+    with pytest.raises(kestrel.InputError, match="landing_detections.csv: No such file"):
+        scoring.score(str(tmp_path), str(tmp_path), "land")
+    (tmp_path / "landing_detections.csv").write_text("frame,timestamp_ns\n")
+    with pytest.raises(kestrel.InputError, match="no rows"):
+        scoring.score(str(tmp_path), str(tmp_path), "land")
