@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from .results import Column, Results, Variant, sums_of
+from .results import Cells, Column, Results, Variant
 from .statistics import Differences, compare
 
 ALPHA = 0.02  # probability that a comparison of two equal things shows a difference anywhere
@@ -126,13 +126,13 @@ def compare_variants(before: tuple[Results, Variant], after: tuple[Results, Vari
     paired = bool(both)
     used = [both, both] if paired else names
     cells = [results.cells(variant) for results, variant in (before, after)]
-    columns = sorted(column for column in set(cells[0]) & set(cells[1])
-                     if column.measure in MEASURES)
+    columns = sorted(set(cells[0].columns(MEASURES)) & set(cells[1].columns(MEASURES)))
     changes: list[Change] = []
     for family in _families(columns):
-        sums = [sums_of(cells[side], family, used[side]) for side in (0, 1)]
+        sums = [cells[side].sums(family, used[side]) for side in (0, 1)]
         differences = compare(sums[0], sums[1], paired, seed)
-        changes += [_change(column, differences, place, cells, used, ALPHA / comparisons)
+        having = np.minimum(*((each.denominator > 0).sum(axis=0) for each in sums))
+        changes += [_change(column, differences, place, int(having[place]), ALPHA / comparisons)
                     for place, column in enumerate(family)]
     _set_apart_other_images(changes)
     comparison = Comparison(before[1], after[1], paired,
@@ -151,14 +151,12 @@ def _families(columns: list[Column]) -> list[list[Column]]:
     return [whole, [column for column in columns if column not in whole]]
 
 
-def _change(column: Column, differences: Differences, place: int,
-            cells: list[dict[Column, dict[str, tuple[float, float]]]], used: list[list[str]],
+def _change(column: Column, differences: Differences, place: int, recordings: int,
             alpha: float) -> Change:
     before, after, low, high, p = (
         float(part[place]) for part in (differences.before, differences.after, differences.low,
                                         differences.high, np.minimum(1, 2 * differences.p)))
-    having = [len(set(cells[side][column]) & set(used[side])) for side in (0, 1)]
-    return Change(column, min(having), before, after, low, high, p,
+    return Change(column, recordings, before, after, low, high, p,
                   _verdict(column.measure, before, after, p, alpha))
 
 
@@ -187,15 +185,13 @@ def _off(nees: float) -> float:
 
 
 def _compare_frames(comparison: Comparison, before: tuple[Results, Variant],
-                    after: tuple[Results, Variant],
-                    cells: list[dict[Column, dict[str, tuple[float, float]]]], names: list[str],
+                    after: tuple[Results, Variant], cells: list[Cells], names: list[str],
                     count: int) -> None:
     """Names the images that differ, of the recordings that changed most."""
     columns = [Column("found", has_truth) for has_truth in (True, False)]
     for name in names:
-        found = [sum(side.get(column, {}).get(name, (0.0, 0.0))[0] for column in columns)
-                 for side in cells]
-        images = sum(cells[0].get(column, {}).get(name, (0.0, 0.0))[1] for column in columns)
+        found = [sum(side.value(column, name)[0] for column in columns) for side in cells]
+        images = sum(cells[0].value(column, name)[1] for column in columns)
         comparison.shares[name] = (found[0], found[1], images)
     by_loss = sorted(names, key=lambda name: (comparison.shares[name][1]
                                               - comparison.shares[name][0], name))

@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .statistics import Sums
 from .store import DATABASE
@@ -43,6 +44,40 @@ class Column:
     quantity: str = "all"
     lower: float = -np.inf
     upper: float = np.inf
+
+
+class Cells:
+    """Numerators and denominators of values, of a variant, by column and recording."""
+
+    def __init__(self, recordings: list[str]) -> None:
+        self.recordings = recordings
+        self._rows = {name: row for row, name in enumerate(recordings)}
+        self._sums: dict[Column, NDArray[np.float64]] = {}  # (2, recordings)
+
+    def columns(self, measures: Iterable[str]) -> list[Column]:
+        """Returns the columns of some measures, in order."""
+        return sorted(column for column in self._sums if column.measure in set(measures))
+
+    def add(self, column: Column, recording: str, numerator: float, denominator: float) -> None:
+        """Adds to a value; nothing where the denominator is zero."""
+        if denominator > 0:
+            sums = self._sums.setdefault(column, np.zeros((2, len(self.recordings))))
+            sums[:, self._rows[recording]] += numerator, denominator
+
+    def value(self, column: Column, recording: str) -> tuple[float, float]:
+        """Returns (numerator, denominator); zeros where there is no value."""
+        if column not in self._sums:
+            return 0.0, 0.0
+        numerator, denominator = self._sums[column][:, self._rows[recording]]
+        return float(numerator), float(denominator)
+
+    def sums(self, columns: list[Column], recordings: list[str]) -> Sums:
+        """Returns the sums of columns (values) over recordings (rows)."""
+        rows = [self._rows[name] for name in recordings]
+        numbers = np.zeros((2, len(rows), len(columns)))
+        for place, column in enumerate(columns):
+            numbers[:, :, place] = self._sums[column][:, rows]
+        return Sums(numbers[0], numbers[1])
 
 
 @dataclass
@@ -95,15 +130,10 @@ class Results:
                     "SELECT configuration, version, task, recording, reason FROM unit "
                     "WHERE state='failed' ORDER BY configuration, version, recording, piece")]
 
-    def cells(self, variant: Variant) -> dict[Column, dict[str, tuple[float, float]]]:
-        """Returns for each column and recording (numerator, denominator) of its value."""
-        cells: dict[Column, dict[str, tuple[float, float]]] = {}
-
-        def add(column: Column, recording: str, numerator: float, denominator: float) -> None:
-            if denominator > 0:
-                old = cells.setdefault(column, {}).get(recording, (0.0, 0.0))
-                cells[column][recording] = (old[0] + numerator, old[1] + denominator)
-
+    def cells(self, variant: Variant) -> Cells:
+        """Returns the values of all columns, by recording."""
+        cells = Cells(self.recordings(variant))
+        add = cells.add
         for recording, truth, quantity, low, high, *sums in self._of(variant, _BINS):
             frames, found, false, error_sum, nees_sum, nees_count, quality_sum = sums
             place = (bool(truth), quantity, low, high)
@@ -184,17 +214,3 @@ _SUMMARIES = """
 SELECT recording, name, avg(value) FROM unit JOIN summary ON summary.key = unit.key
 WHERE {unit} AND state='done' AND name IN ('landed', 'touchdown_m', 'landing_s')
 GROUP BY recording, name"""
-
-
-def sums_of(cells: dict[Column, dict[str, tuple[float, float]]], columns: list[Column],
-            recordings: list[str]) -> Sums:
-    """Returns the sums of columns (values) over recordings (rows)."""
-    row = {name: index for index, name in enumerate(recordings)}
-    numerator = np.zeros((len(recordings), len(columns)))
-    denominator = np.zeros_like(numerator)
-    for place, column in enumerate(columns):
-        for recording, (above, below) in cells.get(column, {}).items():
-            if recording in row:
-                numerator[row[recording], place] = above
-                denominator[row[recording], place] = below
-    return Sums(numerator, denominator)

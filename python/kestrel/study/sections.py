@@ -12,7 +12,7 @@ import numpy as np
 from .comparison import ALPHA, MEASURES, Change, Comparison, FrameRun
 from .pages import Section, Table
 from .reported_study import Study
-from .results import Column, Variant, sums_of
+from .results import Column, Variant
 from .statistics import Effect, Sums, effects, interval
 from .words import MINUS, bin_label, number, place, signed, title
 
@@ -100,8 +100,8 @@ def values_of(study: Study, variant: Variant,
               measures: Iterable[str]) -> list[tuple[Column, float, float, float]]:
     """Returns (column, value, low, high) of measures, with the 95 % intervals."""
     cells = study.results.cells(variant)
-    columns = sorted(column for column in cells if column.measure in measures)
-    sums = sums_of(cells, columns, study.results.recordings(variant))
+    columns = cells.columns(measures)
+    sums = cells.sums(columns, cells.recordings)
     low, high = interval(sums, study.seed)
     return [(column, float(value), float(low[place]), float(high[place]))
             for place, (column, value) in enumerate(zip(columns, sums.quotients()))]

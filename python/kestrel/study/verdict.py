@@ -24,8 +24,8 @@ def verdict(study: Study, comparison: Comparison) -> tuple[str, str]:
     if not worse and not better:
         return "", f"No difference: {pair}: {_overview(comparison)}{_doubt(comparison)}"
     word = "Worse" if not better else "Better" if not worse else "Better and worse"
-    if worse and not better and all(one.column.measure == "frame_ms" for one in worse):
-        word = "Slower"
+    if all(one.column.measure == "frame_ms" for one in worse + better):
+        word = "Slower" if worse else "Faster"
     named = "; ".join(f"{kind}: {_named(rows)}" for kind, rows in (("worse", worse),
                                                                   ("better", better)) if rows)
     return ("worse" if worse else "better"), f"{word}: {pair}: {_overview(comparison)}; {named}"
