@@ -2,12 +2,17 @@
 """The results of a study: one SQLite file, and tables as CSV that are the same to the byte whatever
 the order in which the units were done, and however often the study was interrupted."""
 import csv
+import fcntl
 import os
 import sqlite3
 from pathlib import Path
 
+from .errors import StudyError
+
 DATABASE = "study.db"
-# The columns of each table, in order; `key` names a unit of work (`plan.Unit.key`).
+PLAN = "study.yaml"
+# The columns of each table, in order; `key` names a unit of work (plan.py). `state` is 'done',
+# 'failed', or 'old': done for an earlier plan, and not part of the study.
 TABLES = {
     "unit": {"key": "TEXT PRIMARY KEY", "recording": "TEXT", "piece": "INTEGER",
              "configuration": "TEXT", "version": "TEXT", "task": "TEXT", "seed": "INTEGER",
@@ -32,8 +37,15 @@ _HASHES = ("CREATE TABLE IF NOT EXISTS content"
            "(source TEXT PRIMARY KEY, fingerprint TEXT, hash TEXT)")
 
 
-class StoreError(Exception):
-    """A file of the study cannot be read or written; the message is one line."""
+def _locked(folder):
+    """Returns a handle that keeps other studies out of a folder as long as it is open."""
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(handle)
+        raise StudyError(f"{folder}: another study runs into it") from None
+    return handle
 
 
 def _create(connection):
@@ -43,13 +55,14 @@ def _create(connection):
         if table != "unit":
             connection.execute(f'CREATE INDEX IF NOT EXISTS "{table}_key" ON "{table}"(key)')
     connection.execute(_HASHES)
+    connection.execute("CREATE TEMP TABLE planned(key TEXT PRIMARY KEY)")
     connection.commit()
 
 
 class Store:
     """The file study.db of a folder. One process writes; others may read meanwhile.
 
-    Raises StoreError where the file cannot be read or written.
+    Raises StudyError where the file cannot be read or written.
     """
 
     def __init__(self, folder):
@@ -57,13 +70,14 @@ class Store:
         self.path = self.folder / DATABASE
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
+            self._lock = _locked(self.folder)
             self._connection = sqlite3.connect(self.path, isolation_level="DEFERRED")
             # A kill between two commits costs what was not committed, never the file.
             self._connection.execute("PRAGMA journal_mode=WAL")
             self._connection.execute("PRAGMA synchronous=NORMAL")
             _create(self._connection)
         except (OSError, sqlite3.Error) as error:
-            raise StoreError(f"{self.path}: {error}") from None
+            raise StudyError(f"{self.path}: {error}") from None
 
     def __enter__(self):
         return self
@@ -71,10 +85,24 @@ class Store:
     def __exit__(self, kind, error, trace):
         self.close()
 
-    def state(self, key):
-        """Returns 'done', 'failed', or None where the unit has no result."""
-        row = self._connection.execute("SELECT state FROM unit WHERE key=?", (key,)).fetchone()
-        return row[0] if row else None
+    def has(self, key, path):
+        """Returns whether a unit of the plan has a result; path: where its recording is now."""
+        self._connection.execute("INSERT OR IGNORE INTO planned VALUES (?)", (key,))
+        found = self._connection.execute("SELECT state, path FROM unit WHERE key=?",
+                                         (key,)).fetchone()
+        if found and (found[0] == "old" or found[1] != path):
+            state = "done" if found[0] == "old" else found[0]
+            self._connection.execute("UPDATE unit SET state=?, path=? WHERE key=?",
+                                     (state, path, key))
+        return bool(found)
+
+    def retire(self):
+        """Sets what an earlier plan has done and this one does not ask for aside, as 'old': it is
+        in no table, and is not done again when a plan asks for it."""
+        other = "key NOT IN (SELECT key FROM planned)"
+        self._connection.execute(f"UPDATE unit SET state='old' WHERE state='done' AND {other}")
+        self._forget(f"state='failed' AND {other}")
+        self.commit()
 
     def count(self, state):
         """Returns how many units are in a state."""
@@ -112,7 +140,7 @@ class Store:
             f'{how} INTO "{table}" ({names}) VALUES ({places})', values)
 
     def _write_error(self, error):
-        return StoreError(f"{self.path}: {error}; what it has is kept, the same command goes on")
+        return StudyError(f"{self.path}: {error}; what it has is kept, the same command goes on")
 
     def commit(self):
         """Makes what was added last."""
@@ -123,10 +151,20 @@ class Store:
 
     def forget_failed(self):
         """Removes the units that failed, so that they are tried again."""
-        failed = "SELECT key FROM unit WHERE state='failed'"
-        for table in reversed(TABLES):
-            self._connection.execute(f'DELETE FROM "{table}" WHERE key IN ({failed})')
+        self._forget("state='failed'")
         self.commit()
+
+    def _forget(self, condition):
+        forgotten = f"SELECT key FROM unit WHERE {condition}"
+        for table in reversed(TABLES):
+            self._connection.execute(f'DELETE FROM "{table}" WHERE key IN ({forgotten})')
+
+    def keep_plan(self, text):
+        """Writes STUDY.yaml beside the results, for the report."""
+        try:
+            (self.folder / PLAN).write_text(text)
+        except OSError as error:
+            raise StudyError(f"{self.folder / PLAN}: {error.strerror}") from None
 
     def content_hash(self, source, fingerprint):
         """Returns the hash of a recording that has not changed since, or None."""
@@ -151,7 +189,9 @@ class Store:
         # `rowid` within a unit: its worker's order.
         order = "recording, piece, configuration, version, task, seed, key" if table == "unit" \
             else "key, rowid"
-        rows = self._connection.execute(f'SELECT {names} FROM "{table}" ORDER BY {order}')
+        shown = "key IN (SELECT key FROM unit WHERE state!='old')"
+        rows = self._connection.execute(
+            f'SELECT {names} FROM "{table}" WHERE {shown} ORDER BY {order}')
         part = self.folder / f"{table}.csv.part"
         try:
             with open(part, "w", newline="") as file:
@@ -161,7 +201,7 @@ class Store:
             os.replace(part, self.folder / f"{table}.csv")
         except OSError as error:
             part.unlink(missing_ok=True)
-            raise StoreError(f"{self.folder / f'{table}.csv'}: {error.strerror}") from None
+            raise StudyError(f"{self.folder / f'{table}.csv'}: {error.strerror}") from None
 
     def close(self):
         """Closes the file, which then is one file. What was not committed is lost."""
@@ -171,3 +211,4 @@ class Store:
         except sqlite3.Error:
             pass  # a reader has it open: the journal stays beside it and is read with it
         self._connection.close()
+        os.close(self._lock)

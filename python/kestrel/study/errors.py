@@ -1,0 +1,12 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a user is told in one line."""
+
+
+class StudyError(Exception):
+    """Input is at fault; the message is one line that names the file, the key or the recording."""
+
+
+def one_line(text):
+    """Returns a message as one line, without what stands before the cause."""
+    lines = [line.strip() for line in str(text).splitlines() if line.strip()]
+    return lines[-1].removeprefix("kestrel: ") if lines else "no message"
