@@ -49,9 +49,8 @@ def _run(arguments):
         store.keep_plan(plan.text)
         if arguments.retry:
             store.forget_failed()
-        with workers:
-            runner = Runner(plan, store, workers, _Progress().show, _say)
-            runner.run()
+        runner = Runner(plan, store, workers, _Progress().show, _say)
+        runner.run()
         store.export()
         failed = store.count("failed")
     _say(f"{folder}: {runner.planned} units, {failed} failed; `kestrel study report {folder}` says "

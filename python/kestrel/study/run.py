@@ -42,17 +42,23 @@ class Runner:
 
     def run(self):
         """Does all units. Raises StudyError when the store or the workers fail for good."""
-        while not self._is_done():
-            client = self._workers.connect()
-            try:
-                self._work(client)
-            except _LostScheduler:
-                self._say("the scheduler is gone; waiting for it, and going on")
-                self._ready.extend(self._running.values())
-                self._running.clear()
-            finally:
-                _close(client)
+        if not self._is_done():
+            with self._workers:
+                while not self._is_done():
+                    self._connect()
         self._store.retire()
+
+    def _connect(self):
+        """Works until all is done, or the scheduler is gone."""
+        client = self._workers.connect()
+        try:
+            self._work(client)
+        except _LostScheduler:
+            self._say("the scheduler is gone; waiting for it, and going on")
+            self._ready.extend(self._running.values())
+            self._running.clear()
+        finally:
+            _close(client)
 
     def _is_done(self):
         """Returns whether nothing is left; takes the next job out of the plan to know that."""

@@ -32,6 +32,8 @@ void AddCalibrateColorsCommand(CLI::App* calibrate);
 void AddPrintCommand(CLI::App* app);
 // `kestrel convert SOURCE DESTINATION`: converts between EuRoC folders and bags of ROS 1 and ROS 2.
 void AddConvertCommand(CLI::App* app);
+// `kestrel study run|report`: many recordings, several configurations; a program in Python.
+void AddStudyCommand(CLI::App* app);
 // `kestrel benchmark`: says how fast this computer is.
 void AddBenchmarkCommand(CLI::App* app);
 // `kestrel config`: prints all options with value, unit and meaning, as YAML for --config.

@@ -60,6 +60,7 @@ int main(int argc, char** argv) {
   kestrel::AddCalibrateCommand(&app);
   kestrel::AddPrintCommand(&app);
   kestrel::AddConvertCommand(&app);
+  kestrel::AddStudyCommand(&app);
   kestrel::AddBenchmarkCommand(&app);
   kestrel::AddConfigCommand(&app);
   kestrel::AddHelpCommand(&app);
