@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """`kestrel study run|report`; docs/study.md."""
 import argparse
+import logging
 import signal
 import sys
 import time
@@ -101,6 +102,7 @@ def main(arguments=None):
     """Runs the command and returns its exit status."""
     arguments = _parser().parse_args(arguments)
     signal.signal(signal.SIGTERM, _interrupt)
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # it is told in our words
     try:
         return arguments.function(arguments)
     except StudyError as error:

@@ -71,7 +71,7 @@ class Runner:
         self._fill(client, finished)
         while self._running:
             for future in finished.next_batch():
-                self._take(client, future)
+                self._take(finished, future)
             self._store.commit()
             self._show(self.done, self.failed, max(self.planned, self._at_least))
             self._fill(client, finished)
@@ -122,16 +122,21 @@ class Runner:
             for unit in new:
                 self._add(unit, {"state": "failed", "reason": reason})
 
-    def _take(self, client, future):
+    def _take(self, finished, future):
         job = self._running.pop(future)
         status = future.status
-        if status == "finished":
-            self._take_result(job, *future.result())
-        elif client.status != "running" or status in ("cancelled", "lost"):
+        if status == "lost":  # its worker died before it was asked for the result
             self._running[future] = job
-            raise _LostScheduler
-        else:
+            finished.add(future)
+            return
+        if status == "error":
             self._retry(job, job.units, "", {"state": "failed", "reason": _reason(future)})
+        else:
+            try:
+                self._take_result(job, *future.result())
+            except (CancelledError, OSError):  # OSError: the connection broke
+                self._running[future] = job
+                raise _LostScheduler from None
         future.release()
 
     def _take_result(self, job, address, content):

@@ -52,7 +52,8 @@ class Bench:
                 str(self.folder / output), "--workers", str(workers), *arguments]
 
     def environment(self):
-        return {**os.environ, "PYTHONPATH": str(self.package), "KESTREL_COMMAND": str(FAKE)}
+        path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
+        return {**os.environ, "PATH": path, "PYTHONPATH": str(self.package), "KESTREL_COMMAND": str(FAKE)}
 
     def run(self, *arguments, **more):
         """Runs the study to its end; returns (status, lines on stderr)."""

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A unit of work: its limits, and what a broken recording or a missing version costs."""
+import csv
+import os
+import sys
+from pathlib import Path
+
+import pytest
+from study import scoring
+from study.bench import FAKE, Bench
+
+from kestrel import study
+from kestrel.study.plan import read_plan
+from kestrel.study.unit import run_job
+
+
+@pytest.fixture
+def bench(tmp_path, monkeypatch):
+    monkeypatch.setenv("KESTREL_COMMAND", str(FAKE))
+    monkeypatch.setitem(sys.modules, "kestrel.study.scoring", scoring)
+    monkeypatch.setattr(study, "scoring", scoring, raising=False)
+    return Bench(tmp_path)
+
+
+def results(bench, **change):
+    """Returns the results of all units of the study, without workers."""
+    plan = read_plan(bench.write(**change))
+    found = []
+    for recording in plan.recordings:
+        for job in plan.units_of(recording, "c"):
+            found += [result for _, result in run_job(job)[1]]
+    return found
+
+
+ONE = [{"name": "before"}]
+
+
+def test_a_result_has_rows_and_what_it_took(bench):
+    bench.recording("f", "sleep 0.2")
+    result, = results(bench, configurations=ONE)
+    assert result["state"] == "done"
+    assert result["frames"] == 3
+    assert result["resource"]["seconds"] > 0.2
+    assert result["resource"]["memory_mb"] > 1
+
+
+@pytest.mark.parametrize("behaviour, reason", [
+    ("hang", "took longer than 0.5 s (limits.seconds)"),
+    ("memory", "needed more than 300 MB (limits.memory_mb)"),
+    ("crash", "ended by the signal SIGABRT"),
+])
+def test_what_goes_wrong_is_a_reason_of_one_line(bench, behaviour, reason):
+    bench.recording("f", behaviour)
+    limits = {"seconds": 0.5 if behaviour == "hang" else 60, "memory_mb": 300}
+    result, = results(bench, configurations=ONE, limits=limits)
+    assert result["state"] == "failed"
+    assert result["reason"] == reason
+
+
+def test_a_broken_recording_costs_its_own_units(bench):
+    bench.recording("broken", "broken")
+    bench.recording("good")
+    found = results(bench)
+    assert [result["state"] for result in found] == ["failed", "failed", "done", "done"]
+    assert found[0]["reason"].endswith("broken/mav0/cam0/data.csv:3: expected 2 columns")
+
+
+def test_a_version_that_a_worker_lacks_is_named(bench, tmp_path):
+    bench.recording("f")
+    older = tmp_path / "kestrel"
+    older.write_bytes(FAKE.read_bytes())
+    older.chmod(0o755)
+    plan = read_plan(bench.write(configurations=[{"name": "older", "command": str(older)}]))
+    job, = plan.units_of(plan.recordings[0], "c")
+    older.write_bytes(FAKE.read_bytes() + b"\n")
+    (_, other), = run_job(job)[1]
+    assert other["reason"].startswith(f"{older}: is 1.0+")
+    assert f"on this worker, expected {plan.configurations[0].version}" in other["reason"]
+    older.unlink()
+    (_, missing), = run_job(job)[1]
+    assert missing["reason"] == f"{older}: no such command on this computer"
+
+
+def test_a_recording_that_a_worker_does_not_see(bench):
+    folder = bench.recording("f")
+    plan = read_plan(bench.write(configurations=ONE))
+    folder.rename(bench.folder / "gone")
+    job, = plan.units_of(plan.recordings[0], "c")
+    (_, result), = run_job(job)[1]
+    assert result["reason"] == f"{folder}: not there on this worker"
+
+
+def test_the_lead_in_of_a_piece_is_processed_and_not_counted(bench, tmp_path, monkeypatch):
+    bench.recording("f", frames=25)
+    seen = []
+
+    def score(recording, output, task):
+        with open(Path(recording) / "mav0/cam0/data.csv") as file:
+            processed = sum(not line.startswith("#") for line in file)
+        with open(Path(output) / "landing_detections.csv", newline="") as file:
+            seen.append((processed, [int(row["timestamp_ns"]) for row in csv.DictReader(file)]))
+        return scoring_of_all(recording, output, task)
+
+    scoring_of_all = scoring.score
+    monkeypatch.setattr(scoring, "score", score)
+    results(bench, configurations=ONE, pieces={"seconds": 10, "lead_in_s": 2})
+    assert [processed for processed, _ in seen] == [10, 12, 7]
+    assert [time for _, times in seen for time in times] == [10**9 * number for number in range(25)]
+
+
+def test_a_url_is_fetched_and_its_copy_goes(bench, monkeypatch, tmp_path):
+    folder = bench.recording("f")
+    scratch = tmp_path / "scratch"
+    scratch.mkdir()
+    monkeypatch.setattr("tempfile.tempdir", str(scratch))
+    result, = results(bench, configurations=ONE, recordings=[f"file://{folder}"])
+    here, = results(bench, configurations=ONE, recordings=[str(folder)])
+    assert result["detections"] == here["detections"]
+    assert os.listdir(scratch) == []
