@@ -94,12 +94,12 @@ def test_the_lead_in_of_a_piece_is_processed_and_not_counted(bench, tmp_path, mo
     bench.recording("f", frames=25)
     seen = []
 
-    def score(recording, output, task):
+    def score(recording, output, *more):
         with open(Path(recording) / "mav0/cam0/data.csv") as file:
             processed = sum(not line.startswith("#") for line in file)
         with open(Path(output) / "landing_detections.csv", newline="") as file:
             seen.append((processed, [int(row["timestamp_ns"]) for row in csv.DictReader(file)]))
-        return scoring_of_all(recording, output, task)
+        return scoring_of_all(recording, output, *more)
 
     scoring_of_all = scoring.score
     monkeypatch.setattr(scoring, "score", score)

@@ -12,11 +12,12 @@ from pathlib import Path
 from distributed import get_worker
 
 from . import monte_carlo, recordings
+from .calibrations import calibrated
 from .commands import find_command, run_limited, version_of
 from .errors import StudyError, one_line
 
 # The folders of a unit, below its scratch folder: reasons name no folder that is another next time.
-_OUTPUT, _RECORDING, _CONFIG = "output", "recording", "config.yaml"
+_OUTPUT, _RECORDING, _CONFIG, _CAMERA = "output", "recording", "config.yaml", "camera.yaml"
 _RESULTS = ("landing_detections.csv", "landing_track.csv", "object_detections.csv")
 # `kestrel fly` ended, whether or not with a landing.
 _FLIGHT_ENDS = (0, 3, 4)
@@ -165,7 +166,7 @@ def _words(job, path):
     arguments, label = job.settings["arguments"], job.settings["label"]
     if label in monte_carlo.KINDS:
         return [*monte_carlo.command_words(job.recording.simulation, _CONFIG, _OUTPUT), *arguments]
-    target = "camera.yaml" if label.startswith("calibrate") else _OUTPUT
+    target = _CAMERA if label.startswith("calibrate") else _OUTPUT
     words = [*label.split(), str(path), "--output", target, *arguments]
     return words if label == "calibrate lens" else [*words, "--config", _CONFIG]
 
@@ -173,16 +174,18 @@ def _words(job, path):
 def _score(job, path, folder, run):
     """Returns the rows of a unit."""
     label, flight = job.settings["label"], job.recording.simulation
-    if label in monte_carlo.KINDS:
-        return {"summary": {**monte_carlo.outcome(label, folder / _OUTPUT, run.log),
-                            **monte_carlo.drawn_numbers(flight)}}
-    from . import scoring
+    if label.startswith("calibrate"):
+        return {"summary": calibrated(folder / _CAMERA, run.log)}
+    from . import scoring  # late: it loads what a worker needs only here
+    output = folder / _OUTPUT
     if job.piece:
-        _cut_lead_in(folder / _OUTPUT, job.piece.first_ns)
-    output = folder if label.startswith("calibrate") else folder / _OUTPUT
-    result = scoring.score(str(path), str(output), label)
+        _cut_lead_in(output, job.piece.first_ns)
+    # The recording of a closed loop is its output.
+    result = scoring.score(str(path or output), str(output), label, str(folder / _CONFIG))
     if flight:
-        result["summary"] = {**result["summary"], **monte_carlo.drawn_numbers(flight)}
+        result["summary"].update(monte_carlo.drawn_numbers(flight))
+    if label in monte_carlo.KINDS:
+        result["summary"].update(monte_carlo.outcome(label, output, run.log))
     return result
 
 

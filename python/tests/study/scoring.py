@@ -4,7 +4,7 @@ import csv
 from pathlib import Path
 
 
-def score(recording, output, task):
+def score(recording, output, task, config=None):
     with open(Path(output) / "landing_detections.csv", newline="") as file:
         rows = list(csv.DictReader(file))
     found = sum(row["detected"] == "1" for row in rows)
