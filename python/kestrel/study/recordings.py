@@ -202,7 +202,7 @@ def known_content(recording, store):
     flight, of a URL (what its server says), and of one that has not changed since it was hashed;
     else None. Raises StudyError where the recording cannot be read."""
     if recording.simulation is not None:
-        said = json.dumps(recording.simulation, sort_keys=True)
+        said = json.dumps({**recording.simulation, "command": None}, sort_keys=True)
         return hashlib.sha256(said.encode()).hexdigest()
     recording.mark = fingerprint(recording)
     if recording.is_remote():

@@ -17,14 +17,14 @@ namespace kestrel {
 namespace {
 
 // The modules are tried first, so that what is missing is told in one line.
-constexpr const char* kProgram = R"(import sys
+constexpr const char* kProgram = R"py(import sys
 try:
     import distributed, fsspec, yaml
     from kestrel.study.__main__ import main
 except ImportError as error:
     sys.exit("kestrel: kestrel study needs python3-kestrel and python3-distributed (%s: %s)"
              % (sys.executable, error))
-sys.exit(main(sys.argv[1:])))";
+sys.exit(main(sys.argv[1:])))py";
 
 [[noreturn]] void BecomeStudy(const std::vector<std::string>& arguments) {
   // A study compares this command, unless its file names another.
