@@ -2,15 +2,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Usage: study_benchmark.py KESTREL FOLDER [--recordings N] [--empty N]
 
-What studies cost, with `import kestrel` of the PYTHONPATH. Makes N (200) short recordings in FOLDER,
-runs them with three configurations by one worker and by two, and once more while it is killed five
-times, and compares the tables; then N (100000) units that do nothing. Prints two tables: the time
-against that of the units, and units/s and the largest memory of client and scheduler.
+What studies cost, with `import kestrel` of the PYTHONPATH. First N (100000) units that do nothing,
+and a tenth of them. Then N (200) short recordings in FOLDER, copies of ten simulated flights, with
+three configurations, by one worker and by two, and once more while the study is killed five times; the
+tables are compared. Prints two tables: units/s and the largest memory of client and scheduler, and the
+time against that of the units.
 """
 import argparse
 import os
 import random
 import resource
+import shutil
 import signal
 import sqlite3
 import subprocess
@@ -18,6 +20,7 @@ import sys
 import time
 from pathlib import Path
 
+FLIGHTS = 10
 CONFIGURATIONS = """configurations:
   - name: default
   - name: coarse
@@ -27,13 +30,32 @@ CONFIGURATIONS = """configurations:
 """
 
 
+# The paper's lens on a quarter of the pixels to a side: quick to render.
+CAMERA = """sensor_type: camera
+rate_hz: 5
+resolution: [188, 120]
+camera_model: pinhole
+intrinsics: [65.25, 65.25, 94, 60]
+distortion_model: equidistant
+distortion_coefficients: [-0.0448, 0.0686053, -0.072277, 0.027011955]
+"""
+
+
 def simulate(kestrel, folder, count):
-    for seed in range(1, count + 1):
-        flight = folder / "flights" / f"{seed:04d}"
-        if not flight.exists():
+    """Makes recordings: a few simulated flights, copied, and each copy told apart by its scene.yaml."""
+    camera = folder / "camera.yaml"
+    camera.write_text(CAMERA)
+    for number in range(1, count + 1):
+        seed = (number - 1) % FLIGHTS + 1
+        first, flight = (folder / "flights" / f"{one:04d}" for one in (seed, number))
+        if not first.exists():
             subprocess.run([kestrel, "simulate", "landing", "--scenario", "calm", "--seed", str(seed), "--set",
-                            "frames=4", "--set", "rate_hz=5", "--output", flight], check=True,
-                           stderr=subprocess.DEVNULL)
+                            "frames=10", "--set", "rate_hz=5", "--set", "shutter.rays_per_pixel=2", "--camera", camera,
+                            "--output", first], check=True, stderr=subprocess.DEVNULL)
+        if not flight.exists():
+            shutil.copytree(first, flight)
+            with open(flight / "scene.yaml", "a") as scene:
+                scene.write(f"# copy {number}\n")
 
 
 def write(folder, text):

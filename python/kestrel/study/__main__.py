@@ -102,7 +102,7 @@ def main(arguments=None):
     """Runs the command and returns its exit status."""
     arguments = _parser().parse_args(arguments)
     signal.signal(signal.SIGTERM, _interrupt)
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # it is told in our words
+    logging.disable(logging.CRITICAL)  # what Dask has to say is told in our words
     try:
         return arguments.function(arguments)
     except StudyError as error:

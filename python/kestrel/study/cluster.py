@@ -23,14 +23,15 @@ _CONFIG = {"distributed.scheduler.transition-log-length": 1000,
            "distributed.logging.distributed": "critical"}
 
 
-
 def _local_cluster(count, host):
     dask.config.set(_CONFIG)
     # The processes of the workers read their configuration from there.
     os.environ["DASK_DISTRIBUTED__LOGGING__DISTRIBUTED"] = "critical"
+    # Dask removes what a worker that was killed has left in the folder.
     return LocalCluster(n_workers=count, threads_per_worker=1, processes=True, host=host,
                         dashboard_address=f"{host}:0", silence_logs=50,
-                        local_directory=tempfile.mkdtemp(prefix="kestrel_study_"))
+                        preload=["kestrel.study.worker_preload"],
+                        local_directory=tempfile.gettempdir())
 
 
 class LocalWorkers:

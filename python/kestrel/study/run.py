@@ -81,6 +81,8 @@ class Runner:
         if time.monotonic() - self._counted > _COUNT_S:
             self._threads = sum(client.nthreads().values())
             self._counted = time.monotonic()
+            if not self._threads:
+                self._say("no worker is there yet; waiting for one")
         return 3 * self._threads + 8
 
     def _fill(self, client, finished):
