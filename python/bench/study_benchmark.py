@@ -50,7 +50,8 @@ def simulate(kestrel, folder, count):
         first, flight = (folder / "flights" / f"{one:04d}" for one in (seed, number))
         if not first.exists():
             subprocess.run([kestrel, "simulate", "landing", "--scenario", "calm", "--seed", str(seed), "--set",
-                            "frames=10", "--set", "rate_hz=5", "--set", "shutter.rays_per_pixel=2", "--camera", camera,
+                            "frames=10", "--set", "rate_hz=5", "--set", "shutter.rays_per_pixel=2", "--set",
+                            "ground.map_px=256", "--camera", camera,
                             "--output", first], check=True, stderr=subprocess.DEVNULL)
         if not flight.exists():
             shutil.copytree(first, flight)

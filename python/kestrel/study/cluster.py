@@ -27,11 +27,14 @@ def _local_cluster(count, host):
     dask.config.set(_CONFIG)
     # The processes of the workers read their configuration from there.
     os.environ["DASK_DISTRIBUTED__LOGGING__DISTRIBUTED"] = "critical"
-    # Dask removes what a worker that was killed has left in the folder.
-    return LocalCluster(n_workers=count, threads_per_worker=1, processes=True, host=host,
-                        dashboard_address=f"{host}:0", silence_logs=50,
-                        preload=["kestrel.study.worker_preload"],
-                        local_directory=tempfile.gettempdir())
+    try:
+        # Dask removes what a worker that was killed has left in the folder.
+        return LocalCluster(n_workers=count, threads_per_worker=1, processes=True, host=host,
+                            dashboard_address=f"{host}:0", silence_logs=50,
+                            preload=["kestrel.study.worker_preload"],
+                            local_directory=tempfile.gettempdir())
+    except Exception as error:  # no port, no process, no disk: in Dask's words
+        raise StudyError(f"the workers do not start: {one_line(error)}") from None
 
 
 class LocalWorkers:
