@@ -11,6 +11,7 @@ from study.bench import FAKE, Bench
 
 from kestrel import study
 from kestrel.study.plan import read_plan
+from kestrel.study.recordings import content_hash, fingerprint
 from kestrel.study.unit import run_job
 
 
@@ -117,3 +118,14 @@ def test_a_url_is_fetched_and_its_copy_goes(bench, monkeypatch, tmp_path):
     here, = results(bench, configurations=ONE, recordings=[str(folder)])
     assert result["detections"] == here["detections"]
     assert os.listdir(scratch) == []
+
+
+def test_a_url_is_another_recording_when_its_file_has_changed(bench):
+    folder = bench.recording("f")
+    flight, = read_plan(bench.write(recordings=[f"file://{folder}"])).recordings
+    first = fingerprint(flight)
+    content_hash(folder)  # reading it changes nothing
+    assert fingerprint(flight) == first
+    with open(folder / "mav0/cam0/data.csv", "a") as file:
+        file.write("9000000000,9.png\n")
+    assert fingerprint(flight) != first

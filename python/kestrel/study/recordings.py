@@ -17,6 +17,8 @@ from .errors import StudyError, one_line
 _BAGS = (".bag", ".mcap", ".db3")
 _VIDEOS = (".avi", ".mkv", ".mov", ".mp4")
 _IMAGES = (".bmp", ".jpeg", ".jpg", ".pgm", ".png", ".ppm", ".tif", ".tiff")
+# What file systems say of a file that changes when the file does.
+_IDENTITY = ("size", "mtime", "LastModified", "last_modified", "ETag", "etag", "checksum")
 _URL = re.compile(r"\w[\w+.-]*://")
 _MAGIC = re.compile(r"[*?[]")
 
@@ -102,6 +104,15 @@ def _open_url(url):
         raise StudyError(f"{url}: {one_line(error)}") from None
 
 
+def _is_folder(system, path):
+    return system.info(path)["type"] == "directory"
+
+
+def _cause(error):
+    """Returns what a file system says of an error; each has errors of its own."""
+    return "not there" if isinstance(error, FileNotFoundError) else one_line(error)
+
+
 def _remote_folder(system, path):
     """Returns the recordings in a remote folder: itself, or what it holds."""
     entries = {entry["name"].rstrip("/"): entry["type"] for entry in system.ls(path, detail=True)}
@@ -117,13 +128,12 @@ def _find_remote(url):
     try:
         if _MAGIC.search(path):
             found, root = sorted(system.glob(path)), str(_root(path))
-        elif system.isdir(path):
+        elif _is_folder(system, path):
             found, root = _remote_folder(system, path), path
         else:
-            system.info(path)
             found, root = [path], path
-    except Exception as error:  # each file system has errors of its own
-        raise StudyError(f"recordings: {url}: {one_line(error) or 'not there'}") from None
+    except Exception as error:
+        raise StudyError(f"recordings: {url}: {_cause(error)}") from None
     if not found:
         raise StudyError(f"recordings: {url}: no recording there")
     return [Recording(_name(one, root), system.unstrip_protocol(one)) for one in found]
@@ -190,11 +200,12 @@ def fingerprint(recording):
 def _remote_fingerprint(url):
     system, path = _open_url(url)
     try:
-        files = system.find(path) or [path]
-        keys = "\0".join(f"{name} {system.ukey(name)}" for name in sorted(files))
-    except Exception as error:  # each file system has errors of its own
-        raise StudyError(f"{url}: {one_line(error)}") from None
-    return hashlib.sha256(keys.encode()).hexdigest()
+        files = system.find(path, detail=True) if _is_folder(system, path) \
+            else {path: system.info(path)}
+    except Exception as error:
+        raise StudyError(f"{url}: {_cause(error)}") from None
+    said = [[name, *(str(files[name].get(key)) for key in _IDENTITY)] for name in sorted(files)]
+    return hashlib.sha256(json.dumps(said).encode()).hexdigest()
 
 
 def known_content(recording, store):
@@ -237,7 +248,7 @@ def fetch(url, folder):
     system, path = _open_url(url)
     target = Path(folder) / path.rstrip("/").rpartition("/")[2]
     try:
-        system.get(path, str(target), recursive=system.isdir(path))
-    except Exception as error:  # each file system has errors of its own
-        raise StudyError(f"{url}: {one_line(error)}") from None
+        system.get(path, str(target), recursive=_is_folder(system, path))
+    except Exception as error:
+        raise StudyError(f"{url}: {_cause(error)}") from None
     return target
