@@ -10,7 +10,6 @@ time against that of the units.
 """
 import argparse
 import os
-import random
 import resource
 import shutil
 import signal
@@ -89,15 +88,22 @@ def tables(output):
     return {path.name: path.read_bytes() for path in output.glob("*.csv")}
 
 
-def kill_and_go_on(study, output):
-    """Kills the study five times at random moments, and goes on."""
-    moments = random.Random(1)
-    for number in range(5):
+def units_done(output):
+    try:
+        return numbers(output, "SELECT count(*) FROM unit")[0]
+    except sqlite3.Error:
+        return 0  # it is not there yet
+
+
+def kill_and_go_on(study, output, count):
+    """Kills the study five times, each time with another sixth of its units done, and goes on."""
+    for number in range(1, 6):
         run = subprocess.Popen(command(study, output, 2), stderr=subprocess.DEVNULL)
-        time.sleep(6 + 6 * moments.random())
-        run.send_signal((signal.SIGKILL, signal.SIGTERM, signal.SIGINT)[number % 3])
+        while units_done(output) < number * count // 6:
+            time.sleep(0.05)
+        run.send_signal((signal.SIGKILL, signal.SIGTERM)[number % 2])
         run.wait()
-        print(f"killed with {numbers(output, 'SELECT count(*) FROM unit')[0]} units done", file=sys.stderr)
+        print(f"killed with {units_done(output)} units done", file=sys.stderr)
     timed(study, output, 2)
 
 
@@ -114,7 +120,7 @@ def measure_units(kestrel, folder, count):
         work = wall - start_up
         print(f"| {workers} | {units} | {wall:.1f} | {start_up:.1f} | {alone / workers:.1f} | "
               f"{work * workers / alone:.3f} | {1e3 * (work * workers - alone) / units:.1f} |", flush=True)
-    kill_and_go_on(study, folder / "killed")
+    kill_and_go_on(study, folder / "killed", units)
     equal = tables(folder / "by1") == tables(folder / "by2") == tables(folder / "killed")
     print(f"\ntables of 1 worker, of 2, and after five kills: {'equal' if equal else 'different'}")
 

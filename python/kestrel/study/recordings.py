@@ -96,14 +96,6 @@ def _find_local(pattern, base):
     return [Recording(_name(path, root), os.path.abspath(path)) for path in found]
 
 
-def _open_url(url):
-    """Returns the file system of a URL and the path on it."""
-    try:
-        return fsspec.core.url_to_fs(url)
-    except (ImportError, ValueError) as error:
-        raise StudyError(f"{url}: {one_line(error)}") from None
-
-
 def _is_folder(system, path):
     return system.info(path)["type"] == "directory"
 
@@ -111,6 +103,14 @@ def _is_folder(system, path):
 def _cause(error):
     """Returns what a file system says of an error; each has errors of its own."""
     return "not there" if isinstance(error, FileNotFoundError) else one_line(error)
+
+
+def _open_url(url):
+    """Returns the file system of a URL and the path on it."""
+    try:
+        return fsspec.core.url_to_fs(url)
+    except Exception as error:
+        raise StudyError(f"{url}: {_cause(error)}") from None
 
 
 def _remote_folder(system, path):
@@ -125,6 +125,7 @@ def _remote_folder(system, path):
 
 def _find_remote(url):
     system, path = _open_url(url)
+    host = url.rstrip("/").removesuffix(path.rstrip("/"))
     try:
         if _MAGIC.search(path):
             found, root = sorted(system.glob(path)), str(_root(path))
@@ -136,7 +137,7 @@ def _find_remote(url):
         raise StudyError(f"recordings: {url}: {_cause(error)}") from None
     if not found:
         raise StudyError(f"recordings: {url}: no recording there")
-    return [Recording(_name(one, root), system.unstrip_protocol(one)) for one in found]
+    return [Recording(_name(one, root), host + one) for one in found]
 
 
 def find_recordings(entries, base):
