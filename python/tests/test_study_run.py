@@ -97,9 +97,15 @@ def test_nothing_is_started_for_a_study_that_is_wrong(bench):
     assert not os.path.exists(bench.folder / "out")
 
 
-def test_a_scheduler_that_is_not_there(bench, monkeypatch):
+@pytest.mark.parametrize("where, words", [
+    ("udp://host", "where: udp://host, expected local, slurm, or a scheduler as tcp://HOST:8786"),
+    ("tcp://127.0.0.1:9", "tcp://127.0.0.1:9: no scheduler there"),
+    ("slurm", "no command srun on this computer"),
+])
+def test_workers_that_are_not_there(bench, monkeypatch, where, words):
     bench.recording("f")
     bench.write()
-    status, said = bench.run("--where", "udp://host")
+    monkeypatch.setattr(bench, "environment", lambda: {**Bench.environment(bench), "PATH": "/bin-none"})
+    status, said = bench.run("--where", where)
     assert status == 1
-    assert said == ["kestrel: where: udp://host, expected local, slurm, or a scheduler as tcp://HOST:8786"]
+    assert len(said) == 1 and words in said[0]

@@ -75,8 +75,9 @@ def test_a_version_that_a_worker_lacks_is_named(bench, tmp_path):
     job, = plan.units_of(plan.recordings[0], "c")
     older.write_bytes(FAKE.read_bytes() + b"\n")
     (_, other), = run_job(job)[1]
+    assert other["state"] == "lacking"
     assert other["reason"].startswith(f"{older}: is 1.0+")
-    assert f"on this worker, expected {plan.configurations[0].version}" in other["reason"]
+    assert f"on this computer, expected {plan.configurations[0].version}" in other["reason"]
     older.unlink()
     (_, missing), = run_job(job)[1]
     assert missing["reason"] == f"{older}: no such command on this computer"

@@ -14,11 +14,12 @@ from distributed.utils import get_ip
 from .errors import StudyError, one_line
 
 _PATIENCE_S = 600  # for a scheduler that is started anew
-# Memory of the scheduler is bounded: it keeps a history of this length; and a worker's death costs
-# the units that were on it one try.
+# Memory of the scheduler is bounded: it keeps a history of this length. A worker's death costs the
+# units that were on it one try. No worker takes over what is to be done elsewhere than on it.
 _CONFIG = {"distributed.scheduler.transition-log-length": 1000,
            "distributed.scheduler.events-log-length": 1000,
            "distributed.scheduler.allowed-failures": 1,
+           "distributed.scheduler.work-stealing": False,
            "distributed.worker.memory.spill": False,
            "distributed.logging.distributed": "critical"}
 
@@ -60,6 +61,7 @@ class RemoteWorkers:
 
     def __init__(self, address):
         self._address = address
+        self._patience_s = 10
 
     def __enter__(self):
         return self
@@ -69,10 +71,12 @@ class RemoteWorkers:
 
     def connect(self):
         """Returns a client; waits for a scheduler that was there and is started anew."""
-        deadline = time.monotonic() + _PATIENCE_S
+        deadline = time.monotonic() + self._patience_s
         while True:
             try:
-                return Client(self._address, timeout=5, set_as_default=False)
+                client = Client(self._address, timeout=5, set_as_default=False)
+                self._patience_s = _PATIENCE_S
+                return client
             except (OSError, ValueError, TimeoutError) as error:
                 if isinstance(error, ValueError) or time.monotonic() > deadline:
                     raise StudyError(f"{self._address}: no scheduler there: {one_line(error)}") \

@@ -38,6 +38,8 @@ def _digest_of(path):
 @functools.lru_cache(maxsize=64)
 def _library_of(path, mtime_ns):
     """Returns the file of libkestrel that the command loads, or None."""
+    if shutil.which("ldd") is None:
+        return None
     ldd = subprocess.run(["ldd", path], capture_output=True, text=True, check=False)
     found = re.search(r"libkestrel\.\S+ => (\S+)", ldd.stdout)
     return found[1] if found else None
@@ -149,7 +151,7 @@ def run_limited(command, folder, limits):
     log = Path(folder) / "log.txt"
     with open(log, "wb") as errors:
         # setpriv: a worker that is killed takes the command with it.
-        process = subprocess.Popen(["setpriv", "--pdeathsig", "KILL", *command], cwd=folder,
+        process = subprocess.Popen([find_command("setpriv"), "--pdeathsig", "KILL", *command], cwd=folder,
                                    stdin=subprocess.DEVNULL, stdout=errors, stderr=errors,
                                    start_new_session=True)
         broken, status, usage = _wait(process, start, limits)

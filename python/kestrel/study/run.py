@@ -14,7 +14,8 @@ from .plan import Job, split
 from .recordings import known_content
 from .unit import run_job
 
-_COUNT_S = 5  # between two questions for the number of workers
+_COUNT_S = 5  # between two questions for the workers
+_LACKING_S = 60  # until a worker has to come that has the version of a unit
 _DEATH = "its worker died"
 
 
@@ -36,7 +37,9 @@ class Runner:
         self._ready = collections.deque()
         self._running = {}  # a future: its job
         self._numbers = itertools.count()
-        self._threads, self._counted = 0, 0.0
+        self._threads, self._counted = {}, 0.0  # of each worker; when that was asked for
+        self._lacking = collections.defaultdict(dict)  # a command: {worker without it: why}
+        self._able = time.monotonic()  # when a worker could be given the next job
         self._at_least = len(plan.recordings) * len(plan.configurations)
         self.planned = self.done = self.failed = 0
 
@@ -46,6 +49,7 @@ class Runner:
             with self._workers:
                 while not self._is_done():
                     self._connect()
+                    time.sleep(0 if self._is_done() else 1)
         self._store.retire()
 
     def _connect(self):
@@ -53,7 +57,7 @@ class Runner:
         client = self._workers.connect()
         try:
             self._work(client)
-        except _LostScheduler:
+        except (_LostScheduler, OSError):  # OSError: it is gone while it is asked for its workers
             self._say("the scheduler is gone; waiting for it, and going on")
             self._ready.extend(self._running.values())
             self._running.clear()
@@ -79,20 +83,42 @@ class Runner:
     def _window(self, client):
         """Returns how many jobs may be with the workers: enough that none waits for its next."""
         if time.monotonic() - self._counted > _COUNT_S:
-            self._threads = sum(client.nthreads().values())
+            self._threads = client.nthreads()
             self._counted = time.monotonic()
             if not self._threads:
                 self._say("no worker is there yet; waiting for one")
-        return 3 * self._threads + 8
+        return 3 * sum(self._threads.values()) + 8
 
     def _fill(self, client, finished):
         window = self._window(client)
         while len(self._running) < window and self._prepare():
+            where = self._where(self._ready[0])
+            if where is None:
+                return
             job = self._ready.popleft()
             future = client.submit(run_job, job, key=f"study-{next(self._numbers)}", pure=False,
-                                   **_elsewhere(client, job))
+                                   **where)
             self._running[future] = job
             finished.add(future)
+
+    def _where(self, job):
+        """Returns which workers a job is for: not the one on which it failed, and not those that
+        lack its version; None where all that are there do. Raises StudyError after a while."""
+        lacking = {}
+        for command in {unit.get("command") for unit in job.units}:
+            lacking.update(self._lacking.get(command, {}))
+        if not lacking and not job.avoid:
+            self._able = time.monotonic()
+            return {}
+        able = [address for address in self._threads if address not in lacking]
+        if lacking and not able:
+            self._counted = 0.0  # asks for the workers
+            if time.monotonic() - self._able > _LACKING_S:
+                raise StudyError(f"no worker can go on: {next(iter(lacking.values()))}")
+            return None
+        self._able = time.monotonic()
+        others = [address for address in able if address != job.avoid]
+        return {"workers": others, "allow_other_workers": True} if others else {}
 
     def _prepare(self):
         """Returns whether a job is ready; asks the plan for more where none is."""
@@ -148,10 +174,19 @@ class Runner:
         results = dict(content)
         for unit in job.units:
             result = results[unit["key"]]
-            if result["state"] == "failed":
+            if result["state"] == "lacking":
+                self._note_lacking(unit["command"], address, result["reason"])
+                self._ready.append(dataclasses.replace(job, units=[unit]))
+            elif result["state"] == "failed":
                 self._retry(job, [unit], address, result)
             else:
                 self._add(unit, result)
+
+    def _note_lacking(self, command, address, reason):
+        """Keeps in mind that a worker gets no more units of a command."""
+        if address not in self._lacking[command]:
+            self._lacking[command][address] = reason
+            self._say(f"{address} gets none of these units: {reason}")
 
     def _take_hash(self, job, address, content):
         recording = job.recording
@@ -179,14 +214,6 @@ class Runner:
             self._say(f"{unit['recording']}, {unit['configuration']}: {result['reason']}")
         else:
             self.done += 1
-
-
-def _elsewhere(client, job):
-    """Returns where a job is to be tried again: not on the worker on which it failed."""
-    if not job.avoid:
-        return {}
-    others = [address for address in client.nthreads() if address != job.avoid]
-    return {"workers": others, "allow_other_workers": True} if others else {}
 
 
 def _reason(future):

@@ -13,7 +13,7 @@ from distributed import get_worker
 
 from . import monte_carlo, recordings
 from .calibrations import calibrated
-from .commands import find_command, run_limited, version_of
+from .commands import run_limited, version_of
 from .errors import StudyError, one_line
 
 # The folders of a unit, below its scratch folder: reasons name no folder that is another next time.
@@ -21,6 +21,10 @@ _OUTPUT, _RECORDING, _CONFIG, _CAMERA = "output", "recording", "config.yaml", "c
 _RESULTS = ("landing_detections.csv", "landing_track.csv", "object_detections.csv")
 # `kestrel fly` ended, whether or not with a landing.
 _FLIGHT_ENDS = (0, 3, 4)
+
+
+class Lacking(StudyError):
+    """The worker has not the `kestrel` of a unit: the unit is for another worker."""
 
 
 def _worker():
@@ -37,7 +41,8 @@ def run_job(job):
     the recording's hash for a job without units.
 
     A result is {"state": "done", "frames", "bins", "summary", "worst", "detections", "resource"} or
-    {"state": "failed", "reason"}; it is never an exception.
+    {"state": "failed", "reason"}, with "lacking" in the place of "failed" where the worker has not the
+    version of the unit; it is never an exception.
     """
     address, scratch = _worker()
     if not job.units:
@@ -77,7 +82,8 @@ def _failed(error, address):
         getattr(error, "strerror", None) or f"{type(error).__name__}: {one_line(error)}"
     log = "" if known else "".join(traceback.format_exception(type(error), error,
                                                               error.__traceback__))
-    return {"state": "failed", "reason": reason, "resource": {"worker": address, "log": log}}
+    state = "lacking" if isinstance(error, Lacking) else "failed"
+    return {"state": state, "reason": reason, "resource": {"worker": address, "log": log}}
 
 
 def _provide(job, folder):
@@ -129,9 +135,12 @@ def _link(source, target, besides):
 
 
 def _require_version(command, version):
-    here = version_of(command)
+    try:
+        here = version_of(command)
+    except StudyError as error:
+        raise Lacking(str(error)) from None
     if here != version:
-        raise StudyError(f"{command}: is {here} on this worker, expected {version}")
+        raise Lacking(f"{command}: is {here} on this computer, expected {version}")
 
 
 def _run_unit(job, unit, path, folder, address):
@@ -152,9 +161,8 @@ def _run_unit(job, unit, path, folder, address):
 
 def _run_command(job, unit, path, folder):
     """Runs `kestrel` for a unit. Raises StudyError with its reason when it fails."""
-    command = find_command(unit["command"])
-    _require_version(command, unit["version"])
-    run = run_limited([command, *_words(job, path)], folder, job.settings["limits"])
+    _require_version(unit["command"], unit["version"])
+    run = run_limited([unit["command"], *_words(job, path)], folder, job.settings["limits"])
     if job.settings["label"] == "fly" and (run.status in _FLIGHT_ENDS or run.timed_out):
         return run
     if run.reason():

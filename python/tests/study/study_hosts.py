@@ -4,8 +4,8 @@
 
 A study on three hosts (network namespaces of this machine, as root), with the scripts of
 examples/study: host 1 has the scheduler, the user and a worker, hosts 2 and 3 have workers. Meanwhile
-a worker is killed, a host is cut off for 30 s, the scheduler is started anew. Its tables must be those
-of a study without any of that, to the byte. Prints a table with a row for each case; status 1 when
+a worker is killed, a host is cut off for 30 s, the scheduler is started anew; or host 3 has no
+`kestrel`. Its tables must be those of a study without any of that, to the byte. Prints a table with a row for each case; status 1 when
 one fails, 77 where there can be no hosts. `kestrel` is a stand-in that takes its time.
 """
 import os
@@ -21,9 +21,10 @@ HERE = Path(__file__).resolve().parent
 PROJECT = HERE.parents[2]
 sys.path += [str(HERE), str(PROJECT / "tests" / "team")]
 
-from bench import Bench
+from bench import FAKE, Bench
 from radio import Radio, obstacle
 
+SCRIPTS = PROJECT / "examples" / "study"
 SKIPPED = 77
 RECORDINGS, UNIT_S = 60, 1.0
 HOSTS = 3
@@ -32,14 +33,19 @@ HOSTS = 3
 class Hosts:
     """The programs on three hosts."""
 
-    def __init__(self, bench):
+    def __init__(self, bench, lacking=None):
+        """lacking: number of a host without `kestrel`."""
         self.bench = bench
         self.radio = Radio(HOSTS)
-        self.scheduler = self._start(1, "scheduler", "10.0.0.1")
-        self.workers = [self._start(number, "worker", "10.0.0.1", "1") for number in range(1, HOSTS + 1)]
+        self.scheduler = self.start(1, [SCRIPTS / "scheduler", "10.0.0.1"])
+        self.workers = [self._start_worker(number, lacking) for number in range(1, HOSTS + 1)]
 
-    def _start(self, number, script, *arguments):
-        return self.start(number, [PROJECT / "examples" / "study" / script, *arguments])
+    def _start_worker(self, number, lacking):
+        command = [str(SCRIPTS / "worker"), "10.0.0.1", "1"]
+        if number == lacking:
+            hide = f'mount --bind /dev/null {FAKE} && exec "$@"'
+            command = ["unshare", "--mount", "sh", "-c", hide, "sh", *command]
+        return self.start(number, command)
 
     def start(self, number, command, **more):
         folder = self.bench.folder / f"host{number}"
@@ -112,12 +118,13 @@ def restart_scheduler(hosts):
 
 
 CASES = {"nothing": None, "a worker killed": kill_worker, "dask-worker killed": kill_nanny,
-         "a host cut off for 30 s": cut_off, "the scheduler killed": restart_scheduler}
+         "a host cut off for 30 s": cut_off, "the scheduler killed": restart_scheduler,
+         "no kestrel on host 3": None}
 
 
 def run_case(bench, name):
     """Returns (seconds, status, what was said)."""
-    hosts = Hosts(bench)
+    hosts = Hosts(bench, lacking=3 if name == "no kestrel on host 3" else None)
     try:
         start = time.monotonic()
         command = bench.command("--where", "tcp://10.0.0.1:8786", output=name.replace(" ", "_"))
