@@ -45,6 +45,7 @@ def units(plan, content="c"):
     ({"limits": {"seconds": 0}}, "limits: seconds: 0, expected more than 0"),
     ({"pieces": {"seconds": 0.1}}, "pieces: expected seconds >= 1"),
     ({"arguments": ["--output=x"]}, "arguments: --output=x: the study gives it itself"),
+    ({"gates": ["foud >= 0.9"]}, "gates: 'foud >= 0.9': no measure 'foud'"),
     ({"workers": 0}, "workers: 0, expected 1 or more"),
 ])
 def test_what_is_wrong_is_told_in_a_line(bench, change, words):

@@ -16,6 +16,7 @@ from . import monte_carlo
 from .commands import output_of
 from .configurations import Configuration, parse_setting, read_configurations
 from .errors import StudyError
+from .gates import GateError, parse_gates
 from .mappings import take
 from .recordings import Recording, find_recordings
 
@@ -23,7 +24,7 @@ TASKS = ("land", "hunt", "calibrate", "simulate", "nothing")
 _CALIBRATIONS = ("mount", "clock", "lens")
 _KEYS = {"task": str, "recordings": list, "configurations": list, "simulate": dict,
          "calibrate": str, "arguments": list, "where": (str, dict), "workers": int, "limits": dict,
-         "pieces": dict, "gates": (list, dict), "output": str, "units": int}
+         "pieces": dict, "gates": list, "output": str, "units": int}
 _LIMITS = {"seconds": 3600.0, "memory_mb": 4000.0}
 _PIECES = {"lead_in_s": 3.0}
 _OURS = ("--output", "--config", "--set", "--force", "--annotate", "--mcap", "--seed")
@@ -158,6 +159,13 @@ def _pieces(mapping):
     return found
 
 
+def _check_gates(gates):
+    try:
+        parse_gates(gates)
+    except GateError as error:
+        raise StudyError(str(error)) from None
+
+
 def _limits(mapping):
     limits = {**_LIMITS, **take(mapping, "limits", {key: float for key in _LIMITS})}
     for key, value in limits.items():
@@ -242,6 +250,7 @@ def read_plan(path, settings=()):
         recordings, configurations = _expand(study, str(Path(path).parent), settings)
         shared = _settings(study)
         pieces = _pieces(study.get("pieces"))
+        _check_gates(study.get("gates", []))
         workers = study.get("workers")
         if workers is not None and workers < 1:
             raise StudyError(f"workers: {workers}, expected 1 or more")
