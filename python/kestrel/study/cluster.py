@@ -61,7 +61,7 @@ class RemoteWorkers:
 
     def __init__(self, address):
         self._address = address
-        self._patience_s = 10
+        self._patience_s = 20
 
     def __enter__(self):
         return self
