@@ -197,3 +197,10 @@ def test_what_an_earlier_plan_did_is_set_aside_and_comes_back(tmp_path):
 def test_two_studies_do_not_share_a_folder(tmp_path):
     with Store(tmp_path), pytest.raises(StudyError, match="another study runs into it"):
         Store(tmp_path)
+
+
+def test_a_recording_with_a_broken_table_is_not_divided(bench):
+    folder = bench.recording("day/broken")
+    (folder / "mav0/cam0/data.csv").write_text("#timestamp\nnoon,1.png\n")
+    plan = read_plan(bench.write(recordings=[str(folder)], pieces={"seconds": 10}))
+    assert [job.piece for job in plan.units_of(plan.recordings[0], "c")] == [None]

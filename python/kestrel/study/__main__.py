@@ -20,7 +20,7 @@ def _say(text):
 
 
 class _Progress:
-    """A line on stderr that says how far it is: always the last on a terminal, else now and then."""
+    """A line on stderr that says how far it is: on a terminal always the last."""
 
     def __init__(self):
         self._start = self._shown = time.monotonic()

@@ -151,9 +151,9 @@ def run_limited(command, folder, limits):
     log = Path(folder) / "log.txt"
     with open(log, "wb") as errors:
         # setpriv: a worker that is killed takes the command with it.
-        process = subprocess.Popen([find_command("setpriv"), "--pdeathsig", "KILL", *command], cwd=folder,
-                                   stdin=subprocess.DEVNULL, stdout=errors, stderr=errors,
-                                   start_new_session=True)
+        bound = [find_command("setpriv"), "--pdeathsig", "KILL", *command]
+        process = subprocess.Popen(bound, cwd=folder, stdin=subprocess.DEVNULL, stdout=errors,
+                                   stderr=errors, start_new_session=True)
         broken, status, usage = _wait(process, start, limits)
     with open(log, "rb") as said:
         said.seek(max(0, log.stat().st_size - _LOG_BYTES))

@@ -47,7 +47,7 @@ def _check_distribution(where, distribution):
 
 
 def _seeds(value):
-    """Returns the seeds: of a number so many from 1 on, of two numbers all from one to the other."""
+    """Returns the seeds: of a number so many from 1 on, of two numbers all between them."""
     bounds = [1, value] if isinstance(value, int) else value
     if len(bounds) != 2 or not all(isinstance(one, int) for one in bounds) or bounds[0] > bounds[1]:
         raise StudyError(f"simulate: seeds: {value}, expected a number, or [first, last]")
@@ -78,7 +78,8 @@ def simulated_flight(simulation, seed):
               "guide": simulation["guide"], "command": simulation.get("command"),
               "version": simulation.get("version")}
     scenario = simulation["scenario"].split(",")[0]
-    return Recording(f"{scenario} {seed:06d}", " ".join(["kestrel", *command_words(flight)]), flight)
+    words = " ".join(["kestrel", *command_words(flight)])
+    return Recording(f"{scenario} {seed:06d}", words, flight)
 
 
 def command_words(flight, config=None, output=None):

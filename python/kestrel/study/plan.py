@@ -70,7 +70,7 @@ class Plan:
     text: str  # STUDY.yaml
 
     def units_of(self, recording, content):
-        """Yields the jobs of a recording, each with all its units; content: the recording's hash."""
+        """Yields the jobs of a recording, each with all its units; content: its hash."""
         for piece in self._pieces_of(recording):
             units = [self._unit(recording, content, piece, one) for one in self.configurations]
             yield Job(recording, units, piece, self.settings)
@@ -78,8 +78,9 @@ class Plan:
     def _unit(self, recording, content, piece, configuration):
         number = piece.number if piece else 0
         task = self.settings["label"]
-        said = [content, configuration.text, configuration.version, task, self.settings["arguments"],
-                recording.name, configuration.name, dataclasses.astuple(piece) if piece else number]
+        said = [content, configuration.text, configuration.version, task,
+                self.settings["arguments"], recording.name, configuration.name,
+                dataclasses.astuple(piece) if piece else number]
         key = hashlib.sha256(json.dumps(said).encode()).hexdigest()
         return {"key": key, "recording": recording.name, "piece": number,
                 "configuration": configuration.name, "version": configuration.version, "task": task,
@@ -111,14 +112,14 @@ class Flights:
 
 
 def _times(path):
-    """Returns the times of a recording's images; empty where it is no EuRoC folder, which is not
-    divided."""
-    table = Path(path) / "mav0/cam0/data.csv"
-    if not table.is_file():
+    """Returns the times of a recording's images; empty where it is not divided: where it is no EuRoC
+    folder, or its table is broken, which `kestrel` will tell."""
+    try:
+        with open(Path(path) / "mav0/cam0/data.csv", newline="") as file:
+            return sorted(int(row[0]) for row in csv.reader(file)
+                          if row and not row[0].startswith("#"))
+    except (OSError, ValueError):
         return []
-    with open(table, newline="") as file:
-        return sorted(int(row[0]) for row in csv.reader(file)
-                      if row and not row[0].startswith("#"))
 
 
 def split(job, is_shared):

@@ -3,6 +3,7 @@
 that lies elsewhere."""
 import glob
 import hashlib
+import itertools
 import json
 import os
 import re
@@ -72,8 +73,7 @@ def _is_single(path):
 def _root(pattern):
     """Returns the folder of a pattern above its first wildcard."""
     parts = Path(pattern).parts
-    fixed = [part for index, part in enumerate(parts) if not _MAGIC.search("".join(parts[:index + 1]))]
-    return Path(*fixed)
+    return Path(*itertools.takewhile(lambda part: not _MAGIC.search(part), parts))
 
 
 def _name(path, root):

@@ -41,8 +41,8 @@ def run_job(job):
     the recording's hash for a job without units.
 
     A result is {"state": "done", "frames", "bins", "summary", "worst", "detections", "resource"} or
-    {"state": "failed", "reason"}, with "lacking" in the place of "failed" where the worker has not the
-    version of the unit; it is never an exception.
+    {"state": "failed", "reason"}, with "lacking" in the place of "failed" where the worker has not
+    the version of the unit; it is never an exception.
     """
     address, scratch = _worker()
     if not job.units:
