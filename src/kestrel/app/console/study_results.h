@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kestrel/core/base/time.h"
+#include "kestrel/io/bags/sqlite_handles.h"
+
+namespace kestrel {
+
+// A configuration, run by a version of the program: a study compares several.
+struct StudyVariant {
+  std::string configuration;
+  std::string version;
+  std::string task;  // as "land"
+
+  bool operator==(const StudyVariant&) const = default;
+};
+
+// The result of a variant for a recording. Nothing is known when its unit is not done, or failed.
+struct StudyOutcome {
+  std::string key = {};                    // of the unit; empty: not done
+  std::string failure = {};                // why it failed; empty: it did not
+  std::int64_t frames = 0;                 // images of the recording
+  std::optional<double> found = {};        // share of what should be found, 0 to 1
+  std::optional<double> false_found = {};  // false detections for each image with something to find
+  std::optional<std::int64_t> false_count = {};
+  std::optional<double> error_m = {};  // median of the error of what was found, m
+  bool is_estimated = false;           // the recording has no truth
+};
+
+// A recording, or a piece of one, as two variants saw it.
+struct StudyRow {
+  std::string recording;
+  std::int64_t piece = 0;  // from 1; 0: the whole recording
+  std::string path;
+  StudyOutcome before, after;
+
+  // The share found in addition by the second, less its additional false detections; negative: it
+  // got worse. Nothing when one of the two is not known.
+  std::optional<double> Change() const;
+};
+
+struct StudyComparison {
+  std::vector<StudyRow> rows;  // what failed with the second only, then what got worst first
+  std::size_t total = 0;       // number of rows before only the first of them were kept
+};
+
+// The results of `kestrel study run` in a folder: its file study.db, which a study may be writing.
+// All functions throw InputError when it cannot be read or is not the file of a study.
+class StudyResults {
+ public:
+  // The most rows of a comparison.
+  static constexpr std::size_t kMaxRows = 1000;
+
+  explicit StudyResults(const std::string& folder);
+
+  // True for a folder that has the results of a study.
+  static bool IsIn(const std::string& folder);
+
+  // Returns what was run, in the order of names; at least one.
+  std::vector<StudyVariant> Variants() const;
+
+  StudyComparison Compare(const StudyVariant& before, const StudyVariant& after) const;
+
+  // Returns the time of the first frame in which the second outcome is worst against the first:
+  // found less or more that is false; else of the frame in which they differ most; else of the
+  // worst frame of either; else of the first. Nothing when no frame is known.
+  std::optional<Time> WorstFrame(const StudyRow& row) const;
+
+ private:
+  SqliteStatement Prepare(const std::string& sql, const std::vector<std::string>& values) const;
+  bool Step(sqlite3_stmt* statement) const;
+  [[noreturn]] void Fail(const std::string& why) const;
+  void RequireTables() const;
+  std::vector<StudyRow> Units(const StudyVariant& variant) const;
+  StudyOutcome OutcomeOf(sqlite3_stmt* unit) const;
+  std::optional<double> MedianError(const std::string& key) const;
+  std::optional<Time> TimeOf(const std::string& sql, const std::vector<std::string>& keys) const;
+
+  std::string file_;
+  SqliteDatabase database_;
+};
+
+}  // namespace kestrel
