@@ -9,79 +9,28 @@
 #include <fmt/format.h>
 
 #include "kestrel/app/cli/commands.h"
+#include "kestrel/app/cli/console_arguments.h"
+#include "kestrel/app/cli/console_study.h"
 #include "kestrel/app/cli/fly_arguments.h"
 #include "kestrel/app/cli/fly_command.h"
 #include "kestrel/app/cli/interrupt.h"
 #include "kestrel/app/cli/recorded_run.h"
 #include "kestrel/app/cli/result_argument.h"
-#include "kestrel/app/cli/source_arguments.h"
 #include "kestrel/app/console/calibration_tools.h"
 #include "kestrel/app/console/find_colors.h"
-#include "kestrel/app/console/hunt_replay.h"
-#include "kestrel/app/console/landing_replay.h"
 #include "kestrel/app/console/replay_console.h"
 #include "kestrel/core/base/error.h"
-#include "kestrel/core/base/options.h"
 #include "kestrel/flight/session/observation_sinks.h"
-#include "kestrel/io/recording/open_source.h"
-#include "kestrel/vision/objects/object_model.h"
 
 namespace kestrel {
 namespace {
 
 constexpr std::size_t kFramesPerReport = 20;  // of the progress, on the page
 
-struct ConsoleArguments {
-  SourceArguments source;
-  std::string address;
-  std::string model;
-  std::string output = "taught";  // folder for the files that the page saves
-  bool is_hunt = false;
-  bool is_demo = false;
-  // Result of `kestrel land` or `hunt` that is shown instead of a new run; empty: none.
-  std::string result;
-
-  ConsoleOptions Options(const KestrelOptions& options) const {
-    if (address.empty()) return options.console;
-    return Checked(WithAddress(options.console, address, "--address"));
-  }
-};
-
-void RequireEnd(const std::vector<std::string>& sources) {
-  for (const std::string& source : sources) {
-    if (!IsCamera(source)) continue;
-    throw InputError(source +
-                     ": the page needs any frame at any time, expected a recording, a bag, images "
-                     "or a video; `kestrel fly --console` shows a camera");
-  }
-}
-
-LandingPipelineOptions LandingOptions(const ConsoleArguments& arguments,
-                                      const KestrelOptions& options) {
-  LandingPipelineOptions landing = options.landing;
-  landing.still = landing.still || arguments.source.still;
-  return landing;
-}
-
-// The search of the recording, with the options of `kestrel land` or `kestrel hunt`.
-std::unique_ptr<ReplaySearch> MakeSearch(const ConsoleArguments& arguments,
-                                         const KestrelOptions& options) {
-  const SourceArguments& source = arguments.source;
-  if (!arguments.is_hunt) {
-    return SearchForPattern(source.sources, LandingOptions(arguments, options), source.altitude_m);
-  }
-  HuntPipelineOptions hunt = options.hunt;
-  hunt.still = hunt.still || source.still;
-  return SearchForObjects(
-      source.sources, hunt,
-      arguments.model.empty() ? DefaultObjectModel() : ReadObjectModel(arguments.model),
-      source.altitude_m);
-}
-
 void RunConsole(const ConsoleArguments& arguments) {
   CatchInterrupts();  // the page can be asked, and ended, before the first run begins
   const KestrelOptions options = arguments.source.options.Read();
-  RequireEnd(arguments.source.sources);
+  arguments.RequireEnd();
   const std::unique_ptr<ReplaySearch> search = MakeSearch(arguments, options);
   const RecordingChoice choice = arguments.source.Recording(search->format());
   const OpenedSource opened = OpenRecording(choice);
@@ -91,7 +40,7 @@ void RunConsole(const ConsoleArguments& arguments) {
   if (!has_colors && !arguments.model.empty() && !arguments.is_hunt) {
     throw InputError("--model: " + name + " has no images in color to teach it by");
   }
-  ReplayConsole console(arguments.Options(options), name, search->Subject(), std::move(colors));
+  ReplayConsole console(arguments.PageOptions(options), name, search->Subject(), std::move(colors));
   fmt::print(stderr, "console: {}\n", console.url());
   if (has_colors) fmt::print(stderr, "folder for taught colors: {}\n", arguments.output);
   const auto start = arguments.result.empty() ? search->Detect({}) : search->Show(arguments.result);
@@ -105,7 +54,7 @@ void RunConsole(const ConsoleArguments& arguments) {
   if (WasInterrupted()) return;
   if (run->done() == 0) throw InputError(name + ": has no images to show");
   console.OfferCalibration(CalibrationTools(arguments.source.Recording(PixelFormat::kGray),
-                                            LandingOptions(arguments, options), arguments.output));
+                                            arguments.LandingOptions(options), arguments.output));
   console.Play(run->TakeResult(), RecordingOf(choice, *search), WasInterrupted);
 }
 
@@ -124,7 +73,9 @@ void RunConsoleDemo(const ConsoleArguments& arguments) {
 
 void AddConsoleCommand(CLI::App* app) {
   CLI::App* command = app->add_subcommand(
-      "console", "Serve the web page for a recording: replay, calibration, teaching of colours");
+      "console",
+      "Serve the web page for a recording (replay, calibration, teaching of colours) or for the "
+      "folder of `kestrel study run` (what got worst)");
   const auto arguments = std::make_shared<ConsoleArguments>();
   arguments->source.AddReadingTo(command);
   CLI::Option* const source = command->get_option("SOURCE")->required(false);
@@ -152,6 +103,7 @@ void AddConsoleCommand(CLI::App* app) {
   command->callback([arguments] {
     if (arguments->is_demo) return RunConsoleDemo(*arguments);
     if (arguments->source.sources.empty()) throw CLI::RequiredError("SOURCE, or --demo,");
+    if (IsStudy(*arguments)) return RunStudyConsole(*arguments);
     const char* const table =
         arguments->is_hunt ? "object_detections.csv" : "landing_detections.csv";
     arguments->result = TakeResult(table, &arguments->source.sources).value_or("");

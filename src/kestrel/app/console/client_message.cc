@@ -21,12 +21,15 @@ constexpr std::array kCommands = {ConsoleCommandKind::kRecord,
                                   ConsoleCommandKind::kCancel,
                                   ConsoleCommandKind::kCalibrate,
                                   ConsoleCommandKind::kCalibrateCancel,
-                                  ConsoleCommandKind::kCalibrateSave};
+                                  ConsoleCommandKind::kCalibrateSave,
+                                  ConsoleCommandKind::kCompare,
+                                  ConsoleCommandKind::kOpen};
 // A list in an object. Deeper text would use up the parser's stack.
 constexpr int kMaxDepth = 2;
 // True for the commands with a list of settings.
 bool HasSettings(ConsoleCommandKind kind) {
-  return kind == ConsoleCommandKind::kDetect || kind == ConsoleCommandKind::kCalibrate;
+  return kind == ConsoleCommandKind::kDetect || kind == ConsoleCommandKind::kCalibrate ||
+         kind == ConsoleCommandKind::kCompare;
 }
 constexpr std::size_t kMaxSettings = 32, kMaxSettingBytes = 128;
 
@@ -108,6 +111,10 @@ const char* ToString(ConsoleCommandKind kind) {
       return "calibrate-cancel";
     case ConsoleCommandKind::kCalibrateSave:
       return "calibrate-save";
+    case ConsoleCommandKind::kCompare:
+      return "compare";
+    case ConsoleCommandKind::kOpen:
+      return "open";
   }
   return "";
 }

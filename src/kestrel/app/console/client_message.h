@@ -38,15 +38,18 @@ enum class ConsoleCommandKind {
   kCalibrate,        // calibrate from the recording what the settings name
   kCalibrateCancel,  // cancel the calibration
   kCalibrateSave,    // save its result
+  kCompare,          // compare the two variants of a study with these numbers
+  kOpen,             // value: number of the row of a study's table to replay, from 0
 };
 // Returns "record", "snapshot", "play", "seek", "step", "detect", "cancel", "calibrate",
-// "calibrate-cancel" or "calibrate-save".
+// "calibrate-cancel", "calibrate-save", "compare" or "open".
 const char* ToString(ConsoleCommandKind kind);
 struct ConsoleCommand {
   ConsoleCommandKind kind = ConsoleCommandKind::kSnapshot;
   double value = 0;  // finite
-  // As in {"command": "detect", "settings": ["landing.still=true"]} or {"command": "calibrate",
-  // "settings": ["mount", "clock"]}. At most 32 settings of at most 128 bytes each.
+  // As in {"command": "detect", "settings": ["landing.still=true"]}, {"command": "calibrate",
+  // "settings": ["mount", "clock"]} or {"command": "compare", "settings": ["0", "2"]}. At most 32
+  // settings of at most 128 bytes each.
   std::vector<std::string> settings = {};
 };
 

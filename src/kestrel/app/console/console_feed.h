@@ -16,6 +16,7 @@
 #include "kestrel/app/console/client_message.h"
 #include "kestrel/app/console/color_state.h"
 #include "kestrel/app/console/export_request.h"
+#include "kestrel/app/console/study_state.h"
 #include "kestrel/core/base/bounded_queue.h"
 #include "kestrel/core/base/latest_value.h"
 #include "kestrel/core/base/time.h"
@@ -193,7 +194,7 @@ using ConsoleUpdate =
     std::variant<ConsoleSample, ConsoleStatus, ConsoleMap, ConsoleHealth, SessionEvent,
                  ConsoleTimeline, ConsolePlayback, ConsoleDoctor, ConsoleOptionList,
                  ConsoleSecondRun, ConsoleFindings, ConsoleClip, ConsoleColors, ConsoleColorScores,
-                 ConsoleCalibration, ConsoleTeam, ConsoleVehicle>;
+                 ConsoleCalibration, ConsoleTeam, ConsoleVehicle, ConsoleStudy, ConsoleStudyReplay>;
 
 // A task of the page of colours.
 using ColorJob = std::variant<ColorRequest, PendingExport>;

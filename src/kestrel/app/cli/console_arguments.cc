@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/app/cli/console_arguments.h"
+
+#include "kestrel/app/console/hunt_replay.h"
+#include "kestrel/app/console/landing_replay.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/options.h"
+#include "kestrel/io/recording/open_source.h"
+#include "kestrel/vision/objects/object_model.h"
+
+namespace kestrel {
+
+ConsoleOptions ConsoleArguments::PageOptions(const KestrelOptions& options) const {
+  if (address.empty()) return options.console;
+  return Checked(WithAddress(options.console, address, "--address"));
+}
+
+LandingPipelineOptions ConsoleArguments::LandingOptions(const KestrelOptions& options) const {
+  LandingPipelineOptions landing = options.landing;
+  landing.still = landing.still || source.still;
+  return landing;
+}
+
+void ConsoleArguments::RequireEnd() const {
+  for (const std::string& name : source.sources) {
+    if (!IsCamera(name)) continue;
+    throw InputError(name +
+                     ": the page needs any frame at any time, expected a recording, a bag, images "
+                     "or a video; `kestrel fly --console` shows a camera");
+  }
+}
+
+std::unique_ptr<ReplaySearch> MakeSearch(const ConsoleArguments& arguments,
+                                         const KestrelOptions& options) {
+  const SourceArguments& source = arguments.source;
+  if (!arguments.is_hunt) {
+    return SearchForPattern(source.sources, arguments.LandingOptions(options), source.altitude_m);
+  }
+  HuntPipelineOptions hunt = options.hunt;
+  hunt.still = hunt.still || source.still;
+  return SearchForObjects(
+      source.sources, hunt,
+      arguments.model.empty() ? DefaultObjectModel() : ReadObjectModel(arguments.model),
+      source.altitude_m);
+}
+
+}  // namespace kestrel

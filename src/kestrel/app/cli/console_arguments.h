@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "kestrel/app/cli/source_arguments.h"
+#include "kestrel/app/console/console_options.h"
+#include "kestrel/app/console/replay_search.h"
+#include "kestrel/app/options/kestrel_options.h"
+#include "kestrel/vision/pipeline/landing_pipeline.h"
+
+namespace kestrel {
+
+// The arguments of `kestrel console`.
+struct ConsoleArguments {
+  SourceArguments source;
+  std::string address;
+  std::string model;
+  std::string output = "taught";  // folder for the files that the page saves
+  bool is_hunt = false;
+  bool is_demo = false;
+  // Result of `kestrel land` or `hunt` that is shown instead of a new run; empty: none.
+  std::string result;
+
+  // Returns the options of the page. Throws InputError when the address is not valid.
+  ConsoleOptions PageOptions(const KestrelOptions& options) const;
+  LandingPipelineOptions LandingOptions(const KestrelOptions& options) const;
+
+  // Throws InputError when a source is a camera.
+  void RequireEnd() const;
+};
+
+// Returns the search of the recording, with the options of `kestrel land` or `kestrel hunt`. Throws
+// InputError when the model cannot be read.
+std::unique_ptr<ReplaySearch> MakeSearch(const ConsoleArguments& arguments,
+                                         const KestrelOptions& options);
+
+}  // namespace kestrel

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kestrel/app/console/console_feed.h"
+#include "kestrel/app/console/console_options.h"
+#include "kestrel/app/console/recording_player.h"
+#include "kestrel/app/console/replay_search.h"
+#include "kestrel/app/console/study_results.h"
+#include "kestrel/app/console/study_state.h"
+#include "kestrel/app/console/web_server.h"
+
+namespace kestrel {
+
+// The results of a study on the page: the table of its recordings, the worst first, and the replay
+// of one of them, whose two runs are by the two variants that are compared.
+class StudyConsole {
+ public:
+  // A recording, and the search in it with the options of a variant.
+  struct Run {
+    RecordingChoice choice;
+    std::unique_ptr<ReplaySearch> search;
+  };
+  // Opens a recording of the study for a variant. Throws InputError.
+  using Open = std::function<Run(const std::string& path, const StudyVariant& variant)>;
+
+  // Starts the server. 'variants': those of the results, in the order of the page; at least one.
+  // 'subject': of the searches that 'open' makes. Throws InputError as WebServer does.
+  StudyConsole(const ConsoleOptions& options, const std::string& title, StudyResults results,
+               std::vector<StudyVariant> variants, ReplaySubject subject, Open open);
+
+  std::string url() const { return server_.url(); }
+
+  // Shows what the users ask for, until 'is_stopped' returns true; it is called often.
+  void Play(const std::function<bool()>& is_stopped);
+
+ private:
+  void Obey(const ConsoleCommand& command);
+  void Compare(const std::vector<std::string>& settings);
+  void ReadTable(std::size_t before, std::size_t after);
+  void OpenRow(double number);
+  void StartFirstRun(const StudyRow& row);
+  void FollowFirstRun();
+  void StartReplay(ReplayResult first);
+  void TellReplay(StudyReplayState state, const std::string& error = "");
+
+  StudyResults results_;
+  std::vector<StudyVariant> variants_;
+  ReplaySubject subject_;
+  Open open_;
+  ConsoleFeed feed_;
+  WebServer server_;
+  ConsoleStudy study_;
+  // The recording that is being opened or is replayed.
+  ConsoleStudyReplay replay_;
+  std::optional<Time> worst_;  // its frame to begin with
+  Run before_, after_;
+  Time told_{};
+  SecondRun first_run_;
+  std::optional<RecordingPlayer> player_;
+};
+
+}  // namespace kestrel
