@@ -83,6 +83,12 @@ const commonKeys: Key[] = [
     isOffered: () => offeredPages().includes("calibration"),
     act: () => togglePage("calibration"),
   },
+  {
+    keys: ["w"],
+    meaning: "to the study's table and back",
+    isOffered: () => offeredPages().includes("study") && offeredPages().length > 1,
+    act: () => togglePage("study"),
+  },
   { keys: ["t"], meaning: "next theme: auto, light, dark, sun", act: nextTheme },
   { keys: ["?", "h"], meaning: "show or hide these keys", act: toggleHelp },
 ];

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The pages of a recording; a flight has no calibration.
+// The pages of a recording or a study; a flight has no calibration.
 import { isOffered } from "./actions";
 import { store, type Page } from "./store";
 
 export function pageName(page: Page): string {
   if (page === "watch") return store.state.hello?.live ? "Flight" : "Replay";
+  if (page === "study") return "Table";
   return page === "colors" ? "Colours" : "Calibration";
 }
 
 /** Those that this server has something for. */
 export function offeredPages(): Page[] {
+  if (isOffered("open")) return store.state.studyReplay?.state === "open" ? ["study", "watch"] : ["study"];
   const pages: Page[] = ["watch"];
   if (store.state.hello?.colors) pages.push("colors");
   if (isOffered("calibrate")) pages.push("calibration");

@@ -4,6 +4,7 @@
 import type { Calibration } from "./calibration";
 
 import type { Colors, ColorScores } from "./color_protocol";
+import type { Study, StudyReplay } from "./study";
 
 export const layers = ["detection", "prediction", "rejected", "truth", "second"] as const;
 export type Layer = (typeof layers)[number];
@@ -47,7 +48,9 @@ export type CommandName =
   | "cancel"
   | "calibrate"
   | "calibrate-cancel"
-  | "calibrate-save";
+  | "calibrate-save"
+  | "compare"
+  | "open";
 
 export interface Hello {
   kind: "hello";
@@ -237,6 +240,8 @@ export type ServerMessage =
   | Colors
   | ColorScores
   | Calibration
+  | Study
+  | StudyReplay
   | LinkReport;
 
 export interface ImageMessage {

@@ -23,13 +23,14 @@ import type {
   Vehicle,
 } from "./protocol";
 import { SeriesBuffer } from "./series_buffer";
+import type { Study, StudyReplay } from "./study";
 
 export type ConnectionState = "connecting" | "open" | "lost" | "refused";
 export const themes = ["auto", "light", "dark", "sun"] as const;
 export type Theme = (typeof themes)[number];
 
-/** What the window shows: a flight or a recording, its colours, or the calibration from it. */
-export type Page = "watch" | "colors" | "calibration";
+/** A page of the window: a flight or a recording, its colours, the calibration from it, or the table of a study. */
+export type Page = "watch" | "colors" | "calibration" | "study";
 
 export interface State {
   page: Page;
@@ -56,6 +57,8 @@ export interface State {
   colorScores: ColorScores | null;
   colorView: ColorView;
   calibration: Calibration | null;
+  study: Study | null;
+  studyReplay: StudyReplay | null;
   link: LinkReport | null;
   series: SeriesBuffer;
   /** UAV's way on the map, oldest first. */
@@ -97,6 +100,8 @@ export function initialState(): State {
     colorScores: null,
     colorView: firstColorView,
     calibration: null,
+    study: null,
+    studyReplay: null,
     link: null,
     series: new SeriesBuffer(0),
     track: [],
@@ -117,6 +122,7 @@ export function withMessage(state: State, message: ServerMessage): State {
       return {
         ...state,
         hello: message,
+        page: pageAfter(state, message),
         view: message.views.includes(state.view) ? state.view : "",
         events: [],
         track: [],
@@ -136,6 +142,8 @@ export function withMessage(state: State, message: ServerMessage): State {
         colors: null,
         colorScores: null,
         calibration: null,
+        study: null,
+        studyReplay: null,
         series: new SeriesBuffer(message.series.length),
       };
     case "sample":
@@ -156,7 +164,8 @@ export function withMessage(state: State, message: ServerMessage): State {
     case "event":
       return { ...state, events: [...state.events, message].slice(-maxEvents) };
     case "timeline":
-      return { ...state, timeline: message };
+      // A study opens one recording after the other: what was said of the one before is gone.
+      return { ...state, timeline: message, second: null, findings: null, clipRange: null, track: [] };
     case "playback":
       return { ...state, playback: message };
     case "options":
@@ -173,9 +182,26 @@ export function withMessage(state: State, message: ServerMessage): State {
       return { ...state, colorScores: message };
     case "calibration":
       return { ...state, calibration: message };
+    case "study":
+      return { ...state, study: message };
+    case "study-replay":
+      return withReplay(state, message);
     case "link":
       return { ...state, link: message };
   }
+}
+
+/** A study begins with its table; a page that comes back to it stays where it was. */
+function pageAfter(state: State, hello: Hello): Page {
+  if (!hello.offers.includes("open")) return state.page === "study" ? "watch" : state.page;
+  return state.study === null ? "study" : state.page;
+}
+
+/** The page turns to a recording that was asked for, as soon as it is there. */
+function withReplay(state: State, replay: StudyReplay): State {
+  const hasOpened = replay.state === "open" && state.studyReplay?.state === "running";
+  if (!hasOpened) return { ...state, studyReplay: replay };
+  return { ...state, studyReplay: replay, page: "watch", isBeside: true };
 }
 
 function withPoint(

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Serves dist/ and a simulated flight, for work on the page without the program:
 //
-//   node tools/mock_server.js [PORT] [--replay]
+//   node tools/mock_server.js [PORT] [--replay | --study]
 import { existsSync, readFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { join } from "node:path";
 import { WebSocketServer } from "ws";
 import { colorPicture, MockColors } from "./mock_colors.js";
 import { MockCalibration } from "./mock_calibration.js";
+import { MockStudy } from "./mock_study.js";
 import {
   flightAt,
   flightSeconds,
@@ -53,11 +54,11 @@ const options = [
   { name: "landing.still", value: "false", unit: "", meaning: "frames have nothing to do with each other" },
 ];
 
-/** Starts the server; resolves to it. 'isReplay': as `kestrel console` of a recording. */
-export function startMockServer(port, isReplay = false) {
+/** Starts the server; resolves to it. 'isReplay': as `kestrel console` of a recording; 'isStudy': of a study. */
+export function startMockServer(port, isReplay = false, isStudy = false) {
   const server = createServer(sendFile);
   const sockets = new WebSocketServer({ server, path: "/live" });
-  sockets.on("connection", (socket) => new Client(socket, isReplay));
+  sockets.on("connection", (socket) => new Client(socket, isReplay, isStudy));
   return new Promise((resolve) => server.listen(port, "127.0.0.1", () => resolve(server)));
 }
 
@@ -76,9 +77,10 @@ function sendFile(request, response) {
 }
 
 class Client {
-  constructor(socket, isReplay) {
+  constructor(socket, isReplay, isStudy) {
     this.socket = socket;
     this.isReplay = isReplay;
+    this.isStudy = isStudy;
     this.frame = 0;
     this.speed = 1;
     this.isRecording = false;
@@ -97,10 +99,11 @@ class Client {
   }
 
   greet() {
-    const offers = this.isReplay ? ["play", "seek", "step", "detect", "cancel", "calibrate"] : ["record", "snapshot"];
-    const title = this.isReplay ? "Recording flight_07" : "Simulated flight";
+    const offers = this.isStudy ? ["play", "seek", "step", "detect", "cancel", "compare", "open"] : this.isReplay ? ["play", "seek", "step", "detect", "cancel", "calibrate"] : ["record", "snapshot"];
+    const title = this.isStudy ? "study" : this.isReplay ? "Recording flight_07" : "Simulated flight";
     const layers = ["detection", "prediction", "rejected", ...(this.isReplay ? ["second"] : [])];
-    this.send({ kind: "hello", title, live: !this.isReplay, series, layers, views, offers, exports: this.isReplay, colors: this.isReplay });
+    this.send({ kind: "hello", title, live: !this.isReplay, series, layers, views, offers, exports: this.isReplay, colors: this.isReplay && !this.isStudy });
+    if (this.isStudy) return this.greetWithStudy();
     this.send({ kind: "health", checks });
     if (!this.isReplay) this.send({ kind: "doctor", checks: doctorChecks });
     if (!this.isReplay) this.send(team());
@@ -110,6 +113,19 @@ class Client {
     if (this.isReplay) this.send({ kind: "options", options });
     if (this.isReplay) this.colors.messages().forEach((message) => this.send(message));
     if (this.isReplay) this.calibration = new MockCalibration((message) => this.send(message));
+  }
+
+  greetWithStudy() {
+    this.speed = 0;
+    this.study = new MockStudy(
+      (message) => this.send(message),
+      (second) => {
+        this.sendTimeline();
+        this.send({ kind: "options", options });
+        this.show(200, 0);
+        this.detect([second]);
+      },
+    );
   }
 
   /** A second run that loses the pattern more often. */
@@ -163,6 +179,7 @@ class Client {
       this.event("info", this.isRecording ? "recording to flight_08" : "recording ended");
     }
     this.calibration?.receive(message);
+    this.study?.receive(message);
     if (message.command === "detect") this.detect(message.settings);
     if (message.command === "snapshot") this.event("info", "snapshot kept");
     if (message.command === "play") this.speed = message.value;
@@ -296,6 +313,7 @@ function team() {
 
 if (process.argv[1] === new URL(import.meta.url).pathname) {
   const port = Number(process.argv[2] ?? 8090);
-  await startMockServer(port, process.argv.includes("--replay"));
+  const isStudy = process.argv.includes("--study");
+  await startMockServer(port, process.argv.includes("--replay") || isStudy, isStudy);
   console.log(`http://127.0.0.1:${port}/`);
 }

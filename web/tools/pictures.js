@@ -23,10 +23,14 @@ const views = [
   { name: "calibration-light", theme: "light", width: 1440, height: 1000, isReplay: true, calibrates: true },
   { name: "calibration-dark", theme: "dark", width: 1440, height: 1000, isReplay: true, calibrates: true },
   { name: "calibration-tablet", theme: "sun", width: 820, height: 1180, isReplay: true, calibrates: true },
+  { name: "study-light", theme: "light", width: 1440, height: 1000, isStudy: true },
+  { name: "study-dark", theme: "dark", width: 1440, height: 1000, isStudy: true },
+  { name: "study-tablet", theme: "sun", width: 820, height: 1180, isStudy: true },
+  { name: "study-beside", theme: "light", width: 1440, height: 1000, isStudy: true, opens: true },
 ];
 
 let findings = 0;
-const servers = [await startMockServer(8091), await startMockServer(8092, true)];
+const servers = [await startMockServer(8091), await startMockServer(8092, true), await startMockServer(8093, true, true)];
 const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: ["--no-sandbox"] });
 for (const view of views) {
   const page = await browser.newPage({ viewport: { width: view.width, height: view.height }, bypassCSP: false });
@@ -35,8 +39,9 @@ for (const view of views) {
     if (message.type() === "error") report(`${view.name}: ${message.text()}`);
   });
   await page.addInitScript((theme) => localStorage.setItem("kestrel-theme", theme), view.theme);
-  await page.goto(`http://127.0.0.1:${view.isReplay ? 8092 : 8091}/${view.isColors ? "#colors" : ""}`);
-  await page.waitForFunction(() => !document.querySelector(".screen .empty"));
+  await page.goto(`http://127.0.0.1:${view.isStudy ? 8093 : view.isReplay ? 8092 : 8091}/${view.isColors ? "#colors" : ""}`);
+  if (view.isStudy) await sortStudy(page, view.opens);
+  else await page.waitForFunction(() => !document.querySelector(".screen .empty"));
   if (view.isColors) await teachColor(page);
   else await page.keyboard.press("3");
   if (view.calibrates) await calibrate(page);
@@ -56,6 +61,14 @@ async function detectAgain(page) {
   await page.getByLabel(/smallest probability/).fill("0.9");
   await page.getByRole("button", { name: "Run" }).click();
   await page.getByText("Second run (below)").waitFor();
+}
+
+async function sortStudy(page, opens) {
+  await page.getByRole("button", { name: "Recording", exact: true }).click();
+  await page.getByRole("button", { name: "Change" }).click();
+  if (!opens) return;
+  await page.getByRole("row").filter({ hasText: "−1" }).first().click();
+  await page.getByRole("heading", { name: "Second run: strict min_quality=0.9" }).waitFor();
 }
 
 async function teachColor(page) {

@@ -14,12 +14,14 @@ import { MapPanel } from "./map_panel";
 import { PageSwitch } from "./page_switch";
 import { ReplayBar } from "./replay_bar";
 import { SecondRunPanel } from "./second_run_panel";
+import { StudyCaption, StudyPage } from "./study_page";
 
 export function App() {
   const hasColors = useStore((state) => state.hello?.colors ?? false);
   const isOnColors = useStore((state) => state.page === "colors") && hasColors;
   const title = useStore((state) => state.hello?.title);
   const isOnCalibration = useStore((state) => state.page === "calibration") && isOffered("calibrate");
+  const isOnStudy = useStore((state) => state.page === "study") && isOffered("open");
   useEffect(() => {
     document.title = title ? `${title}: Kestrel` : "Kestrel";
   }, [title]);
@@ -29,7 +31,8 @@ export function App() {
       <PageSwitch />
       {isOnColors && <ColorPage />}
       {isOnCalibration && <CalibrationPage />}
-      {!isOnColors && !isOnCalibration && <WatchPage />}
+      {isOnStudy && <StudyPage />}
+      {!isOnColors && !isOnCalibration && !isOnStudy && <WatchPage />}
       <HelpDialog />
     </>
   );
@@ -42,6 +45,7 @@ function WatchPage() {
   return (
     <main>
       <div class="column">
+        <StudyCaption />
         <ImageView />
         {hasTimeline && <ReplayBar />}
         <Charts />

@@ -14,11 +14,12 @@ const connectionInWords: Record<ConnectionState, string> = {
 
 /** State in words (the last of them is what the vision says), the vehicle, the newest number of each series, and what can be done. */
 export function Header() {
+  const isOnTable = useStore((state) => state.page === "study");
   return (
     <header>
       <State />
       <VehicleFacts />
-      <Numbers />
+      {!isOnTable && <Numbers />}
       <Actions />
     </header>
   );
@@ -29,16 +30,18 @@ function State() {
   const title = useStore((state) => state.hello?.title);
   const status = useStore((state) => state.status);
   const teaching = useStore((state) => (state.page === "colors" ? state.colors : null));
+  const isOnTable = useStore((state) => state.page === "study");
   const isOpen = connection === "open";
   // The program ends with the flight: what is gone then is no fault. Another may come at its address.
   if (status?.over && connection !== "refused") return <FlightOver title={title ?? "Kestrel"} status={status} />;
+  const words = isOnTable ? "Study" : teaching ? "Teaching colours" : (status?.state ?? "waiting");
   return (
-    <div class="state" data-state={isOpen ? status?.state.split(", ").at(-1) : "offline"}>
+    <div class="state" data-state={isOpen ? isOnTable ? "table" : status?.state.split(", ").at(-1) : "offline"}>
       <h1>{title ?? "Kestrel"}</h1>
       <p class="state-word" role="status">
-        {!isOpen ? connectionInWords[connection] : teaching ? "Teaching colours" : (status?.state ?? "waiting")}
+        {isOpen ? words : connectionInWords[connection]}
       </p>
-      <p class="state-reason">{!isOpen ? "" : teaching ? nextColorStep(teaching) : status?.reason}</p>
+      <p class="state-reason">{!isOpen || isOnTable ? "" : teaching ? nextColorStep(teaching) : status?.reason}</p>
     </div>
   );
 }

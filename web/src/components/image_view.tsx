@@ -25,12 +25,13 @@ export function ImageView() {
   const secondCanvas = useRef<HTMLCanvasElement>(null);
   const [shown, setShown] = useState<Shown | null>(null);
   const isBeside = useStore(hasTwoPictures);
+  const replay = useStore((state) => state.studyReplay);
   usePictures(canvas, secondCanvas, setShown);
   return (
     <section class="image" aria-label="Image">
       <div class={isBeside ? "screens beside" : "screens"}>
         <div>
-          {isBeside && <h2>First run</h2>}
+          {isBeside && <h2>{titleOf("First run", replay?.before)}</h2>}
           <div class="screen">
             <canvas ref={canvas} role="img" aria-label={pictureInWords(shown, 1)} />
             {shown === null && <p class="empty">No image yet</p>}
@@ -39,7 +40,7 @@ export function ImageView() {
         </div>
         {isBeside && (
           <div>
-            <h2>Second run</h2>
+            <h2>{titleOf("Second run", replay?.after)}</h2>
             <div class="screen">
               <canvas ref={secondCanvas} role="img" aria-label={pictureInWords(shown, 2)} />
             </div>
@@ -54,6 +55,11 @@ export function ImageView() {
       </div>
     </section>
   );
+}
+
+/** The title of a picture: in a study with the configuration. */
+function titleOf(run: string, configuration: string | undefined): string {
+  return configuration === undefined ? run : `${run}: ${configuration}`;
 }
 
 /** Beside each other are two runs, once there are two. */

@@ -6,6 +6,7 @@ import { useStore } from "../use_store";
 export function PageSwitch() {
   const page = useStore((state) => state.page);
   useStore((state) => state.hello);
+  useStore((state) => state.studyReplay);
   const pages = offeredPages();
   if (pages.length < 2) return null;
   return (
