@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // For any bytes of a message, each type is parsed or refused. The first byte selects the
 // serialization.
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -34,7 +35,9 @@ void ReadOnly(std::string_view bytes, kestrel::WireFormat format) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
-  const auto format = data[0] % 2 == 0 ? kestrel::WireFormat::kRos1 : kestrel::WireFormat::kCdr;
+  constexpr std::array kFormats = {kestrel::WireFormat::kRos1, kestrel::WireFormat::kCdr,
+                                   kestrel::WireFormat::kProtobuf};
+  const kestrel::WireFormat format = kFormats[data[0] % kFormats.size()];
   const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
   const auto decode = [](const auto& image) {
     if (kestrel::DecodeImage(image, kestrel::PixelFormat::kBgr, kName).empty()) std::abort();
@@ -45,10 +48,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto calibration = kestrel::CalibrationOf(info, /*is_rectified=*/false, kName);
     if (!calibration.intrinsics.Validate().empty()) std::abort();
   });
+  ReadOnly<kestrel::HeaderMessage>(bytes, format);
   ReadOnly<kestrel::PoseStampedMessage>(bytes, format);
+  ReadOnly<kestrel::TfMessage>(bytes, format);
+  if (format == kestrel::WireFormat::kProtobuf) return 0;  // the others have no form there
   ReadOnly<kestrel::PoseWithCovarianceStampedMessage>(bytes, format);
   ReadOnly<kestrel::TransformStampedMessage>(bytes, format);
   ReadOnly<kestrel::OdometryMessage>(bytes, format);
-  ReadOnly<kestrel::TfMessage>(bytes, format);
   return 0;
 }
