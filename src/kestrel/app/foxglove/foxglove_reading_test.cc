@@ -80,6 +80,8 @@ TEST(ReadFoxglove, RefusesWhatIsBroken) {
     }
   }
   EXPECT_GT(refused, 40);
+  // Fields of another type have no numbers.
+  EXPECT_TRUE(Read<CameraInfoMessage>(std::string("\x28\x05", 2)).d.empty());
   for (const std::string& broken : {std::string("\x0b"), std::string(11, '\xff')}) {
     EXPECT_THROW(Read<PoseStampedMessage>(broken), InputError);
   }

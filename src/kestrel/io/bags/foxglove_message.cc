@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <utility>
 #include <vector>
 
@@ -60,12 +59,14 @@ class ProtobufFields {
   template <class Number>
   Number Fixed() const {
     Number value{};
-    std::memcpy(&value, block_.data(), std::min(sizeof(value), block_.size()));
+    std::copy_n(block_.data(), std::min(sizeof(value), block_.size()),
+                reinterpret_cast<char*>(&value));
     return value;
   }
   std::vector<double> Doubles() const {
     std::vector<double> values(block_.size() / sizeof(double));
-    std::memcpy(values.data(), block_.data(), values.size() * sizeof(double));
+    std::copy_n(block_.data(), values.size() * sizeof(double),
+                reinterpret_cast<char*>(values.data()));
     return values;
   }
   template <std::size_t kSize>
