@@ -49,6 +49,7 @@ void AddStudyCommand(CLI::App* app) {
       "study run STUDY.yaml     do the units that have no result yet\n"
       "study report DIR         what the results show\n"
       "`kestrel study run --help` says more: a program of python3-kestrel");
+  command->fallthrough(false);  // its arguments are those of the program
   command->prefix_command();
   command->callback([command] { BecomeStudy(command->remaining()); });
 }
