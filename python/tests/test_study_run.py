@@ -26,7 +26,7 @@ def test_tables_are_equal_for_any_workers_and_after_a_kill(bench):
         bench.recording(f"f{number}", "sleep 0.05", start=1000 * number)
     bench.write()
     assert bench.run(workers=1)[0] == 0
-    study = subprocess.Popen(bench.command(output="killed", workers=2), env=bench.environment(),
+    study = subprocess.Popen(bench.command(output="killed", workers=2), env=bench.environment(), cwd=bench.folder,
                              stderr=subprocess.DEVNULL)
     wait_for_a_result(bench)
     study.kill()

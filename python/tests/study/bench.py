@@ -57,8 +57,9 @@ class Bench:
 
     def run(self, *arguments, **more):
         """Runs the study to its end; returns (status, lines on stderr)."""
-        run = subprocess.run(self.command(*arguments, **more), env=self.environment(), text=True,
-                             capture_output=True, check=False, timeout=120)
+        # Python looks in the current folder first, where another package of this name may lie.
+        run = subprocess.run(self.command(*arguments, **more), env=self.environment(), cwd=self.folder,
+                             text=True, capture_output=True, check=False, timeout=120)
         return run.returncode, run.stderr.splitlines()
 
     def tables(self, output="out"):
