@@ -68,7 +68,7 @@ void Print(const LandingFrame& frame, const LandingReport& report) {
   fmt::print("\n");
 }
 
-// Where the pattern was a moment ago: a track tells no less.
+// Returns a hint at the pattern's last place, the least that a track gives.
 LandingHint HintOf(const LandingDetection& detection) {
   LandingHint hint;
   hint.center_in_camera = detection.camera_from_pattern.translation;

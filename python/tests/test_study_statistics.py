@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What chance makes of a comparison, and what it does not."""
+"""Differences by chance and real ones in a comparison."""
 import numpy as np
 import pytest
 

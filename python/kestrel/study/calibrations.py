@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What `kestrel calibrate` found, as numbers."""
+"""The results of `kestrel calibrate` as numbers."""
 import re
 from pathlib import Path
 
 import yaml
 
 _NUMBER = r"(-?[\d.]+(?:e-?\d+)?)"
-# What it says, and the names of the numbers in it.
+# Lines of its output, and the names of the numbers in them.
 _LINES = (
     (re.compile(rf"roll {_NUMBER} \+- {_NUMBER}, pitch {_NUMBER} \+- {_NUMBER}, "
                 rf"yaw {_NUMBER} \+- {_NUMBER} degrees"),

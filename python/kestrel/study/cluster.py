@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where units are done: workers of Dask distributed on this computer, at a scheduler's address, or
+"""The workers that do the units: workers of Dask distributed on this computer, at a scheduler's address, or
 started by Slurm."""
 import os
 import subprocess

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What got better or worse from one variant to another, bin by bin, and in which frames."""
+"""The changes from one variant to another, better and worse, by bin and by frame."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ class Comparison:
 
     @property
     def is_enough(self) -> bool:
-        """Whether there are recordings enough to tell a difference from chance."""
+        """Returns whether there are enough recordings to tell a difference from chance."""
         return self.recordings >= _MIN_RECORDINGS
 
 
@@ -180,7 +180,7 @@ def _verdict(measure: str, before: float, after: float, p: float, alpha: float) 
 
 
 def _off(nees: float) -> float:
-    """How far the mean NEES is from the right one, as a factor."""
+    """Returns the distance of the mean NEES from the right one, as a factor."""
     return abs(float(np.log(max(nees, 1e-9) / _RIGHT_NEES)))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a user is told in one line."""
+"""Errors that a user sees as one line."""
 
 
 class StudyError(Exception):

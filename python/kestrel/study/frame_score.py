@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What one image, or one object in it, says of a run; and the rows that many of them sum to."""
+"""The outcome of one image, or of one object in it, and the rows that sum many outcomes."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ _KEYS = {"task": str, "recordings": list, "configurations": list, "simulate": di
 _LIMITS = {"seconds": 3600.0, "memory_mb": 4000.0}
 _PIECES = {"lead_in_s": 3.0}
 _OURS = ("--output", "--config", "--set", "--force", "--annotate", "--mcap", "--seed")
-# So many configurations share what a worker has fetched or simulated.
+# Number of configurations that share a recording which a worker has fetched or simulated.
 _SHARED = 8
 
 
@@ -45,7 +45,7 @@ class Piece:
 
 @dataclass
 class Job:
-    """What a worker does at once: units that share a recording, or (without units) its hash."""
+    """The work of one call of a worker: units that share a recording; without units, its hash."""
 
     recording: object  # recordings.Recording
     units: list  # of dicts: the columns of the table `unit` and {"command", "text"}

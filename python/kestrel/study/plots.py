@@ -19,7 +19,7 @@ _TONES = {"worse": "#c2410c", "better": "#15803d", "no difference": "#60738a",
           "too few": "#b8c2cc", "other images": "#b8c2cc"}
 _MOST_CHANGES = 40
 
-# By variant: (column, value, low, high) of the bins of a measure.
+# The bins of a measure by variant: (column, value, low, high).
 Values = dict[str, list[tuple[Column, float, float, float]]]
 
 

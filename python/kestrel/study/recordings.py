@@ -18,7 +18,7 @@ from .errors import StudyError, one_line
 _BAGS = (".bag", ".mcap", ".db3")
 _VIDEOS = (".avi", ".mkv", ".mov", ".mp4")
 _IMAGES = (".bmp", ".jpeg", ".jpg", ".pgm", ".png", ".ppm", ".tif", ".tiff")
-# What file systems say of a file that changes when the file does.
+# Keys of a file's description that change with the file, by file system.
 _IDENTITY = ("size", "mtime", "LastModified", "last_modified", "ETag", "etag", "checksum")
 _URL = re.compile(r"\w[\w+.-]*://")
 _MAGIC = re.compile(r"[*?[]")

@@ -18,7 +18,7 @@ PLAN = "study.yaml"  # of the run, beside its results
 
 @dataclass
 class Study:
-    """What a report is made of."""
+    """The data of a report."""
 
     results: Results
     variants: list[Variant]
@@ -66,7 +66,7 @@ def _plan(path: Path) -> dict[str, Any]:
 
 
 def _variants(results: Results, plan: dict[str, Any]) -> list[Variant]:
-    """What was run, in the order of the plan's configurations; a grid's are beside each other."""
+    """The variants that were run, in the order of the plan's configurations; members of a grid are adjacent."""
     names = [str(entry.get("name", "")) for entry in plan.get("configurations") or []
              if isinstance(entry, dict)]
 

@@ -25,7 +25,7 @@ class ResultsError(ValueError):
 
 @dataclass(frozen=True)
 class Variant:
-    """What a study compares: a configuration, run by a version."""
+    """A configuration that was run by a version: the unit of comparison."""
 
     configuration: str
     version: str

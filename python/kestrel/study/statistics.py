@@ -97,7 +97,7 @@ def _chunks(rounds: int, recordings: int) -> Iterator[int]:
 
 
 def _drawn(random: np.random.Generator, recordings: int, rounds: int) -> Array:
-    """How often each recording is drawn: (rounds, recordings)."""
+    """Returns the number of draws of each recording: (rounds, recordings)."""
     if recordings == 0:
         return np.zeros((rounds, 0))
     return random.multinomial(recordings, np.full(recordings, 1 / recordings),
@@ -159,7 +159,7 @@ def _deals(random: np.random.Generator, size: int, count: int, count_after: int)
 
 
 def _comparable(before: Sums, after: Sums, paired: bool) -> NDArray[np.bool_]:
-    """Whether enough recordings have a value."""
+    """Returns whether enough recordings have a value."""
     has_before, has_after = before.denominator > 0, after.denominator > 0
     having = (has_before | has_after).sum(axis=0) if paired else \
         np.minimum(has_before.sum(axis=0), has_after.sum(axis=0))
@@ -182,7 +182,7 @@ def _adjusted_p(before: Sums, after: Sums, paired: bool, random: np.random.Gener
     scale = np.where(varies, spread, np.inf)
     largest = np.abs(by_chance / scale).max(axis=1)
     reached = largest[:, None] >= np.abs(observed / scale)[None, :] - 1e-9
-    # Of all exchanges one is none at all; of drawn ones what was observed is one more.
+    # All exchanges include the identity; drawn ones do not, so the observation is added.
     more = 0 if is_all else 1
     p[usable] = (more + reached.sum(axis=0)) / (more + len(by_chance))
     return p
@@ -190,7 +190,7 @@ def _adjusted_p(before: Sums, after: Sums, paired: bool, random: np.random.Gener
 
 @dataclass(frozen=True)
 class Effect:
-    """What a disturbance does to an outcome: its change from the middle to three standard
+    """The effect of a disturbance on an outcome: its change from the middle to three standard
     deviations below and above it, or as far as it was drawn, each with its 95 % interval."""
 
     name: str

@@ -30,7 +30,7 @@ TABLES = {
                  "frame_ms_median": "REAL", "frame_ms_p99": "REAL", "worker": "TEXT",
                  "log": "TEXT"},
 }
-# What a unit took differs from run to run.
+# The resources of a unit differ from run to run.
 EXPORTED = [table for table in TABLES if table != "resource"]
 # The recordings whose content was hashed already, by what says that they have not changed.
 _HASHES = ("CREATE TABLE IF NOT EXISTS content"

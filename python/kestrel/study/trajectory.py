@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where something was, from detections before and after: a filter and the smoother of Rauch, Tung
+"""The trajectory of a target, from detections before and after: a filter and the smoother of Rauch, Tung
 and Striebel (1965), for constant velocity with white noise of acceleration."""
 
 from __future__ import annotations

@@ -24,7 +24,7 @@ from .trajectory import Trajectory, smooth
 
 Array = NDArray[np.float64]
 
-# What holds for the search, whatever the run's options are.
+# Options of the search, which override those of the run.
 _SEARCH = {"min_ring_px": 6.0, "min_quality": 0.7, "max_search_ms": 0.0}
 _MIN_VISIBLE = 0.25  # as `kestrel evaluate`
 _MAX_SIGMA_M = 0.5  # of a trajectory that says whether the pad is in view
@@ -123,7 +123,7 @@ class _Poses:
 
 
 def _level_hint(camera: kestrel.RigidTransform | None) -> kestrel.LandingHint:
-    """Which way is up, where it is known: it steadies the tilt of far pads."""
+    """Returns the direction of up, or None: it steadies the tilt of far pads."""
     if camera is None:
         return kestrel.LandingHint()
     return kestrel.LandingHint(up_in_camera=camera.rotation[2])
@@ -167,7 +167,7 @@ def _trajectory(images: list[_Image], in_world: bool) -> Trajectory:
 
 
 class _View:
-    """Where the trajectory has the pad in an image, if it is known."""
+    """Returns the place of the pad in an image by the trajectory, or None."""
 
     def __init__(self, image: _Image, trajectory: Trajectory, k: int, in_world: bool,
                  detector: kestrel.TargetDetector) -> None:
@@ -203,7 +203,7 @@ class _View:
         self.radius_px = float(np.nanmax(distances, initial=0))
 
     def agrees(self, seen: _Seen) -> bool:
-        """Whether a detection is at the place: by the rule of `kestrel evaluate`, widened by what
+        """Returns whether a detection is at the place: by the rule of `kestrel evaluate`, widened by what
         the trajectory may be off."""
         off_px = 3 * self.sigma_m / self.radius_m * self.radius_px
         reach_px = max(4.0, 0.15 * self.radius_px) + off_px
@@ -214,7 +214,7 @@ class _View:
         return self.is_known and self.visible >= _MIN_VISIBLE
 
     def searched(self) -> bool:
-        """Whether the search has the pad there."""
+        """Returns whether the search has the pad there."""
         return self.image.searched is not None and self.agrees(self.image.searched)
 
     def score(self) -> FrameScore:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a comparison shows, in one line."""
+"""The verdict of a comparison, in one line."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def verdict(study: Study, comparison: Comparison) -> tuple[str, str]:
 
 
 def _doubt(comparison: Comparison) -> str:
-    """What a reader of the interval would ask."""
+    """The answer to the question that an interval raises."""
     is_open = any(one.column.measure == "found" and one.column.quantity == "all"
                   and (one.high < 0 or one.low > 0) for one in comparison.changes)
     return "; too few of them changed to rule chance out" if is_open else ""
@@ -57,7 +57,7 @@ def _values(one: Change, comparison: Comparison) -> str:
 
 
 def _named(rows: list[Change]) -> str:
-    """Where it changed, with the change."""
+    """The bins that changed, with the change."""
     told = [one for one in rows if _is_telling(one, rows)]
     words = [f"{title(one.column)} in {place(one.column)} "
              f"({signed(one.difference, one.column.measure)})" for one in told[:_NAMED_BINS]]
@@ -66,7 +66,7 @@ def _named(rows: list[Change]) -> str:
 
 
 def _is_telling(one: Change, rows: list[Change]) -> bool:
-    """Whether a bin says where: it changed clearly more than all images together did."""
+    """Returns whether a bin locates the change: it changed clearly more than all images together did."""
     whole = [other for other in rows if other.column.quantity == "all"
              and (other.column.measure, other.column.has_truth)
              == (one.column.measure, one.column.has_truth)]

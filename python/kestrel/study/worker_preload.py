@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a worker on this computer does first: Ctrl-C is for the study, which ends its workers."""
+"""The start of a worker on this computer: it ignores Ctrl-C, as the study ends its workers."""
 import signal
 
 signal.signal(signal.SIGINT, signal.SIG_IGN)

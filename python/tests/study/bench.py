@@ -62,6 +62,16 @@ class Bench:
                              text=True, capture_output=True, check=False, timeout=120)
         return run.returncode, run.stderr.splitlines()
 
+    def tables_alone(self, recordings, unit_s, workers):
+        """Writes recordings whose units take unit_s, and a study of them; returns its tables as workers of this
+        computer make them."""
+        for number in range(recordings):
+            self.recording(f"flight{number:02d}", f"sleep {unit_s}", start=1000 * number)
+        self.write()
+        status, said = self.run(output="alone", workers=workers)
+        assert status == 0, said
+        return self.tables("alone")
+
     def tables(self, output="out"):
         """Returns {name: bytes} of the tables."""
         return {path.name: path.read_bytes() for path in (self.folder / output).glob("*.csv")}

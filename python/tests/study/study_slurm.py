@@ -114,15 +114,11 @@ def main(tasks=2):
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         bench = Bench(folder)
-        for number in range(RECORDINGS):
-            bench.recording(f"flight{number:02d}", f"sleep {UNIT_S}", start=1000 * number)
-        bench.write()
-        status, said = bench.run(output="alone", workers=2)
-        assert status == 0, said
+        expected = bench.tables_alone(RECORDINGS, UNIT_S, workers=2)
         with slurm(folder) as environment:
             seconds, status, said = run_study(bench, environment, int(tasks))
         tables = bench.tables("slurm")
-        is_equal = tables == bench.tables("alone")
+        is_equal = tables == expected
         units = tables["unit.csv"].count(b"\n") - 1 if tables else 0
         print(f"{tasks} workers of Slurm: {units} units in {seconds:.0f} s, tables "
               f"{'equal' if is_equal else 'different'}, status {status}")

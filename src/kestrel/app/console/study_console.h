@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "kestrel/app/console/background_run.h"
 #include "kestrel/app/console/console_feed.h"
 #include "kestrel/app/console/console_options.h"
 #include "kestrel/app/console/recording_player.h"
@@ -62,7 +63,7 @@ class StudyConsole {
   std::optional<Time> worst_;  // its frame to begin with
   Run before_, after_;
   Time told_{};
-  SecondRun first_run_;
+  BackgroundRun<ReplayResult> first_run_;
   std::optional<RecordingPlayer> player_;
 };
 

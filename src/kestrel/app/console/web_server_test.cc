@@ -374,10 +374,9 @@ TEST_F(WebServerTest, AStalledBrowserCostsTheOthersNothing) {
   ASSERT_TRUE(Eventually([&] { return server.counters().clients == 2; }));
 
   // More than the system's buffers hold.
-  std::atomic<bool> is_over{false};
   const cv::Mat noise = NoiseImage(4000, 3000);
-  std::thread vision([&] {
-    while (!is_over) {
+  std::jthread vision([&](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
       ConsoleFrame frame = SomeFrame();
       frame.image = noise;
       feed_.SetFrame(&frame);
@@ -402,8 +401,7 @@ TEST_F(WebServerTest, AStalledBrowserCostsTheOthersNothing) {
   });
   is_one = Eventually([&] { return server.counters().clients == 1; });
   EXPECT_TRUE(is_one);
-  is_over = true;
-  vision.join();
+  vision.request_stop();
   reader.join();
   EXPECT_EQ(server.counters().clients, 1);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What of Fast DDS 2 has another form in version 3.
+// The parts of Fast DDS 2 that differ in version 3.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What of Fast DDS 3 has another form in version 2.
+// The parts of Fast DDS 3 that differ in version 2.
 #pragma once
 
 #include <cstdint>

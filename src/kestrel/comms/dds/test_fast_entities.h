@@ -27,7 +27,7 @@ std::string GidOf(const Guid& guid) {
                               sizeof(guid.entityId.value));
 }
 
-// What was discovered of others, in the order of discovery.
+// The discovered entities of others, in the order of discovery.
 class FastEntities {
  public:
   std::vector<FastEntity> heard() const {

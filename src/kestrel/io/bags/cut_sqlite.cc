@@ -2,6 +2,7 @@
 #include "kestrel/io/bags/cut_sqlite.h"
 
 #include <array>
+#include <cerrno>
 #include <cstring>
 #include <fcntl.h>
 #include <filesystem>
