@@ -57,6 +57,7 @@ std::vector<std::string> GuidanceOptions::Validate() const {
   RequireIn(disobey_mps, 0.5, 20, "disobey_mps", &violations);
   RequireIn(disobey_s, 1, 60, "disobey_s", &violations);
   RequireIn(disarm_after_s, 0, 60, "disarm_after_s", &violations);
+  RequireIn(disarm_carried_s, 0, 60, "disarm_carried_s", &violations);
   AddViolations("contact", contact.Validate(), &violations);
   AddViolations("stale", stale.Validate(), &violations);
   AddViolations("limits", limits.Validate(), &violations);

@@ -90,9 +90,11 @@ struct GuidanceOptions {
   // OFFBOARD without them.
   bool stream_before_start = false;
   // In contact: asks for the LAND mode (ArduPilot; PX4 would brake in it), and disarms by force
-  // after disarm_after_s (0: never).
+  // after disarm_after_s, or after disarm_carried_s of proof that the deck carries the UAV (0:
+  // never).
   bool land_in_contact = false;
   double disarm_after_s = 0;
+  double disarm_carried_s = 3;
   // Flies although the autopilot's own reaction to the loss of set-points does not hold the UAV.
   bool accept_unsafe_loss = false;
   ContactOptions contact;
@@ -167,6 +169,8 @@ struct GuidanceOptions {
     visitor("land_in_contact", self.land_in_contact, "", "ask for the LAND mode in contact");
     visitor("disarm_after_s", self.disarm_after_s, "s",
             "time in contact after which the UAV is disarmed by force; 0: never");
+    visitor("disarm_carried_s", self.disarm_carried_s, "s",
+            "the same, for time with proof that a deck carries the UAV; 0: never");
     visitor("accept_unsafe_loss", self.accept_unsafe_loss, "",
             "fly although the autopilot does not hold when set-points stop");
     visitor.Group("contact", self.contact);

@@ -458,6 +458,7 @@ bool LandingGuidance::FindContact(const GuidanceInput& input, const Situation& n
   if (touches || (may_touch && input.is_landed)) {
     if (!was_in_contact) {
       ride_.Reset();
+      carried_.Reset();
       Enter(GuidancePhase::kLanded, "contact with the deck");
     }
     return true;
@@ -469,10 +470,11 @@ bool LandingGuidance::FindContact(const GuidanceInput& input, const Situation& n
 
 GuidanceRequest LandingGuidance::RequestInContact(const GuidanceInput& input) const {
   if (phase_ != GuidancePhase::kLanded) return GuidanceRequest::kNone;
-  if (options_.disarm_after_s > 0 &&
-      IsLongerThan(options_.disarm_after_s, contact_since_, input.now)) {
-    return GuidanceRequest::kDisarm;
-  }
+  const bool has_waited = options_.disarm_after_s > 0 &&
+                          IsLongerThan(options_.disarm_after_s, contact_since_, input.now);
+  const bool is_carried =
+      options_.disarm_carried_s > 0 && carried_.seconds() >= options_.disarm_carried_s;
+  if (has_waited || is_carried) return GuidanceRequest::kDisarm;
   // LAND would brake on a moving deck, unless the autopilot has found that it has landed: until
   // then the set-points go on.
   const bool may_land =
@@ -484,6 +486,9 @@ GuidanceRequest LandingGuidance::RequestInContact(const GuidanceInput& input) co
 // not lean against the motion of the deck. One that needs a velocity gets the deck's.
 SetPoint LandingGuidance::Rest(const GuidanceInput& input, const Situation& now) {
   ride_.Observe(input.now, now.velocity.head<2>());
+  carried_.Observe(input.now,
+                   {input.uav->world_from_body.rotation * Vector3d::UnitZ(), ride_.acceleration(),
+                    now.velocity.z()});
   SetPoint command;
   command.velocity << ride_.Velocity(model_.delay_s()), -options_.touchdown_sink_mps;
   command.acceleration.head<2>() = ride_.acceleration();

@@ -10,6 +10,7 @@
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/geometry/rigid_transform.h"
 #include "kestrel/core/poses/set_point.h"
+#include "kestrel/flight/guidance/carried_proof.h"
 #include "kestrel/flight/guidance/contact_detector.h"
 #include "kestrel/flight/guidance/deck_ride.h"
 #include "kestrel/flight/guidance/flight_limits.h"
@@ -169,6 +170,7 @@ class LandingGuidance {
   DemandWatch demand_;
   ContactDetector contact_;
   DeckRide ride_;
+  CarriedProof carried_;
   TouchdownTiming timing_;
   TouchdownHeading heading_;
 

@@ -284,6 +284,25 @@ TEST(LandingGuidanceTest, AsksForLandOrDisarmsOnlyByOptionAndInContact) {
   EXPECT_EQ(flight.output.phase, Phase::kGoAround);
 }
 
+TEST(LandingGuidanceTest, DisarmsOnADeckThatCarriesItThroughCurves) {
+  TestFlight flight;  // the figure of eight at 15 km/h
+  flight.LandOnDeck();
+  const bool is_disarmed = flight.FlyUntil(
+      [&] { return flight.output.request == GuidanceRequest::kDisarm; }, 20, kNoTarget);
+  EXPECT_TRUE(is_disarmed);
+  EXPECT_EQ(flight.output.phase, Phase::kLanded);
+}
+
+TEST(LandingGuidanceTest, DoesNotDisarmByForceWhereTheDeckDrivesStraight) {
+  VehicleMotionOptions vehicle;
+  vehicle.path = "straight";
+  TestFlight flight({}, {}, vehicle);
+  flight.LandOnDeck();
+  const bool is_disarmed = flight.FlyUntil(
+      [&] { return flight.output.request == GuidanceRequest::kDisarm; }, 20, kNoTarget);
+  EXPECT_FALSE(is_disarmed);
+}
+
 TEST(LandingGuidanceTest, TheAutopilotsOwnContactCounts) {
   TestFlight flight = InPhase(Phase::kCommit);
   flight.Step([](GuidanceInput& input) { input.is_landed = true; });
