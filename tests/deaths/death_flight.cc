@@ -87,10 +87,11 @@ class DeathFlight {
     options.firmware = arguments.autopilot;
     options.model.pilot.land_after_s = -1;
     options.model.pilot.guide_after_s = 10;  // Kestrel is there by then, on a loaded machine too
-    if (arguments.autopilot == "px4") {
-      // As docs/guidance.md asks for: without these PX4 refuses, or flies on for good.
-      options.model.parameters = "LNDMC_XY_VEL_MAX=12,COM_OBL_RC_ACT=5,NAV_RCL_ACT=1";
-    }
+    // As doctor asks for. Without these PX4 refuses, or flies on for good; and ArduPilot's BRAKE
+    // takes up to 12 m from the speed at which the UAV catches up with the car.
+    options.model.parameters = arguments.autopilot == "px4"
+                                   ? "LNDMC_XY_VEL_MAX=12,COM_OBL_RC_ACT=5,NAV_RCL_ACT=1"
+                                   : "WP_ACC=6,PSC_JERK_NE=20";
     return options;
   }
 

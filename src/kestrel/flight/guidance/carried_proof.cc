@@ -21,8 +21,7 @@ constexpr double kLongestStep_s = 0.2;
 bool AcceleratesWithoutLean(const CarriedProof::Motion& motion) {
   const double size = motion.acceleration.norm();
   if (size < kAcceleration) return false;
-  const Eigen::Vector2d by_lean =
-      kGravity / motion.thrust_axis.z() * motion.thrust_axis.head<2>();
+  const Eigen::Vector2d by_lean = kGravity / motion.thrust_axis.z() * motion.thrust_axis.head<2>();
   return by_lean.dot(motion.acceleration) / size < (1 - kUnexplained) * size;
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/flight/guidance/carried_proof.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <functional>
+
+#include <gtest/gtest.h>
 
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/poses/gravity.h"
@@ -57,9 +57,7 @@ TEST(CarriedProofTest, AFlightIsNone) {
     return CarriedProof::Motion{LeanFor(by_lean), InCurve(time_s), -0.5};
   };
   EXPECT_EQ(Proof(curve), 0);
-  const auto hover = [](double) {
-    return CarriedProof::Motion{LeanFor({3, 0}), {0.3, 0}, 0.12};
-  };
+  const auto hover = [](double) { return CarriedProof::Motion{LeanFor({3, 0}), {0.3, 0}, 0.12}; };
   EXPECT_EQ(Proof(hover), 0);
 }
 

@@ -486,9 +486,8 @@ GuidanceRequest LandingGuidance::RequestInContact(const GuidanceInput& input) co
 // not lean against the motion of the deck. One that needs a velocity gets the deck's.
 SetPoint LandingGuidance::Rest(const GuidanceInput& input, const Situation& now) {
   ride_.Observe(input.now, now.velocity.head<2>());
-  carried_.Observe(input.now,
-                   {input.uav->world_from_body.rotation * Vector3d::UnitZ(), ride_.acceleration(),
-                    now.velocity.z()});
+  carried_.Observe(input.now, {input.uav->world_from_body.rotation * Vector3d::UnitZ(),
+                               ride_.acceleration(), now.velocity.z()});
   SetPoint command;
   command.velocity << ride_.Velocity(model_.delay_s()), -options_.touchdown_sink_mps;
   command.acceleration.head<2>() = ride_.acceleration();
