@@ -16,7 +16,7 @@ constexpr double kAcceleration = 1;  // m/s^2
 constexpr double kUnexplained = 0.6;
 // An estimate is 0.12 m/s wrong after the shock of touch-down.
 constexpr double kRises_mps = 0.25;
-constexpr double kLongestStep_s = 0.2;
+constexpr double kLongestGap_s = 0.2;
 
 bool AcceleratesWithoutLean(const CarriedProof::Motion& motion) {
   const double size = motion.acceleration.norm();
@@ -28,7 +28,7 @@ bool AcceleratesWithoutLean(const CarriedProof::Motion& motion) {
 }  // namespace
 
 void CarriedProof::Observe(Time now, const Motion& motion) {
-  const double step_s = last_ ? std::min(ToSeconds(now - *last_), kLongestStep_s) : 0;
+  const double step_s = last_ ? std::min(ToSeconds(now - *last_), kLongestGap_s) : 0;
   last_ = now;
   if (AcceleratesWithoutLean(motion) || motion.climb_mps > kRises_mps) seconds_ += step_s;
 }

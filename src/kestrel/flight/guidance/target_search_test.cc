@@ -16,8 +16,8 @@ namespace {
 using Eigen::Vector2d;
 using testing::HasSubstr;
 
-constexpr Time kStart = TimeFromNanoseconds(1'000'000'000);
-Time At(double time_s) { return kStart + DurationFromSeconds(time_s); }
+constexpr Time kSearchStart = TimeFromNanoseconds(1'000'000'000);
+Time AtSecond(double time_s) { return kSearchStart + DurationFromSeconds(time_s); }
 
 using Way = std::function<Vector2d(double time_s)>;
 Vector2d VelocityOf(const Way& way, double time_s) {
@@ -33,7 +33,7 @@ double TurnRateOf(const Way& way, double time_s) {
 RoadMemory Driven(const Way& way, double seconds) {
   RoadMemory road;
   for (double time_s = 0; time_s <= seconds; time_s += 0.05) {
-    road.Add(At(time_s), way(time_s), VelocityOf(way, time_s), TurnRateOf(way, time_s));
+    road.Add(AtSecond(time_s), way(time_s), VelocityOf(way, time_s), TurnRateOf(way, time_s));
   }
   return road;
 }
@@ -52,7 +52,8 @@ Vector2d Straight(double time_s) { return {4.17 * time_s, 0}; }
 double WorstError(const RoadMemory& road, const Way& way, double from_s, double ahead_s) {
   double worst_m = 0;
   for (double s = 0; s <= ahead_s; s += 0.5) {
-    worst_m = std::max(worst_m, (road.Predict(At(from_s + s))->position - way(from_s + s)).norm());
+    worst_m =
+        std::max(worst_m, (road.Predict(AtSecond(from_s + s))->position - way(from_s + s)).norm());
   }
   return worst_m;
 }
@@ -61,7 +62,7 @@ TEST(RoadMemoryTest, GoesOnAsItDidALapAgo) {
   for (const Way& way : {Way(Eight), Way(Circle)}) {
     const RoadMemory road = Driven(way, 40);
     ASSERT_TRUE(road.Lap_s());
-    EXPECT_TRUE(road.Predict(At(41))->is_by_lap);
+    EXPECT_TRUE(road.Predict(AtSecond(41))->is_by_lap);
     EXPECT_LT(WorstError(road, way, 40, 15), 2.5);
   }
 }
@@ -69,34 +70,34 @@ TEST(RoadMemoryTest, GoesOnAsItDidALapAgo) {
 TEST(RoadMemoryTest, GoesOnStraightOrInItsCurveWithoutALap) {
   EXPECT_LT(WorstError(Driven(Straight, 20), Straight, 20, 10), 0.1);
   const RoadMemory curve = Driven(Circle, 4);
-  EXPECT_FALSE(curve.Predict(At(5))->is_by_lap);
+  EXPECT_FALSE(curve.Predict(AtSecond(5))->is_by_lap);
   EXPECT_LT(WorstError(curve, Circle, 4, 2), 0.3);
 }
 
 TEST(RoadMemoryTest, KnowsHowLittleItKnows) {
   const RoadMemory road = Driven(Straight, 20);
-  EXPECT_LT(road.Predict(At(21))->sigma_m, 1.5);
-  EXPECT_GT(road.Predict(At(30))->sigma_m, 10);
-  EXPECT_FALSE(RoadMemory().Predict(kStart));
+  EXPECT_LT(road.Predict(AtSecond(21))->sigma_m, 1.5);
+  EXPECT_GT(road.Predict(AtSecond(30))->sigma_m, 10);
+  EXPECT_FALSE(RoadMemory().Predict(kSearchStart));
 }
 
 TEST(RoadMemoryTest, OneThatStandsHasNoLap) {
   const RoadMemory road = Driven([](double) { return Vector2d(3, 4); }, 30);
   EXPECT_FALSE(road.Lap_s());
-  EXPECT_LT((road.Predict(At(60))->position - Vector2d(3, 4)).norm(), 1e-6);
+  EXPECT_LT((road.Predict(AtSecond(60))->position - Vector2d(3, 4)).norm(), 1e-6);
 }
 
 // Flies to where the search wants it, and tells all its steps.
 std::string StepsOf(const Way& way, double driven_s, double search_s, double* nearest_m) {
   const RoadMemory road = Driven(way, driven_s);
   TargetSearch search{GuidanceOptions()};
-  search.StartAfterLoss(At(driven_s), road, way(driven_s));
+  search.StartAfterLoss(AtSecond(driven_s), road, way(driven_s));
   std::string steps = search.step();
   Vector2d uav = way(driven_s);
   *nearest_m = 1e9;
-  for (double s = 0; s < search_s && !search.IsOver(At(driven_s + s)); s += 0.1) {
+  for (double s = 0; s < search_s && !search.IsOver(AtSecond(driven_s + s)); s += 0.1) {
     const std::string before = search.step();
-    uav = search.Advance(At(driven_s + s), road, uav, 0.1);
+    uav = search.Advance(AtSecond(driven_s + s), road, uav, 0.1);
     if (search.step() != before) steps += std::string("; ") + search.step();
     if (s > 5) *nearest_m = std::min(*nearest_m, (uav - way(driven_s + s)).norm());
   }
@@ -120,10 +121,10 @@ TEST(TargetSearchTest, FliesOnThenSearchesAround) {
 TEST(TargetSearchTest, EndsAfterItsLimitOnlyAfterALoss) {
   TargetSearch search{GuidanceOptions()};
   search.Start({0, 0});
-  EXPECT_FALSE(search.IsOver(At(1000)));
-  search.StartAfterLoss(At(1000), Driven(Straight, 5), {0, 0});
-  EXPECT_FALSE(search.IsOver(At(1059)));
-  EXPECT_TRUE(search.IsOver(At(1061)));
+  EXPECT_FALSE(search.IsOver(AtSecond(1000)));
+  search.StartAfterLoss(AtSecond(1000), Driven(Straight, 5), {0, 0});
+  EXPECT_FALSE(search.IsOver(AtSecond(1059)));
+  EXPECT_TRUE(search.IsOver(AtSecond(1061)));
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 namespace kestrel {
 namespace {
 
-constexpr std::string_view kCompressed = "/compressed";
+constexpr std::string_view kCompressedSuffix = "/compressed";
 
 enum class TopicUse { kImage, kCameraInfo, kPose, kTransforms, kNone };
 
@@ -118,12 +118,12 @@ class TopicChooser {
 
   std::string_view RawName(std::size_t image) const {
     std::string_view name = topics_[image].name;
-    if (name.ends_with(kCompressed)) name.remove_suffix(kCompressed.size());
+    if (name.ends_with(kCompressedSuffix)) name.remove_suffix(kCompressedSuffix.size());
     return name;
   }
   // True when this is the compressed copy of images that also exist raw.
   bool IsCopy(std::size_t image) const {
-    if (!std::string_view(topics_[image].name).ends_with(kCompressed)) return false;
+    if (!std::string_view(topics_[image].name).ends_with(kCompressedSuffix)) return false;
     return std::any_of(topics_.begin(), topics_.end(), [&](const BagTopic& topic) {
       return topic.name == RawName(image) && UseOf(topic) == TopicUse::kImage;
     });

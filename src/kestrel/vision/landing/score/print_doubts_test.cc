@@ -16,7 +16,7 @@ constexpr PrintKind kKinds[] = {PrintKind::kByEdges, PrintKind::kPart, PrintKind
 
 PrintDoubt DoubtAt(std::size_t index) { return static_cast<PrintDoubt>(index); }
 
-PrintDoubts RandomDoubts(Random* random) {
+PrintDoubts AnyDoubts(Random* random) {
   PrintDoubts doubts;
   for (std::size_t i = 0; i < kPrintDoubts; ++i) doubts[DoubtAt(i)] = random->Uniform(-8, 2);
   return doubts;
@@ -36,7 +36,7 @@ TEST(PrintDoubts, MoreDoubtIsNeverMoreProbable) {
   Random random(1);
   for (const PrintKind kind : kKinds) {
     for (int trial = 0; trial < 200; ++trial) {
-      PrintDoubts doubts = RandomDoubts(&random);
+      PrintDoubts doubts = AnyDoubts(&random);
       for (std::size_t i = 0; i < kPrintDoubts; ++i) {
         const double before = PrintLogOdds(kind, doubts);
         doubts[DoubtAt(i)] += random.Uniform(0, 3);
@@ -49,7 +49,7 @@ TEST(PrintDoubts, MoreDoubtIsNeverMoreProbable) {
 TEST(PrintDoubts, TheOddsAreWhatTheDoubtsLeave) {
   Random random(2);
   for (const PrintKind kind : kKinds) {
-    const PrintDoubts doubts = RandomDoubts(&random);
+    const PrintDoubts doubts = AnyDoubts(&random);
     double taken = 0;
     for (std::size_t i = 0; i < kPrintDoubts; ++i) {
       taken += LogOddsTakenBy(kind, doubts, DoubtAt(i));
