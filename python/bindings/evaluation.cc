@@ -58,7 +58,9 @@ void BindLandingComparison(py::module_& module) {
       .Field("nees", &LandingErrors::nees,
              "Position in the camera against the reported variances; 3 on average is right.")
       .Field("in_world", &LandingErrors::in_world, "float64 of 3, ENU, m; None without a pose.")
-      .Field("yaw", &LandingErrors::yaw, "rad, at most an eighth of a turn, or None.");
+      .Field("yaw", &LandingErrors::yaw,
+             "rad, to the nearest heading under which what was seen of the pad looks the same, or "
+             "None.");
   ValueClass<LandingComparison>(module, "LandingComparison", "An image, its result, its truth.")
       .Field("time_ns", &LandingComparison::time, "Of the image, int, ns.")
       .Field("condition", &LandingComparison::condition, "Light and weather of scene.yaml.")

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "kestrel/app/evaluation/projected_circle.h"
-#include "kestrel/vision/pipeline/world_location.h"
 
 namespace kestrel {
 namespace {
@@ -40,10 +39,17 @@ std::optional<double> MotionDuringExposure(const FlightTruth& flight, const True
   return (*end - *begin).norm();
 }
 
-constexpr int kQuarters = 4;  // turns after which the ring with a cross looks the same
-
-// Reduces 'angle' by quarter turns to at most an eighth of a turn.
-double WithinAnEighth(double angle) { return std::remainder(angle, std::numbers::pi / 2); }
+// Returns the error of the yaw; nothing where it was not measured, or the pad is unknown.
+std::optional<double> YawError(const DetectionRow::Pattern& detected, const TruePattern& truth,
+                               std::optional<int> heading_symmetry) {
+  constexpr int kQuarters = 4;
+  if (!detected.yaw_in_world || !heading_symmetry) return std::nullopt;
+  // A pad has one heading by its tags. Without their id only the ring around them was seen.
+  const bool only_ring = *heading_symmetry == 1 && !detected.has_id;
+  const int symmetry = only_ring ? kQuarters : *heading_symmetry;
+  return std::remainder(*detected.yaw_in_world - HeadingOf(truth.world_from_pattern.rotation),
+                        2 * std::numbers::pi / symmetry);
+}
 
 LandingVerdict Judge(const FlightTruth& flight, const TruePattern* truth,
                      const std::optional<DetectionRow::Pattern>& detected) {
@@ -73,7 +79,8 @@ LandingComparison Compare(const FlightTruth& flight, const TruePattern* truth,
   comparison.motion_px = MotionDuringExposure(flight, *truth);
   const auto world_from_camera = flight.WorldFromCamera(row.time);
   if (comparison.verdict == LandingVerdict::kFound && world_from_camera) {
-    comparison.errors = MeasureErrors(*row.pattern, *truth, *world_from_camera);
+    comparison.errors =
+        MeasureErrors(*row.pattern, *truth, *world_from_camera, flight.scene().heading_symmetry);
   }
   return comparison;
 }
@@ -86,7 +93,8 @@ bool IsRightCenter(const Eigen::Vector2d& detected_px, const Eigen::Vector2d& tr
 }
 
 LandingErrors MeasureErrors(const DetectionRow::Pattern& detected, const TruePattern& truth,
-                            const RigidTransform& world_from_camera) {
+                            const RigidTransform& world_from_camera,
+                            std::optional<int> heading_symmetry) {
   const Eigen::Vector3d& true_in_world = truth.world_from_pattern.translation;
   const Eigen::Vector3d true_in_camera = world_from_camera.Inverse() * true_in_world;
   const Eigen::Vector3d error = detected.center_in_camera - true_in_camera;
@@ -97,10 +105,7 @@ LandingErrors MeasureErrors(const DetectionRow::Pattern& detected, const TruePat
   errors.lateral_m = (error - errors.depth_m * line_of_sight).norm();
   errors.nees = error.cwiseQuotient(detected.sigma_in_camera).squaredNorm();
   if (detected.center_in_world) errors.in_world = *detected.center_in_world - true_in_world;
-  if (detected.yaw_in_world) {
-    errors.yaw =
-        WithinAnEighth(*detected.yaw_in_world - PatternYaw(truth.world_from_pattern, kQuarters));
-  }
+  errors.yaw = YawError(detected, truth, heading_symmetry);
   return errors;
 }
 

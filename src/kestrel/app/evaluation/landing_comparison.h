@@ -20,7 +20,9 @@ struct LandingErrors {
   double depth_m = 0;    // along it; positive: too far away
   double nees = 0;       // position in the camera's frame, with the variances of its three axes
   std::optional<Eigen::Vector3d> in_world;
-  std::optional<double> yaw;  // rad, at most an eighth of a turn: the pattern repeats every quarter
+  // rad, to the nearest heading under which what was seen of the pad looks the same: at most an
+  // eighth of a turn for the ring, half a turn for tags.
+  std::optional<double> yaw;
 };
 
 enum class LandingVerdict {
@@ -50,8 +52,10 @@ struct LandingComparison {
 bool IsRightCenter(const Eigen::Vector2d& detected_px, const Eigen::Vector2d& true_px,
                    double ring_radius_px);
 
+// 'heading_symmetry': SceneTruth::heading_symmetry.
 LandingErrors MeasureErrors(const DetectionRow::Pattern& detected, const TruePattern& truth,
-                            const RigidTransform& world_from_camera);
+                            const RigidTransform& world_from_camera,
+                            std::optional<int> heading_symmetry);
 
 // Returns one comparison per row of 'rows', in order. Throws InputError for a row without an image.
 std::vector<LandingComparison> CompareLanding(const FlightTruth& flight,

@@ -51,13 +51,42 @@ TEST(MeasureErrors, SplitsAlongAndAcrossTheLineOfSight) {
   truth.world_from_pattern.rotation = Eigen::AngleAxisd(kPi / 4 - 0.02, Eigen::Vector3d::UnitZ());
   const TestFlight files;
   const auto world_from_camera = FlightTruth(files.recording()).WorldFromCamera(FrameTime(0));
-  const LandingErrors errors = MeasureErrors(detected, truth, *world_from_camera);
+  const LandingErrors errors = MeasureErrors(detected, truth, *world_from_camera, 4);
   EXPECT_NEAR(errors.center_px, 5, 1e-9);
   EXPECT_NEAR(errors.lateral_m, 0.05, 1e-9);
   EXPECT_NEAR(errors.depth_m, 0.1, 1e-9);
   EXPECT_NEAR(errors.nees, 9 + 4 + 4, 1e-9);
   EXPECT_NEAR(errors.in_world->norm(), 3, 1e-9);
   EXPECT_NEAR(*errors.yaw, 0.03, 1e-9);
+}
+
+// Returns the error of the yaw when the estimate is so many quarter turns off, and 0.02 rad.
+std::optional<double> YawErrorAfter(int quarters, std::optional<int> symmetry, bool has_id) {
+  DetectionRow::Pattern detected = *Detected(0).pattern;
+  detected.yaw_in_world = quarters * kPi / 2 + 0.02;
+  detected.has_id = has_id;
+  return MeasureErrors(detected, PatternBelow(0), RigidTransform(), symmetry).yaw;
+}
+
+TEST(MeasureErrors, YawIsHeldAgainstTheHeadingsThatThePadHas) {
+  EXPECT_NEAR(*YawErrorAfter(1, 4, false), 0.02, 1e-9) << "ring";
+  EXPECT_NEAR(*YawErrorAfter(2, 2, false), 0.02, 1e-9) << "H";
+  EXPECT_NEAR(*YawErrorAfter(1, 2, false), -kPi / 2 + 0.02, 1e-9) << "H, a quarter turn off";
+  EXPECT_NEAR(*YawErrorAfter(1, 1, true), kPi / 2 + 0.02, 1e-9) << "tags";
+  EXPECT_NEAR(*YawErrorAfter(1, 1, false), 0.02, 1e-9) << "ring of a pad whose tags were not read";
+  EXPECT_FALSE(YawErrorAfter(0, std::nullopt, true)) << "unknown pad";
+}
+
+TEST(CompareLanding, TheSceneSaysWhichPadItIs) {
+  const TestFlight files;
+  files.WriteTruth("scene.yaml", "options: {target: {kind: apriltag}}\n");
+  DetectionRow row = Detected(0);
+  row.pattern->yaw_in_world = kPi;
+  row.pattern->has_id = true;
+  const auto comparisons =
+      CompareLanding(FlightTruth(files.recording()), {PatternBelow(0)}, {row}, "file");
+  ASSERT_TRUE(comparisons[0].errors);
+  EXPECT_NEAR(std::abs(*comparisons[0].errors->yaw), kPi, 1e-9);
 }
 
 TEST(CompareLanding, JudgesEveryFrame) {

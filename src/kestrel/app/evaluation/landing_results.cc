@@ -16,7 +16,8 @@ class DetectionColumns {
         in_camera_(table, "p_CP_C_", "_m"),
         in_world_(table, "p_WP_W_", "_m"),
         sigma_(table, "sigma_", "_m"),
-        yaw_(table.Column("yaw_WP_rad")) {}
+        yaw_(table.Column("yaw_WP_rad")),
+        id_(table.FindColumn("target_id")) {}
 
   std::optional<DetectionRow::Pattern> Parse(std::size_t row) const {
     if (table_->Integer(row, detected_) == 0) return std::nullopt;
@@ -29,6 +30,7 @@ class DetectionColumns {
     }
     if (!in_world_.IsEmpty(row)) pattern.center_in_world = in_world_.Parse(row);
     pattern.yaw_in_world = table_->OptionalNumber(row, yaw_);
+    pattern.has_id = id_ && table_->OptionalNumber(row, *id_).has_value();
     return pattern;
   }
 
@@ -37,6 +39,7 @@ class DetectionColumns {
   std::size_t detected_, u_, v_;
   VectorColumns in_camera_, in_world_, sigma_;
   std::size_t yaw_;
+  std::optional<std::size_t> id_;  // not in outputs of older versions
 };
 
 }  // namespace

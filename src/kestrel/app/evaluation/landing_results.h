@@ -20,6 +20,7 @@ struct DetectionRow {
     Eigen::Vector3d sigma_in_camera;  // standard deviations, m
     std::optional<Eigen::Vector3d> center_in_world;
     std::optional<double> yaw_in_world;
+    bool has_id = false;  // the pad's id was read
   };
   Time time;
   std::optional<Pattern> pattern;  // nothing when it was not detected

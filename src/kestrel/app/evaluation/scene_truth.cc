@@ -95,6 +95,9 @@ SceneTruth ParseSceneTruth(const std::string& text, const std::string& file) {
   const Section options = root.Child("options");
   scene.ring_diameter_m =
       options.Child("pattern").Number("outer_diameter_m").value_or(scene.ring_diameter_m);
+  if (const auto kind = options.Child("target").Text("kind")) {
+    scene.heading_symmetry = HeadingSymmetryOf(*kind);
+  }
   scene.exposure_s = options.Child("shutter").Number("exposure_s");
   if (root.Child("frames").node()) ReadFrames(root.Child("frames"), file, &scene);
   return scene;

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "kestrel/core/base/time.h"
+#include "kestrel/vision/targets/make_target_detector.h"
 
 namespace kestrel {
 
@@ -16,6 +17,8 @@ namespace kestrel {
 struct SceneTruth {
   std::string condition = "all";  // light and weather
   double ring_diameter_m = 1;     // options.pattern.outer_diameter_m
+  // Headings under which the pad looks the same, by options.target.kind; nothing: an unknown kind.
+  std::optional<int> heading_symmetry = HeadingSymmetryOf("ring-cross");
   // R_BS_true = mount_error * R_BS_nominal: mount_error.yaw_deg, pitch_deg, roll_deg.
   Eigen::Quaterniond mount_error = Eigen::Quaterniond::Identity();
   double clock_offset_s = 0;         // time_offset_s: t_nav = t_image + offset

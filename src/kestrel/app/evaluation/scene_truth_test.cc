@@ -30,6 +30,19 @@ TEST(SceneTruth, AnImageMayHaveItsOwn) {
   EXPECT_EQ(scene.ExposureAt(TimeFromNanoseconds(6)), 0.01);
 }
 
+TEST(SceneTruth, HeadingsAreThoseOfThePad) {
+  const auto of = [](const char* kind) {
+    return ParseSceneTruth(std::string("options: {target: {kind: ") + kind + "}}\n", "scene.yaml")
+        .heading_symmetry;
+  };
+  EXPECT_EQ(ParseSceneTruth("seed: 7\n", "scene.yaml").heading_symmetry, 4)
+      << "before there were kinds";
+  EXPECT_EQ(of("ring-cross"), 4);
+  EXPECT_EQ(of("nested"), 1);
+  EXPECT_EQ(of("helipad"), 2);
+  EXPECT_FALSE(of("my-own"));
+}
+
 TEST(SceneTruth, MountErrorTurnsAboutZThenYThenX) {
   const SceneTruth scene =
       ParseSceneTruth("mount_error: {yaw_deg: 90, pitch_deg: 0, roll_deg: 90}\n", "scene.yaml");

@@ -25,6 +25,7 @@ struct KindOptions {
 
 struct TargetKind {
   std::string_view name;
+  int heading_symmetry;  // headings under which it looks the same
   std::unique_ptr<const TargetDetector> (*make)(const CameraModel&, const KindOptions&);
   TargetShape (*shape)(const KindOptions&);
   TargetPrint (*print)(const TargetOptions&, const LandingPattern&);
@@ -128,13 +129,14 @@ std::vector<std::string> ValidateHelipad(const TargetOptions& target) {
 
 // All kinds of pads, a line each.
 constexpr TargetKind kTargetKinds[] = {
-    {"ring-cross", MakeRingCross, ShapeOfRingCross, PrintOfRingCross, ValidateRingCross},
-    {"ring-with-tags", MakeRingWithTags, ShapeOfRingWithTags, PrintOfRingWithTags, ValidateNested},
-    {"apriltag", MakeTags<Apriltag>, ShapeOfTags<Apriltag>, PrintOfTags<Apriltag>,
+    {"ring-cross", 4, MakeRingCross, ShapeOfRingCross, PrintOfRingCross, ValidateRingCross},
+    {"ring-with-tags", 1, MakeRingWithTags, ShapeOfRingWithTags, PrintOfRingWithTags,
+     ValidateNested},
+    {"apriltag", 1, MakeTags<Apriltag>, ShapeOfTags<Apriltag>, PrintOfTags<Apriltag>,
      ValidateTags<Apriltag>},
-    {"aruco", MakeTags<Aruco>, ShapeOfTags<Aruco>, PrintOfTags<Aruco>, ValidateTags<Aruco>},
-    {"nested", MakeTags<Nested>, ShapeOfTags<Nested>, PrintOfTags<Nested>, ValidateNested},
-    {"helipad", MakeHelipad, ShapeOfHelipad, PrintOfHelipad, ValidateHelipad},
+    {"aruco", 1, MakeTags<Aruco>, ShapeOfTags<Aruco>, PrintOfTags<Aruco>, ValidateTags<Aruco>},
+    {"nested", 1, MakeTags<Nested>, ShapeOfTags<Nested>, PrintOfTags<Nested>, ValidateNested},
+    {"helipad", 2, MakeHelipad, ShapeOfHelipad, PrintOfHelipad, ValidateHelipad},
 };
 
 const TargetKind* FindKind(std::string_view name) {
@@ -149,6 +151,11 @@ std::vector<std::string> TargetKinds() {
   std::vector<std::string> names;
   for (const TargetKind& kind : kTargetKinds) names.emplace_back(kind.name);
   return names;
+}
+
+std::optional<int> HeadingSymmetryOf(std::string_view kind) {
+  const TargetKind* known = FindKind(kind);
+  return known != nullptr ? std::optional(known->heading_symmetry) : std::nullopt;
 }
 
 std::vector<std::string> TargetOptions::Validate() const {

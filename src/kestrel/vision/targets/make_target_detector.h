@@ -2,7 +2,9 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kestrel/core/camera/camera_model.h"
@@ -58,6 +60,10 @@ struct TargetOptions {
 
 // Returns the names of all kinds.
 std::vector<std::string> TargetKinds();
+
+// Returns under how many headings a pad of this kind looks the same: 1 where it has one heading.
+// Nothing for an unknown kind.
+std::optional<int> HeadingSymmetryOf(std::string_view kind);
 
 // Returns the detector of the target. 'ring': options of the kind "ring-cross". Throws InputError
 // when the options or the camera are not valid.
