@@ -108,6 +108,8 @@ class LandingGuidance {
   int go_arounds() const { return go_arounds_; }  // number of times it climbed again
   // Part of the limits that following the target takes, the largest of the last seconds.
   const FollowingDemand& demand() const { return demand_.demand(); }
+  // TouchdownHeading::error.
+  const std::optional<double>& heading_error() const { return heading_.error(); }
   // Wind, drag and the autopilot's answer, as learnt in flight.
   const FlightModel& model() const { return model_; }
 

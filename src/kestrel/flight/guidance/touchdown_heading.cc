@@ -31,7 +31,8 @@ TouchdownHeading::TouchdownHeading(const GuidanceOptions& options)
 void TouchdownHeading::Start(double yaw) {
   yaw_ = yaw;
   yaw_rate_ = 0;
-  is_known_ = is_reached_ = false;
+  is_known_ = false;
+  error_.reset();
   last_.reset();
   waits_since_.reset();
 }
@@ -41,7 +42,7 @@ void TouchdownHeading::Update(Time now, double nose, const std::optional<TargetE
   const double step_s = last_ ? std::clamp(ToSeconds(now - *last_), 0.0, kMaxTurnStep_s) : 0.0;
   last_ = now;
   is_known_ = is_wanted() && IsHeadingKnown(target);
-  is_reached_ = false;
+  error_.reset();
   yaw_rate_ = 0;
   if (!is_known_) return;
   const double pad_rate = target->motion.turn_rate();
@@ -51,7 +52,11 @@ void TouchdownHeading::Update(Time now, double nose, const std::optional<TargetE
   const double turn = std::clamp(kTurnGain * left, -max_rate_, max_rate_);
   yaw_rate_ = pad_rate + turn;
   yaw_ = std::remainder(yaw_ + yaw_rate_ * step_s, kFullTurn);
-  is_reached_ = std::abs(std::remainder(nose - goal, target->yaw_period)) <= tolerance_;
+  error_ = std::remainder(nose - goal, target->yaw_period);
+}
+
+bool TouchdownHeading::is_reached() const {
+  return !is_wanted() || (error_ && std::abs(*error_) <= tolerance_);
 }
 
 bool TouchdownHeading::IsOverdue(Time now, bool waits) {

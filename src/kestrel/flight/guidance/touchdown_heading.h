@@ -33,8 +33,11 @@ class TouchdownHeading {
 
   // True when the target's heading is known.
   bool is_known() const { return is_known_; }
+  // The nose's angle off the wanted heading at the last update, rad, counter-clockwise as seen from
+  // above; nothing: none is wanted, or the target's is not known.
+  const std::optional<double>& error() const { return error_; }
   // True when no heading is wanted, or the nose has it within the tolerance.
-  bool is_reached() const { return !is_wanted() || is_reached_; }
+  bool is_reached() const;
   // True when it was neither reached nor not wanted for too long. The time counts while 'waits'.
   bool IsOverdue(Time now, bool waits);
 
@@ -46,7 +49,7 @@ class TouchdownHeading {
   double yaw_ = 0;
   double yaw_rate_ = 0;
   bool is_known_ = false;
-  bool is_reached_ = false;
+  std::optional<double> error_;
   std::optional<Time> last_;
   std::optional<Time> waits_since_;
 };

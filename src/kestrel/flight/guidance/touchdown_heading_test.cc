@@ -64,6 +64,8 @@ TEST(TouchdownHeadingTest, TurnsToTheNearestHeadingUnderWhichThePadLooksTheSame)
     nose.Turn(&heading, Pad(Radians(60), period), 8);
     EXPECT_NEAR(Degrees(std::remainder(nose.yaw, kFullTurn)), expected_deg, 0.5) << wanted_deg;
     EXPECT_TRUE(heading.is_reached());
+    EXPECT_NEAR(*heading.error(), std::remainder(nose.yaw - Radians(60 + wanted_deg), period),
+                1e-3);
     EXPECT_LE(nose.fastest, Radians(30) * kTestStep_s + 1e-9) << "no jump";
   }
 }

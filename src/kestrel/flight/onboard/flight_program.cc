@@ -335,7 +335,10 @@ LandingWatchInput FlightProgram::LandingInput(Time now) {
   }
   if (!guided_) return input;
   input.has_contact = input.has_contact || guided_->phase() == GuidancePhase::kLanded;
-  if (guided_->is_flying()) gave_up_.clear();
+  if (guided_->is_flying()) {
+    gave_up_.clear();
+    input.heading_error = guided_->heading_error();
+  }
   if (const std::string& reason = guided_->gave_up(); !reason.empty()) gave_up_ = reason;
   input.gave_up = gave_up_;
   return input;

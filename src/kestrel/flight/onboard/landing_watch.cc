@@ -49,9 +49,9 @@ void LandingWatch::Fly(const LandingWatchInput& input) {
   if (!input.pattern) return;
   const Eigen::Vector3d from_pattern = input.body->feet - input.pattern->position;
   const Eigen::Matrix3d& covariance = input.pattern->covariance;
-  place_ =
-      Place{from_pattern.head<2>().norm(), from_pattern.z(),
-            std::sqrt(covariance.topLeftCorner<2, 2>().trace() / 2), std::sqrt(covariance(2, 2))};
+  place_ = Place{from_pattern.head<2>().norm(), from_pattern.z(),
+                 std::sqrt(covariance.topLeftCorner<2, 2>().trace() / 2),
+                 std::sqrt(covariance(2, 2)), input.heading_error};
   if (place_->offset_sigma_m > kLargestSigma_m) return;
   seen_ = input.now;
   seen_offset_m_ = place_->offset_m;
@@ -97,7 +97,7 @@ FlightEnd LandingWatch::JudgePlace() const {
             fmt::format("disarmed {:.1f} m {} the pattern", std::abs(place_->height_m),
                         place_->height_m > 0 ? "above" : "below")};
   }
-  return {FlightOutcome::kOnPattern, place_->offset_m};
+  return {FlightOutcome::kOnPattern, place_->offset_m, {}, place_->heading_error};
 }
 
 }  // namespace kestrel

@@ -29,7 +29,8 @@ struct LandingWatchInput {
     Eigen::Vector3d position;  // predicted to now
     Eigen::Matrix3d covariance;
   };
-  std::optional<Pattern> pattern;  // nothing: never seen, or lost for good
+  std::optional<Pattern> pattern;            // nothing: never seen, or lost for good
+  std::optional<double> heading_error = {};  // FlightEnd::heading_error, now
 
   bool has_contact = false;  // somebody has felt the pattern under the feet
   std::string gave_up;       // why guidance has given up; empty: it has not
@@ -58,6 +59,7 @@ class LandingWatch {
     double height_m = 0;
     double offset_sigma_m = 0;
     double height_sigma_m = 0;
+    std::optional<double> heading_error = {};
   };
 
   void Fly(const LandingWatchInput& input);

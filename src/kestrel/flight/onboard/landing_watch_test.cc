@@ -66,6 +66,14 @@ TEST_F(LandingWatchTest, LandedOnThePatternWithItsOffset) {
   EXPECT_NEAR(*watch_.end()->offset_m, 0.12, 1e-6);
 }
 
+TEST_F(LandingWatchTest, TheHeadingIsThatOfTouchDown) {
+  input_.heading_error = -0.02;
+  ComeDown(0.12);
+  input_.heading_error = 1;
+  Disarm();
+  EXPECT_EQ(InWords(*watch_.end()), "landed 0.12 m from the centre, heading off by -1.1 degrees");
+}
+
 TEST_F(LandingWatchTest, LandedBesideIt) {
   ComeDown(10.8, 1.5);
   Disarm();

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/core/geometry/angles.h"
+
 namespace kestrel {
 namespace {
 
@@ -14,6 +16,12 @@ std::string PlaceOf(const FlightEnd& end) {
 
 std::string WithReason(const std::string& words, const std::string& reason) {
   return reason.empty() ? words : words + ": " + reason;
+}
+
+std::string HeadingInWords(const FlightEnd& end) {
+  return end.heading_error
+             ? fmt::format(", heading off by {:.1f} degrees", Degrees(*end.heading_error))
+             : "";
 }
 
 }  // namespace
@@ -53,8 +61,9 @@ std::string InWords(const FlightEnd& end) {
     case FlightOutcome::kLanded:
       return "landed";
     case FlightOutcome::kOnPattern:
-      return end.offset_m ? fmt::format("landed {:.2f} m from the centre", *end.offset_m)
-                          : "landed on the pattern";
+      return (end.offset_m ? fmt::format("landed {:.2f} m from the centre", *end.offset_m)
+                           : "landed on the pattern") +
+             HeadingInWords(end);
     case FlightOutcome::kBesidePattern:
       return fmt::format("landed {:.1f} m beside the pattern", end.offset_m.value_or(0));
     case FlightOutcome::kDownSomewhere:
@@ -72,8 +81,10 @@ std::string InWords(const FlightEnd& end) {
 }
 
 std::string FlightEndCsv(const FlightEnd& end) {
-  return fmt::format("end,offset_m,words\n{},{},\"{}\"\n", ToString(end.outcome),
-                     end.offset_m ? fmt::format("{:.4f}", *end.offset_m) : "", InWords(end));
+  return fmt::format("end,offset_m,words,heading_error_deg\n{},{},\"{}\",{}\n",
+                     ToString(end.outcome),
+                     end.offset_m ? fmt::format("{:.4f}", *end.offset_m) : "", InWords(end),
+                     end.heading_error ? fmt::format("{:.2f}", Degrees(*end.heading_error)) : "");
 }
 
 int ExitStatus(const FlightEnd& end) {

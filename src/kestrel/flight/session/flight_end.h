@@ -28,13 +28,16 @@ struct FlightEnd {
   // Horizontal distance of the feet from the pattern's centre at touch-down, m; nothing: not known.
   std::optional<double> offset_m = {};
   std::string reason = {};  // why it is not known, or what failed
+  // Of the nose off guidance.touchdown_heading at touch-down, rad, counter-clockwise as seen from
+  // above; nothing: any heading would do, or the pad's is not known.
+  std::optional<double> heading_error = {};
 };
 
 // Returns the end for people, as "landed 0.05 m from the centre". All outputs use these words.
 std::string InWords(const FlightEnd& end);
 
-// Returns the end as a table with a header and one row: its name, the offset (empty: not known) and
-// the words.
+// Returns the end as a table with a header and one row: its name, the offset (empty: not known),
+// the words, and the error of the heading in degrees (empty: not known).
 std::string FlightEndCsv(const FlightEnd& end);
 
 // Returns the exit status of a program whose flight ended so: 0 on the pattern, or where nobody

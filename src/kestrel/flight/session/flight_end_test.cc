@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "kestrel/core/geometry/angles.h"
+
 namespace kestrel {
 namespace {
 
@@ -42,10 +44,14 @@ TEST(FlightEndTest, EachEndHasItsWordsAndItsStatus) {
 
 TEST(FlightEndTest, ATableHasOneRow) {
   EXPECT_EQ(FlightEndCsv({FlightOutcome::kBesidePattern, 10.83}),
-            "end,offset_m,words\n"
-            "beside pattern,10.8300,\"landed 10.8 m beside the pattern\"\n");
+            "end,offset_m,words,heading_error_deg\n"
+            "beside pattern,10.8300,\"landed 10.8 m beside the pattern\",\n");
   EXPECT_EQ(FlightEndCsv({FlightOutcome::kStopped}),
-            "end,offset_m,words\nstopped,,\"ended by the user\"\n");
+            "end,offset_m,words,heading_error_deg\nstopped,,\"ended by the user\",\n");
+  EXPECT_EQ(
+      FlightEndCsv({FlightOutcome::kOnPattern, 0.05, {}, Radians(1.25)}),
+      "end,offset_m,words,heading_error_deg\n"
+      "on pattern,0.0500,\"landed 0.05 m from the centre, heading off by 1.2 degrees\",1.25\n");
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/core/geometry/angles.h"
+
 namespace kestrel {
 namespace {
 
@@ -14,10 +16,14 @@ std::string EndInWords(const TouchdownResult& result) {
   if (result.outcome == TouchdownOutcome::kTimeUp) {
     return fmt::format("still in the air after {:.1f} s", result.time_s);
   }
+  const std::string heading = result.heading_error ? fmt::format(", heading off by {:.1f} degrees",
+                                                                 Degrees(*result.heading_error))
+                                                   : "";
   return fmt::format(
       "{} {:.1f} s after the start, {:.2f} m from the centre, at {:.2f} m/s against the board "
-      "({:.2f} m/s down)",
-      ToString(result.outcome), result.time_s, result.distance_m, result.slip_mps, result.sink_mps);
+      "({:.2f} m/s down){}",
+      ToString(result.outcome), result.time_s, result.distance_m, result.slip_mps, result.sink_mps,
+      heading);
 }
 
 }  // namespace
@@ -46,17 +52,18 @@ std::string InWords(const TouchdownResult& result) {
 
 std::string TouchdownCsvHeader() {
   return "seed,outcome,time_s,first_seen_s,distance_m,slip_mps,sink_mps,go_arounds,wind_mps,"
-         "frames\n";
+         "frames,heading_error_deg\n";
 }
 
 std::string TouchdownCsvRow(std::uint64_t seed, const TouchdownResult& result) {
   const bool is_down = result.outcome != TouchdownOutcome::kTimeUp;
-  return fmt::format("{},{},{:.3f},{},{},{},{},{:.2f},{}\n", seed, ToString(result.outcome),
-                     result.time_s,
-                     result.first_seen_s ? fmt::format("{:.3f}", *result.first_seen_s) : "",
-                     is_down ? fmt::format("{:.4f}", result.distance_m) : "",
-                     is_down ? fmt::format("{:.3f},{:.3f}", result.slip_mps, result.sink_mps) : ",",
-                     result.go_arounds, result.wind_mps, result.frames);
+  return fmt::format(
+      "{},{},{:.3f},{},{},{},{},{:.2f},{},{}\n", seed, ToString(result.outcome), result.time_s,
+      result.first_seen_s ? fmt::format("{:.3f}", *result.first_seen_s) : "",
+      is_down ? fmt::format("{:.4f}", result.distance_m) : "",
+      is_down ? fmt::format("{:.3f},{:.3f}", result.slip_mps, result.sink_mps) : ",",
+      result.go_arounds, result.wind_mps, result.frames,
+      result.heading_error ? fmt::format("{:.2f}", Degrees(*result.heading_error)) : "");
 }
 
 std::string TouchdownPathCsv(const TouchdownResult& result) {

@@ -38,7 +38,10 @@ struct TouchdownResult {
   double distance_m = 0;               // of the feet's middle from the pattern's, on the board
   double slip_mps = 0;                 // horizontal speed relative to the board
   double sink_mps = 0;                 // vertical speed relative to the board
-  double wind_mps = 0;                 // mean over the flight
+  // Of the nose, rad, counter-clockwise as seen from above, off the heading that was wanted over
+  // the pad; nothing: any heading would do.
+  std::optional<double> heading_error;
+  double wind_mps = 0;  // mean over the flight
   int go_arounds = 0;
   int frames = 0;
   std::vector<TouchdownMoment> path;  // one for each image

@@ -13,6 +13,7 @@
 #include "kestrel/simulation/recordings/truth_text.h"
 #include "kestrel/simulation/vehicle/flight_time.h"
 #include "kestrel/vision/pipeline/pattern_area.h"
+#include "kestrel/vision/targets/make_target_detector.h"
 
 namespace kestrel {
 namespace {
@@ -245,8 +246,19 @@ bool TouchdownSimulation::HasEnded(double time_s, TouchdownResult* result) const
   result->distance_m = feet_on_board.head<2>().norm();
   result->slip_mps = slip.head<2>().norm();
   result->sink_mps = -slip.z();
+  result->heading_error = HeadingError(time_s);
   result->outcome = OutcomeOf(feet_on_board, *result);
   return true;
+}
+
+// Of the nose over the pad, rad; nothing where any heading will do.
+std::optional<double> TouchdownSimulation::HeadingError(double time_s) const {
+  const auto wanted = options_.guidance.HeadingOverPad();
+  if (!wanted) return std::nullopt;
+  const double over_pad = HeadingOf(path_.At(time_s).rotation) -
+                          HeadingOf(landing_.world_from_pattern()(time_s).rotation);
+  const int symmetry = HeadingSymmetryOf(options_.target.kind).value();
+  return std::remainder(over_pad - *wanted, 2 * std::numbers::pi / symmetry);
 }
 
 TouchdownOutcome TouchdownSimulation::OutcomeOf(const Vector3d& feet_on_board,

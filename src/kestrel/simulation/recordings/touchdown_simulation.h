@@ -138,6 +138,7 @@ class TouchdownSimulation {
   bool ProcessImages(double until_s, const FrameSink& sink, TouchdownResult* result);
   SetPoint Guide(double time_s);
   bool HasEnded(double time_s, TouchdownResult* result) const;
+  std::optional<double> HeadingError(double time_s) const;
   TouchdownOutcome OutcomeOf(const Eigen::Vector3d& feet_on_board,
                              const TouchdownResult& result) const;
   void RideOn(double time_s);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
+#include "kestrel/core/geometry/angles.h"
 #include "kestrel/io/recording/test_files.h"
 #include "kestrel/simulation/recordings/landing_simulation.h"
 #include "kestrel/simulation/recordings/scenarios.h"
@@ -80,12 +81,15 @@ TEST(TouchdownResultTest, SaysInWordsAndRowsHowItEnded) {
   TouchdownResult result;
   result.time_s = 90;
   EXPECT_THAT(InWords(result), HasSubstr("still in the air after 90.0 s; pattern never seen"));
-  EXPECT_EQ(TouchdownCsvRow(7, result), "7,time up,90.000,,,,,0,0.00,0\n");
+  EXPECT_EQ(TouchdownCsvRow(7, result), "7,time up,90.000,,,,,0,0.00,0,\n");
   result.outcome = TouchdownOutcome::kLanded;
   result.first_seen_s = 2.5;
   result.distance_m = 0.123;
   EXPECT_THAT(InWords(result), HasSubstr("landed 90.0 s after the start, 0.12 m from the centre"));
-  EXPECT_EQ(TouchdownCsvRow(7, result), "7,landed,90.000,2.500,0.1230,0.000,0.000,0,0.00,0\n");
+  EXPECT_EQ(TouchdownCsvRow(7, result), "7,landed,90.000,2.500,0.1230,0.000,0.000,0,0.00,0,\n");
+  result.heading_error = Radians(-1.5);
+  EXPECT_THAT(InWords(result), HasSubstr(", heading off by -1.5 degrees; pattern first"));
+  EXPECT_THAT(TouchdownCsvRow(7, result), HasSubstr(",0.00,0,-1.50\n"));
 }
 
 }  // namespace
