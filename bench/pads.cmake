@@ -1,0 +1,3 @@
+# Errors of the poses of all kinds of pads, in units of their covariances.
+add_executable(pad_pose_accuracy pad_pose_accuracy.cc)
+target_link_libraries(pad_pose_accuracy PRIVATE kestrel::targets CLI11::CLI11 fmt::fmt opencv_imgproc)
