@@ -98,6 +98,36 @@ TEST_F(HelipadDetectorTest, FindsEachKindOfPad) {
   }
 }
 
+// With the camera over one leg, with or without a frame around the H.
+TEST_F(HelipadDetectorTest, IsFollowedByOneLegDownToTheGround) {
+  const Vector3d on_leg(-0.233, 0.2, 0);
+  for (const char* frame : {"circle", "none"}) {
+    HelipadDetectorOptions options;
+    options.frame = frame;
+    Use(options);
+    Random random(4);
+    for (double height = 0.9; height > 0.14; height *= 0.8) {
+      const Eigen::Quaterniond down(Eigen::AngleAxisd(kPi, Vector3d::UnitX()));
+      RigidTransform pose{down * RotationBy({0, 0, 0.4}), {0, 0, height}};
+      pose.translation -= pose.rotation * on_leg;
+      const double sigma = 0.005 + 0.02 * height;
+      const double x = random.Normal();
+      const double y = random.Normal();
+      LandingHint hint;
+      hint.center_in_camera = pose.translation + sigma * Vector3d(x, y, 0);
+      hint.center_sigma_m = sigma;
+      hint.rotation_in_camera = RotationBy({0, 0, 0.02}) * pose.rotation;
+      hint.up_in_camera = pose.rotation * Vector3d::UnitZ();
+      const LandingReport report = Detect(Image(pose, 3), hint);
+      ASSERT_TRUE(report.detection) << frame << ", " << height << " m: " << report.reason;
+      const RigidTransform& seen = report.detection->camera_from_pattern;
+      EXPECT_LT((seen.translation - pose.translation).norm(), 0.01) << frame << ", " << height;
+      EXPECT_LT(seen.rotation.angularDistance(pose.rotation), Radians(1))
+          << frame << ", " << height;
+    }
+  }
+}
+
 TEST_F(HelipadDetectorTest, StandsMotionAndDust) {
   Use({});
   taken_ = {.motion_px = 5};
