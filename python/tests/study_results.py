@@ -41,6 +41,9 @@ def lose(scores, low, high, share, seed=0):
 def write(folder, runs, frame_ms=4.0, summary=None, plan=None):
     """Writes a study. runs: {configuration: {recording: scores}}; scores may be None: it failed."""
     with Store(folder) as store:
+        store.keep_plan(plan or "", [
+            {"name": name, "version": "1.0", "task": "land", "place": place, "command": "kestrel",
+             "arguments": "[]", "text": ""} for place, name in enumerate(runs)])
         for configuration, flights in runs.items():
             for recording, scores in flights.items():
                 unit = {"key": f"{configuration}/{recording}", "recording": recording, "piece": 0,
@@ -49,8 +52,6 @@ def write(folder, runs, frame_ms=4.0, summary=None, plan=None):
                 store.add(unit, _result(scores, frame_ms, summary))
         store.commit()
         store.export()
-    if plan is not None:
-        (folder / "study.yaml").write_text(plan)
     return folder
 
 

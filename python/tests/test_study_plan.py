@@ -194,6 +194,31 @@ def test_what_an_earlier_plan_did_is_set_aside_and_comes_back(tmp_path):
         assert (tmp_path / "summary.csv").read_text() == "key,name,value\na,x,1.0\n"
 
 
+def test_options_that_were_edited_set_aside_what_others_found(tmp_path):
+    unit = dict(recording="r", piece=0, configuration="c", version="v", task="land", seed=None,
+                path="p")
+    options = dict(name="c", version="v", task="land", place=0, command="kestrel", arguments="[]",
+                   text="landing.x: 1\n")
+    with Store(tmp_path) as store:
+        store.keep_plan("", [options])
+        store.add({**unit, "key": "first"}, {"state": "done"})
+        store.add({**unit, "key": "failed"}, {"state": "failed", "reason": "memory"})
+        store.keep_plan("", [options])
+        assert (store.count("done"), store.count("failed")) == (1, 1)
+        store.keep_plan("", [{**options, "text": "landing.x: 2\n"}])
+        assert (store.count("done"), store.count("failed"), store.count("old")) == (0, 0, 1)
+        store.add({**unit, "key": "second"}, {"state": "done"})
+        store.keep_plan("", [options])
+        assert store.has("first", "p"), "it is what these options have found"
+        store.retire()
+        store.export()
+    assert (tmp_path / "unit.csv").read_text().count("first") == 1
+    assert "second" not in (tmp_path / "unit.csv").read_text()
+    table = (tmp_path / "configuration.csv").read_text()
+    assert table == ("name,version,task,place,command,arguments,text\n"
+                     'c,v,land,0,kestrel,[],"landing.x: 1\n"\n')
+
+
 def test_two_studies_do_not_share_a_folder(tmp_path):
     with Store(tmp_path), pytest.raises(StudyError, match="another study runs into it"):
         Store(tmp_path)

@@ -31,8 +31,7 @@ def worse(tmp_path, before):
     """A study whose second configuration loses half of what it sees from 9 to 14 m."""
     after = {name: study_results.lose(scores, 9, 14, 0.5, k)
              for k, (name, scores) in enumerate(before.items())}
-    return study_results.write(tmp_path / "study", {"b default": before, "a other": after},
-                               plan="configurations: [{name: b default}, {name: a other}]")
+    return study_results.write(tmp_path / "study", {"b default": before, "a other": after})
 
 
 def test_what_got_worse_is_named(worse, capsys):

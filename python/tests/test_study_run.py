@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """`kestrel study run` with workers: each unit once, whatever happens."""
 import contextlib
+import csv
 import os
 import sqlite3
 import subprocess
@@ -35,6 +36,24 @@ def test_tables_are_equal_for_any_workers_and_after_a_kill(bench):
     assert status == 0, said
     assert len(units(bench, "killed")) == 16
     assert bench.tables("killed") == bench.tables("out")
+
+
+def test_the_options_of_the_run_are_kept(bench):
+    bench.recording("f")
+    bench.write(arguments=["--altitude", 3], configurations=[
+        {"name": "z first"}, {"name": "grid", "set": {"landing.x": [2, 1]}}])
+    assert bench.run()[0] == 0
+    first = bench.tables()["configuration.csv"]
+    with open(bench.folder / "out/configuration.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["name"] for row in rows] == ["z first", "grid landing.x=2", "grid landing.x=1"]
+    assert [row["text"] for row in rows] == ["", "landing.x: 2\n", "landing.x: 1\n"]
+    assert {row["arguments"] for row in rows} == {'["--altitude", "3"]'}
+    bench.write(configurations=[{"name": "z first", "set": {"landing.x": 5}}])
+    assert bench.tables()["configuration.csv"] == first, "editing the file changes no result"
+    assert bench.run(workers=2)[0] == 0
+    assert b"grid" not in bench.tables()["configuration.csv"]
+    assert b"landing.x: 5" in bench.tables()["configuration.csv"]
 
 
 def wait_for_a_result(bench):

@@ -5,7 +5,7 @@
 //
 //   node tools/try_study.js KESTREL FOLDER
 import { spawnSync } from "node:child_process";
-import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { mkdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { tryAll } from "./browser.js";
 
@@ -20,7 +20,10 @@ CREATE TABLE bin(key TEXT, quantity TEXT, lower REAL, upper REAL, frames INTEGER
   "false" INTEGER, error_sum REAL);
 CREATE TABLE summary(key TEXT, name TEXT, value REAL);
 CREATE TABLE worst(key TEXT, rank INTEGER, time_ns INTEGER, frame TEXT, what TEXT, value REAL);
-CREATE TABLE detection(key TEXT, time_ns INTEGER, frame TEXT, found INTEGER, "false" INTEGER, error_m REAL)`;
+CREATE TABLE detection(key TEXT, time_ns INTEGER, frame TEXT, found INTEGER, "false" INTEGER, error_m REAL);
+CREATE TABLE configuration(name TEXT, version TEXT, task TEXT, place INTEGER, command TEXT, arguments TEXT, text TEXT);
+INSERT INTO configuration VALUES('usual', 'v1', 'land', 0, 'kestrel', '[]', '');
+INSERT INTO configuration VALUES('strict', 'v1', 'land', 1, 'kestrel', '[]', 'landing: {detector: {min_quality: 1}}')`;
 
 await tryAll(replayTheWorst, useKeysAlone);
 
@@ -39,8 +42,6 @@ function makeStudy(t) {
     failedUnit("dusk", "strict", "killed: more than 4000 MB of memory"),
   ];
   mkdirSync(join(t.scratch, "study"), { recursive: true });
-  const plan = "task: land\nconfigurations:\n  - name: usual\n  - name: strict\n    set: {landing.detector.min_quality: 1}\n";
-  writeFileSync(join(t.scratch, "study/study.yaml"), plan);
   writeDatabase(join(t.scratch, "study/study.db"), [tables, ...units].join(";\n"));
   return "study";
 }

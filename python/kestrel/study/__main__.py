@@ -47,7 +47,7 @@ def _run(arguments):
     workers = workers_of(arguments.where or plan.where, arguments.workers or plan.workers)
     folder = Path(arguments.output or plan.output)
     with Store(folder) as store:
-        store.keep_plan(plan.text)
+        store.keep_plan(plan.text, plan.configuration_rows())
         if arguments.retry:
             store.forget_failed()
         runner = Runner(plan, store, workers, _Progress().show, _say)

@@ -69,6 +69,13 @@ class Plan:
     output: str
     text: str  # STUDY.yaml
 
+    def configuration_rows(self):
+        """Returns the rows of the store's table `configuration`."""
+        arguments = json.dumps(self.settings["arguments"])
+        return [{"name": one.name, "version": one.version, "task": self.settings["label"],
+                 "place": place, "command": one.command, "arguments": arguments, "text": one.text}
+                for place, one in enumerate(self.configurations)]
+
     def units_of(self, recording, content):
         """Yields the jobs of a recording, each with all its units; content: its hash."""
         for piece in self._pieces_of(recording):

@@ -44,9 +44,9 @@ def read_study(folder: str, before: str | None = None, after: str | None = None,
     results = Results(folder)
     plan = _plan(results.folder / PLAN)
     all_gates = parse_gates(plan.get("gates") or []) + parse_gates(gates or [])
-    variants = _variants(results, plan)
+    variants = _variants(results)
     old = Results(against) if against else results
-    old_variants = _variants(old, plan)
+    old_variants = _variants(old)
     first = _choose(old_variants, before, old) if before else old_variants[0]
     others = [_choose(variants, after, results)] if after else \
         [one for one in variants if against or one != first] or [first]
@@ -65,17 +65,8 @@ def _plan(path: Path) -> dict[str, Any]:
     return plan if isinstance(plan, dict) else {}
 
 
-def _variants(results: Results, plan: dict[str, Any]) -> list[Variant]:
-    """The variants that were run, in the order of the plan's configurations; members of a grid are adjacent."""
-    names = [str(entry.get("name", "")) for entry in plan.get("configurations") or []
-             if isinstance(entry, dict)]
-
-    def place(variant: Variant) -> int:
-        fitting = [index for index, name in enumerate(names)
-                   if f"{variant.configuration} ".startswith(f"{name} ")]
-        return fitting[-1] if fitting else len(names)
-
-    variants = sorted(results.variants(), key=place)
+def _variants(results: Results) -> list[Variant]:
+    variants = results.variants()
     if not variants:
         raise ResultsError(f"{results.folder}: no results yet")
     return variants

@@ -107,10 +107,12 @@ class Results:
             raise ResultsError(f"{path}: {error}") from None
 
     def variants(self) -> list[Variant]:
-        """Returns what was run, in the order of their names."""
+        """Returns what was run, in the order of the plan."""
         return [Variant(*row) for row in self._rows(
-            "SELECT DISTINCT configuration, version, task FROM unit "
-            "WHERE state IN ('done', 'failed') ORDER BY configuration, version, task")]
+            "SELECT configuration, unit.version, unit.task FROM unit LEFT JOIN configuration AS plan "
+            "ON name = configuration AND plan.version = unit.version AND plan.task = unit.task "
+            "WHERE state IN ('done', 'failed') GROUP BY 1, 2, 3 "
+            "ORDER BY min(place) IS NULL, min(place), 1, 2, 3")]
 
     def recordings(self, variant: Variant) -> list[str]:
         """Returns the names of the recordings that are done, in order."""

@@ -30,8 +30,13 @@ TABLES = {
                  "frame_ms_median": "REAL", "frame_ms_p99": "REAL", "worker": "TEXT",
                  "log": "TEXT"},
 }
+# The options that the study ran with, complete, in the plan's order (`place`). `arguments`: JSON, a
+# list of words. `text`: every option of the command, as YAML.
+_CONFIGURATION = {"name": "TEXT", "version": "TEXT", "task": "TEXT", "place": "INTEGER",
+                  "command": "TEXT", "arguments": "TEXT", "text": "TEXT"}
 # The resources of a unit differ from run to run.
 EXPORTED = [table for table in TABLES if table != "resource"]
+_IS_CONFIGURATION = "configuration=? AND version=? AND task=?"  # of a unit
 # The recordings whose content was hashed already, by what says that they have not changed.
 _HASHES = ("CREATE TABLE IF NOT EXISTS content"
            "(source TEXT PRIMARY KEY, fingerprint TEXT, hash TEXT)")
@@ -48,12 +53,18 @@ def _locked(folder):
     return handle
 
 
+def _create_table(connection, table, columns, more=""):
+    described = ", ".join(f'"{name}" {kind}' for name, kind in columns.items())
+    connection.execute(f'CREATE TABLE IF NOT EXISTS "{table}" ({described}{more})')
+
+
 def _create(connection):
     for table, columns in TABLES.items():
-        described = ", ".join(f'"{name}" {kind}' for name, kind in columns.items())
-        connection.execute(f'CREATE TABLE IF NOT EXISTS "{table}" ({described})')
+        _create_table(connection, table, columns)
         if table != "unit":
             connection.execute(f'CREATE INDEX IF NOT EXISTS "{table}_key" ON "{table}"(key)')
+    _create_table(connection, "configuration", _CONFIGURATION,
+                  ", PRIMARY KEY (name, version, task)")
     connection.execute(_HASHES)
     connection.execute("CREATE TEMP TABLE planned(key TEXT PRIMARY KEY)")
     connection.commit()
@@ -102,6 +113,10 @@ class Store:
         other = "key NOT IN (SELECT key FROM planned)"
         self._connection.execute(f"UPDATE unit SET state='old' WHERE state='done' AND {other}")
         self._forget(f"state='failed' AND {other}")
+        self._connection.execute(
+            "DELETE FROM configuration WHERE NOT EXISTS (SELECT 1 FROM unit WHERE state!='old' "
+            "AND configuration=name AND unit.version=configuration.version "
+            "AND unit.task=configuration.task)")
         self.commit()
 
     def count(self, state):
@@ -132,7 +147,7 @@ class Store:
             raise self._write_error(error) from None
 
     def _insert(self, table, rows, how="INSERT"):
-        columns = TABLES[table]
+        columns = TABLES.get(table, _CONFIGURATION)
         names = ", ".join(f'"{name}"' for name in columns)
         places = ", ".join("?" * len(columns))
         values = [tuple(row.get(name) for name in columns) for row in rows]
@@ -154,17 +169,41 @@ class Store:
         self._forget("state='failed'")
         self.commit()
 
-    def _forget(self, condition):
+    def _forget(self, condition, values=()):
         forgotten = f"SELECT key FROM unit WHERE {condition}"
         for table in reversed(TABLES):
-            self._connection.execute(f'DELETE FROM "{table}" WHERE key IN ({forgotten})')
+            self._connection.execute(f'DELETE FROM "{table}" WHERE key IN ({forgotten})', values)
 
-    def keep_plan(self, text):
-        """Writes STUDY.yaml beside the results, for the report."""
+    def keep_plan(self, text, configurations):
+        """Keeps STUDY.yaml beside the results, for the gates of the report, and the options that
+        the study runs with.
+
+        configurations: rows of the table `configuration`. Results of other options of the same name
+        are set aside: they leave the tables.
+        """
         try:
             (self.folder / PLAN).write_text(text)
         except OSError as error:
             raise StudyError(f"{self.folder / PLAN}: {error.strerror}") from None
+        try:
+            for row in configurations:
+                self._set_others_aside(row)
+            self._insert("configuration", configurations, "INSERT OR REPLACE")
+        except sqlite3.Error as error:
+            raise self._write_error(error) from None
+        self.commit()
+
+    def _set_others_aside(self, configuration):
+        """Sets the results of a configuration that had other options aside."""
+        names = tuple(configuration[column] for column in ("name", "version", "task"))
+        before = self._connection.execute(
+            "SELECT arguments, text FROM configuration WHERE name=? AND version=? AND task=?",
+            names).fetchone()
+        if before in (None, (configuration["arguments"], configuration["text"])):
+            return
+        self._connection.execute(
+            f"UPDATE unit SET state='old' WHERE state='done' AND {_IS_CONFIGURATION}", names)
+        self._forget(f"state='failed' AND {_IS_CONFIGURATION}", names)
 
     def content_hash(self, source, fingerprint):
         """Returns the hash of a recording that has not changed since, or None."""
@@ -180,18 +219,17 @@ class Store:
     def export(self):
         """Writes the tables as TABLE.csv beside study.db, all but `resource`, in an order that
         depends on the rows alone."""
+        shown = "WHERE key IN (SELECT key FROM unit WHERE state!='old') ORDER BY"
         for table in EXPORTED:
-            self._export(table)
+            # `rowid` within a unit: its worker's order.
+            order = "recording, piece, configuration, version, task, seed, key" \
+                if table == "unit" else "key, rowid"
+            self._export(table, TABLES[table], f"{shown} {order}")
+        self._export("configuration", _CONFIGURATION, "ORDER BY place, name, version, task")
 
-    def _export(self, table):
-        columns = list(TABLES[table])
+    def _export(self, table, columns, which):
         names = ", ".join(f'"{name}"' for name in columns)
-        # `rowid` within a unit: its worker's order.
-        order = "recording, piece, configuration, version, task, seed, key" if table == "unit" \
-            else "key, rowid"
-        shown = "key IN (SELECT key FROM unit WHERE state!='old')"
-        rows = self._connection.execute(
-            f'SELECT {names} FROM "{table}" WHERE {shown} ORDER BY {order}')
+        rows = self._connection.execute(f'SELECT {names} FROM "{table}" {which}')
         part = self.folder / f"{table}.csv.part"
         try:
             with open(part, "w", newline="") as file:

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/app/cli/console_study.h"
 
-#include <algorithm>
 #include <filesystem>
-#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "kestrel/app/cli/interrupt.h"
 #include "kestrel/app/console/study_console.h"
-#include "kestrel/app/console/study_plan.h"
 #include "kestrel/app/console/study_results.h"
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/base/options.h"
 
 namespace kestrel {
 namespace {
@@ -33,18 +31,20 @@ void ReadWords(const std::vector<std::string>& words, ConsoleArguments* argument
   }
 }
 
-// The arguments of `kestrel console` that replay a recording with a variant's options.
-ConsoleArguments ArgumentsFor(const ConsoleArguments& given, const StudyPlan& plan,
-                              const std::string& path, const StudyVariant& variant) {
-  ConsoleArguments arguments = given;
-  std::vector<std::string>& settings = arguments.source.options.settings;
-  settings.clear();
-  ReadWords(plan.ArgumentsOf(variant.configuration), &arguments);
-  const std::vector<std::string>& last = given.source.options.settings;
-  std::copy(last.begin(), last.end(), std::back_inserter(settings));
-  arguments.source.sources = {path};
-  arguments.is_hunt = variant.task == "hunt";
-  return arguments;
+// The options of the study's run, changed by --set and --target of `kestrel console`.
+KestrelOptions OptionsFor(const ConsoleArguments& given, const OptionArguments& of_study,
+                          const StudyVariant& variant, const std::string& text) {
+  KestrelOptions options;
+  ReadOptionFields(text, fmt::format("options of '{}' in the study", variant.configuration),
+                   FieldsOf(options));
+  std::vector<std::string> settings;
+  of_study.target.AppendTo(&settings, "landing.target");
+  settings.insert(settings.end(), given.source.options.settings.begin(),
+                  given.source.options.settings.end());
+  given.source.options.target.AppendTo(&settings, "landing.target");
+  for (const std::string& setting : settings) SetOption(setting, &options);
+  RequireValid(options);
+  return options;
 }
 
 // Throws InputError when a recording of a study is not a file or folder of this computer.
@@ -57,16 +57,22 @@ void RequireHere(const std::string& path) {
   throw InputError("the recording is not on this computer: " + path);
 }
 
-StudyConsole::Run OpenForReplay(const ConsoleArguments& arguments, const StudyVariant& variant) {
-  const std::string& path = arguments.source.sources.front();
+StudyConsole::Run OpenForReplay(const ConsoleArguments& given, const std::string& path,
+                                const StudyVariant& variant, const StudyOptions& of_run) {
   if (variant.task != "land" && variant.task != "hunt") {
     throw InputError(
         fmt::format("a study of '{}' cannot be replayed, only of land and hunt", variant.task));
   }
   RequireHere(path);
+  ConsoleArguments arguments = given;
+  arguments.source.options = {};
+  ReadWords(of_run.arguments, &arguments);
+  arguments.source.sources = {path};
+  arguments.is_hunt = variant.task == "hunt";
   arguments.RequireEnd();
   StudyConsole::Run run;
-  run.search = MakeSearch(arguments, arguments.source.options.Read());
+  run.search =
+      MakeSearch(arguments, OptionsFor(given, arguments.source.options, variant, of_run.text));
   run.choice = arguments.source.Recording(run.search->format());
   return run;
 }
@@ -82,20 +88,16 @@ void RunStudyConsole(const ConsoleArguments& arguments) {
   CatchInterrupts();
   const KestrelOptions options = arguments.source.options.Read();
   const std::string& folder = arguments.source.sources.front();
-  const StudyPlan plan(folder);
   StudyResults results(folder);
   std::vector<StudyVariant> variants = results.Variants();
-  std::stable_sort(variants.begin(), variants.end(), [&](const auto& a, const auto& b) {
-    return plan.PlaceOf(a.configuration) < plan.PlaceOf(b.configuration);
-  });
   ConsoleArguments any = arguments;
   any.is_hunt = variants.front().task == "hunt";
   ReplaySubject subject = MakeSearch(any, options)->Subject();
   subject.has_truth = true;  // some recordings may have it
   StudyConsole console(arguments.PageOptions(options), folder, std::move(results), variants,
-                       std::move(subject), [&](const std::string& path, const auto& variant) {
-                         return OpenForReplay(ArgumentsFor(arguments, plan, path, variant),
-                                              variant);
+                       std::move(subject),
+                       [&](const std::string& path, const auto& variant, const auto& of_run) {
+                         return OpenForReplay(arguments, path, variant, of_run);
                        });
   fmt::print(stderr, "console: {}\n", console.url());
   console.Play(WasInterrupted);

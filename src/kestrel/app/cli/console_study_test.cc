@@ -61,8 +61,6 @@ TEST_F(ConsoleStudyTest, ARecordingThatIsElsewhereIsSaid) {
 TEST_F(ConsoleStudyTest, WhatIsNoStudyIsOneClearLine) {
   const std::string folder = folder_ / "study";
   folder_.Write("study/study.db", "");
-  ExpectInputError("console " + folder, "study/study.yaml");
-  folder_.Write("study/study.yaml", "task: land\n");
   ExpectInputError("console " + folder,
                    "study.db: not the results of a study: has no table 'unit'");
 }

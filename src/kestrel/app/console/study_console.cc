@@ -120,10 +120,14 @@ void StudyConsole::OpenRow(double number) {
   }
 }
 
+StudyConsole::Run StudyConsole::OpenFor(const StudyRow& row, std::size_t variant) const {
+  return open_(row.path, variants_[variant], results_.OptionsOf(variants_[variant]));
+}
+
 void StudyConsole::StartFirstRun(const StudyRow& row) {
   worst_ = results_.WorstFrame(row);
-  before_ = open_(row.path, variants_[study_.before]);
-  after_ = open_(row.path, variants_[study_.after]);
+  before_ = OpenFor(row, study_.before);
+  after_ = OpenFor(row, study_.after);
   first_run_.Start("first run", RecordingOf(before_.choice, *before_.search).detect({}));
   TellReplay(StudyReplayState::kRunning);
 }

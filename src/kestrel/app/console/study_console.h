@@ -28,8 +28,9 @@ class StudyConsole {
     RecordingChoice choice;
     std::unique_ptr<ReplaySearch> search;
   };
-  // Opens a recording of the study for a variant. Throws InputError.
-  using Open = std::function<Run(const std::string& path, const StudyVariant& variant)>;
+  // Opens a recording of the study for a variant, with the options of its run. Throws InputError.
+  using Open = std::function<Run(const std::string& path, const StudyVariant& variant,
+                                 const StudyOptions& options)>;
 
   // Starts the server. 'variants': those of the results, in the order of the page; at least one.
   // 'subject': of the searches that 'open' makes. Throws InputError as WebServer does.
@@ -46,6 +47,7 @@ class StudyConsole {
   void Compare(const std::vector<std::string>& settings);
   void ReadTable(std::size_t before, std::size_t after);
   void OpenRow(double number);
+  Run OpenFor(const StudyRow& row, std::size_t variant) const;
   void StartFirstRun(const StudyRow& row);
   void FollowFirstRun();
   void StartReplay(ReplayResult first);

@@ -29,7 +29,8 @@ class StudyConsoleTest : public testing::Test {
     std::vector<StudyVariant> variants = {{"usual", "v1", "land"}, {"strict", "v1", "land"}};
     ReplaySubject subject = SearchForPattern({}, LandingPipelineOptions(), {})->Subject();
     console_.emplace(AnyPort(), "study", std::move(results), variants, std::move(subject),
-                     [](const std::string& path, const StudyVariant& variant) -> StudyConsole::Run {
+                     [](const std::string& path, const StudyVariant& variant,
+                        const StudyOptions&) -> StudyConsole::Run {
                        throw InputError(path + " is not here for " + variant.configuration);
                      });
     thread_ = std::thread([this] { console_->Play([this] { return is_stopped_.load(); }); });

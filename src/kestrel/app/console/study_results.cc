@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/shown.h"
@@ -17,7 +18,7 @@ namespace kestrel {
 namespace {
 
 constexpr int kMaxVariants = 200;
-constexpr int kMaxTextBytes = 1 << 16;
+constexpr int kMaxTextBytes = 1 << 20;   // all options take 40 kB
 constexpr std::size_t kMaxReason = 300;  // characters on the page
 constexpr int kBusyTimeout_ms = 2000;    // a study commits in less
 
@@ -27,6 +28,16 @@ SELECT recording, piece, path, unit.key, state, reason, unit.frames, bin.frames,
 FROM unit LEFT JOIN bin ON bin.key = unit.key AND quantity = 'all'
   LEFT JOIN summary AS truth ON truth.key = unit.key AND truth.name = 'has_truth'
 WHERE configuration = ?1 AND version = ?2 AND task = ?3 AND state IN ('done', 'failed'))";
+
+constexpr char kVariants[] = R"(
+SELECT configuration, unit.version, unit.task
+FROM unit LEFT JOIN configuration AS plan
+  ON name = configuration AND plan.version = unit.version AND plan.task = unit.task
+WHERE state IN ('done', 'failed') GROUP BY 1, 2, 3
+ORDER BY min(place) IS NULL, min(place), 1, 2, 3)";
+
+constexpr char kOptions[] =
+    "SELECT arguments, text FROM configuration WHERE name = ?1 AND version = ?2 AND task = ?3";
 
 // A frame that is in the table of one of the two only had nothing to find for the other.
 constexpr char kLosses[] = R"(
@@ -102,7 +113,7 @@ void StudyResults::Fail(const std::string& why) const {
 }
 
 void StudyResults::RequireTables() const {
-  for (const char* name : {"unit", "bin", "summary", "worst", "detection"}) {
+  for (const char* name : {"unit", "bin", "summary", "worst", "detection", "configuration"}) {
     // A view of this name could take for ever.
     const SqliteStatement table =
         Prepare("SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = ?1", {name});
@@ -130,10 +141,7 @@ bool StudyResults::Step(sqlite3_stmt* statement) const {
 }
 
 std::vector<StudyVariant> StudyResults::Variants() const {
-  const SqliteStatement variant = Prepare(
-      "SELECT DISTINCT configuration, version, task FROM unit WHERE state IN ('done', 'failed') "
-      "ORDER BY configuration, version, task",
-      {});
+  const SqliteStatement variant = Prepare(kVariants, {});
   std::vector<StudyVariant> variants;
   while (Step(variant.get())) {
     variants.push_back(
@@ -146,6 +154,22 @@ std::vector<StudyVariant> StudyResults::Variants() const {
     throw InputError(file_ + ": has no results yet; `kestrel study run` makes them");
   }
   return variants;
+}
+
+StudyOptions StudyResults::OptionsOf(const StudyVariant& variant) const {
+  const SqliteStatement row =
+      Prepare(kOptions, {variant.configuration, variant.version, variant.task});
+  if (!Step(row.get())) {
+    Fail(fmt::format("has no options of '{}'", Shown(variant.configuration)));
+  }
+  StudyOptions options{{}, TextAt(row.get(), 1)};
+  try {
+    nlohmann::json::parse(TextAt(row.get(), 0)).get_to(options.arguments);
+  } catch (const nlohmann::json::exception&) {
+    Fail(
+        fmt::format("the arguments of '{}' are not a list of words", Shown(variant.configuration)));
+  }
+  return options;
 }
 
 StudyOutcome StudyResults::OutcomeOf(sqlite3_stmt* unit) const {

@@ -21,6 +21,12 @@ struct StudyVariant {
   bool operator==(const StudyVariant&) const = default;
 };
 
+// The options with which a variant was run.
+struct StudyOptions {
+  std::vector<std::string> arguments;  // of the command, as {"--altitude", "3"}
+  std::string text;                    // every option, as YAML
+};
+
 // The result of a variant for a recording. Nothing is known when its unit is not done, or failed.
 struct StudyOutcome {
   std::string key = {};                    // of the unit; empty: not done
@@ -62,8 +68,10 @@ class StudyResults {
   // True for a folder that has the results of a study.
   static bool IsIn(const std::string& folder);
 
-  // Returns what was run, in the order of names; at least one.
+  // Returns what was run, in the order of the study's plan; at least one.
   std::vector<StudyVariant> Variants() const;
+
+  StudyOptions OptionsOf(const StudyVariant& variant) const;
 
   StudyComparison Compare(const StudyVariant& before, const StudyVariant& after) const;
 

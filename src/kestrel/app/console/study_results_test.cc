@@ -91,6 +91,22 @@ TEST(StudyResults, LeavesOutWhatAnEarlierPlanHasDone) {
   EXPECT_THAT(StudyResults(study.path()).Variants(), ElementsAre(kUsual));
 }
 
+TEST(StudyResults, HasTheVariantsInTheOrderOfThePlanWithTheirOptions) {
+  const TestFolder folder;
+  const TestStudy study(folder);
+  for (const char* name : {"no plan has it", "strict", "usual"}) study.AddDone("flight", name, 9);
+  const StudyResults results(study.path());
+  const StudyVariant unknown{"no plan has it", "v1", "land"};
+  EXPECT_THAT(results.Variants(), ElementsAre(kUsual, kStrict, unknown));
+  EXPECT_THAT(results.OptionsOf(kStrict).arguments, ElementsAre("--altitude", "3"));
+  EXPECT_EQ(results.OptionsOf(kStrict).text, "landing: {detector: {min_quality: 1}}");
+  EXPECT_THAT(InputErrorOf([&] { results.OptionsOf(unknown); }),
+              EndsWith("has no options of 'no plan has it'"));
+  study.Run("UPDATE configuration SET arguments = '[3]'");
+  EXPECT_THAT(InputErrorOf([&] { results.OptionsOf(kUsual); }),
+              EndsWith("the arguments of 'usual' are not a list of words"));
+}
+
 TEST(StudyResults, ReadsWhatAStudyIsWriting) {
   const TestFolder folder;
   const TestStudy study(folder);

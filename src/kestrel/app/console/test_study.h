@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <filesystem>
 #include <sqlite3.h>
 #include <stdexcept>
 #include <string>
@@ -12,19 +13,12 @@
 
 namespace kestrel {
 
-// The results of a small study, as `kestrel study run` writes them: study.db and study.yaml.
+// The results of a small study of two configurations, "usual" and "strict", as `kestrel study run`
+// writes them: study.db.
 class TestStudy {
  public:
-  static constexpr char kPlan[] = R"(task: land
-configurations:
-  - name: usual
-  - name: strict
-    set: {landing.detector.min_quality: 1}
-)";
-
-  explicit TestStudy(const TestFolder& folder, const std::string& plan = kPlan)
-      : path_(folder / "study") {
-    folder.Write("study/study.yaml", plan);
+  explicit TestStudy(const TestFolder& folder) : path_(folder / "study") {
+    std::filesystem::create_directories(path_);
     sqlite3* database = nullptr;
     sqlite3_open((path_ + "/study.db").c_str(), &database);
     database_.reset(database);
@@ -37,7 +31,12 @@ CREATE TABLE bin(key TEXT, quantity TEXT, lower REAL, upper REAL, frames INTEGER
 CREATE TABLE summary(key TEXT, name TEXT, value REAL);
 CREATE TABLE worst(key TEXT, rank INTEGER, time_ns INTEGER, frame TEXT, what TEXT, value REAL);
 CREATE TABLE detection(key TEXT, time_ns INTEGER, frame TEXT, found INTEGER, "false" INTEGER,
-  error_m REAL);)");
+  error_m REAL);
+CREATE TABLE configuration(name TEXT, version TEXT, task TEXT, place INTEGER, command TEXT,
+  arguments TEXT, text TEXT, PRIMARY KEY(name, version, task));
+INSERT INTO configuration VALUES('usual', 'v1', 'land', 0, 'kestrel', '[]', '');
+INSERT INTO configuration VALUES('strict', 'v1', 'land', 1, 'kestrel', '["--altitude", "3"]',
+  'landing: {detector: {min_quality: 1}}');)");
   }
 
   const std::string& path() const { return path_; }
