@@ -1,15 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A unit of work: its limits, and what a broken recording or a missing version costs."""
-import csv
 import os
-import sys
-from pathlib import Path
+import threading
 
 import pytest
-from study import scoring
 from study.bench import FAKE, Bench
 
-from kestrel import study
+from kestrel.study import scorer
 from kestrel.study.plan import read_plan
 from kestrel.study.recordings import content_hash, fingerprint
 from kestrel.study.unit import run_job
@@ -18,9 +15,10 @@ from kestrel.study.unit import run_job
 @pytest.fixture
 def bench(tmp_path, monkeypatch):
     monkeypatch.setenv("KESTREL_COMMAND", str(FAKE))
-    monkeypatch.setitem(sys.modules, "kestrel.study.scoring", scoring)
-    monkeypatch.setattr(study, "scoring", scoring, raising=False)
-    return Bench(tmp_path)
+    bench = Bench(tmp_path)
+    monkeypatch.setattr(scorer, "PACKAGES", bench.package)
+    monkeypatch.setattr(scorer, "_of_thread", threading.local())
+    return bench
 
 
 def results(bench, **change):
@@ -46,16 +44,23 @@ def test_a_result_has_rows_and_what_it_took(bench):
 
 
 @pytest.mark.parametrize("behaviour, reason", [
-    ("hang", "took longer than 0.5 s (limits.seconds)"),
+    ("hang", "took longer than 2 s (limits.seconds)"),
     ("memory", "needed more than 300 MB (limits.memory_mb)"),
     ("crash", "ended by the signal SIGABRT"),
+    ("score hang", "the scoring took longer than 2 s (limits.seconds)"),
+    ("score memory", "the scoring needed more than 300 MB (limits.memory_mb)"),
+    ("score crash", "the scoring was ended by the signal SIGABRT"),
+    ("score error", "ValueError: of this name"),
 ])
 def test_what_goes_wrong_is_a_reason_of_one_line(bench, behaviour, reason):
     bench.recording("f", behaviour)
-    limits = {"seconds": 0.5 if behaviour == "hang" else 60, "memory_mb": 300}
-    result, = results(bench, configurations=ONE, limits=limits)
+    bench.recording("good")
+    limits = {"seconds": 2 if "hang" in behaviour else 60, "memory_mb": 300}
+    result, good = results(bench, configurations=ONE, limits=limits)
     assert result["state"] == "failed"
     assert result["reason"] == reason
+    assert ("Traceback" in result["resource"]["log"]) == (behaviour == "score error")
+    assert good["state"] == "done"
 
 
 def test_a_broken_recording_costs_its_own_units(bench):
@@ -92,22 +97,12 @@ def test_a_recording_that_a_worker_does_not_see(bench):
     assert result["reason"] == f"{folder}: not there on this worker"
 
 
-def test_the_lead_in_of_a_piece_is_processed_and_not_counted(bench, tmp_path, monkeypatch):
+def test_the_lead_in_of_a_piece_is_processed_and_not_counted(bench):
     bench.recording("f", frames=25)
-    seen = []
-
-    def score(recording, output, *more):
-        with open(Path(recording) / "mav0/cam0/data.csv") as file:
-            processed = sum(not line.startswith("#") for line in file)
-        with open(Path(output) / "landing_detections.csv", newline="") as file:
-            seen.append((processed, [int(row["timestamp_ns"]) for row in csv.DictReader(file)]))
-        return scoring_of_all(recording, output, *more)
-
-    scoring_of_all = scoring.score
-    monkeypatch.setattr(scoring, "score", score)
-    results(bench, configurations=ONE, pieces={"seconds": 10, "lead_in_s": 2})
-    assert [processed for processed, _ in seen] == [10, 12, 7]
-    assert [time for _, times in seen for time in times] == [10**9 * number for number in range(25)]
+    pieces = results(bench, configurations=ONE, pieces={"seconds": 10, "lead_in_s": 2})
+    assert [piece["summary"]["processed"] for piece in pieces] == [10, 12, 7]
+    counted = [row["time_ns"] for piece in pieces for row in piece["detections"]]
+    assert counted == [10**9 * number for number in range(25)]
 
 
 def test_a_url_is_fetched_and_its_copy_goes(bench, monkeypatch, tmp_path):

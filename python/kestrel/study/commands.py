@@ -15,7 +15,7 @@ from pathlib import Path
 from .errors import StudyError, one_line
 
 _LOG_BYTES = 4000
-_LOOK_S = 0.1  # between two looks at the memory
+LOOK_S = 0.1  # between two looks at the memory
 _TOOK = "took longer than"
 _PAGE = os.sysconf("SC_PAGESIZE")
 
@@ -101,8 +101,14 @@ class Run:
         if self.broken_limit:
             return self.broken_limit
         if self.status < 0:
-            return f"ended by the signal {signal.Signals(-self.status).name}"
+            return ending(self.status)
         return one_line(self.log) if self.status else ""
+
+
+def ending(status):
+    """Returns the end of a process in words. status: negative: the signal that ended it."""
+    return f"ended by the signal {signal.Signals(-status).name}" if status < 0 else \
+        f"ended with the status {status}"
 
 
 def _memory_mb(pid):
@@ -113,7 +119,8 @@ def _memory_mb(pid):
     return pages * _PAGE / 1e6
 
 
-def _broken_limit(pid, seconds, limits):
+def broken_limit(pid, seconds, limits):
+    """Returns which limit a process breaks, in words; empty where it keeps them."""
     if seconds > limits["seconds"]:
         return f"{_TOOK} {limits['seconds']:g} s (limits.seconds)"
     if _memory_mb(pid) > limits["memory_mb"]:
@@ -129,8 +136,8 @@ def _wait(process, start, limits):
     handle = os.pidfd_open(process.pid)
     try:
         ended.register(handle, select.POLLIN)
-        while not ended.poll(_LOOK_S * 1000):
-            broken = _broken_limit(process.pid, time.monotonic() - start, limits)
+        while not ended.poll(LOOK_S * 1000):
+            broken = broken_limit(process.pid, time.monotonic() - start, limits)
             if broken:
                 os.killpg(process.pid, signal.SIGKILL)
                 break

@@ -6,7 +6,6 @@ import os
 import shutil
 import tempfile
 import time
-import traceback
 from pathlib import Path
 
 from distributed import get_worker
@@ -14,7 +13,8 @@ from distributed import get_worker
 from . import monte_carlo, recordings
 from .calibrations import calibrated
 from .commands import run_limited, version_of
-from .errors import StudyError, one_line
+from .errors import StudyError, reason_of
+from .scorer import scorer
 
 # The folders of a unit, below its scratch folder: reasons name no folder that is another next time.
 _OUTPUT, _RECORDING, _CONFIG, _CAMERA = "output", "recording", "config.yaml", "camera.yaml"
@@ -77,11 +77,7 @@ def _results(job, folder, address):
 
 
 def _failed(error, address):
-    known = isinstance(error, (StudyError, OSError))
-    reason = str(error) if isinstance(error, StudyError) else \
-        getattr(error, "strerror", None) or f"{type(error).__name__}: {one_line(error)}"
-    log = "" if known else "".join(traceback.format_exception(type(error), error,
-                                                              error.__traceback__))
+    reason, log = reason_of(error)
     state = "lacking" if isinstance(error, Lacking) else "failed"
     return {"state": state, "reason": reason, "resource": {"worker": address, "log": log}}
 
@@ -184,12 +180,14 @@ def _score(job, path, folder, run):
     label, flight = job.settings["label"], job.recording.simulation
     if label.startswith("calibrate"):
         return {"summary": calibrated(folder / _CAMERA, run.log)}
-    from . import scoring  # late: it loads what a worker needs only here
     output = folder / _OUTPUT
     if job.piece:
         _cut_lead_in(output, job.piece.first_ns)
     # The recording of a closed loop is its output.
-    result = scoring.score(str(path or output), str(output), label, str(folder / _CONFIG))
+    question = str(path or output), str(output), label, str(folder / _CONFIG)
+    # A flight may take its whole time: its scoring begins anew.
+    spent_s = 0 if run.timed_out else run.seconds
+    result = scorer().score(question, spent_s, job.settings["limits"])
     if flight:
         result["summary"].update(monte_carlo.drawn_numbers(flight))
     if label in monte_carlo.KINDS:
