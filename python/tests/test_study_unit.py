@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A unit of work: its limits, and what a broken recording or a missing version costs."""
+import functools
+import http.server
+import importlib.util
+import io
 import os
 import threading
 
@@ -7,6 +11,7 @@ import pytest
 from study.bench import FAKE, Bench
 
 from kestrel.study import scorer
+from kestrel.study.errors import StudyError
 from kestrel.study.plan import read_plan
 from kestrel.study.recordings import content_hash, fingerprint
 from kestrel.study.unit import run_job
@@ -114,6 +119,61 @@ def test_a_url_is_fetched_and_its_copy_goes(bench, monkeypatch, tmp_path):
     here, = results(bench, configurations=ONE, recordings=[str(folder)])
     assert result["detections"] == here["detections"]
     assert os.listdir(scratch) == []
+
+
+class _Page(http.server.SimpleHTTPRequestHandler):
+    """A folder as Apache shows it: with links to sort it, and to the folder above."""
+
+    def list_directory(self, path):
+        above = self.path.rstrip("/").rpartition("/")[0] + "/"
+        names = [f"{entry.name}/" if entry.is_dir() else entry.name for entry in os.scandir(path)]
+        links = "".join(f'<a href="{link}">x</a>' for link in ["?C=N;O=D", above, *names])
+        self.send_response(200)
+        self.end_headers()
+        return io.BytesIO(links.encode())
+
+    def log_message(self, *said):
+        pass
+
+
+@pytest.fixture
+def web(bench):
+    """The URL of the bench's folder."""
+    server = http.server.ThreadingHTTPServer(
+        ("127.0.0.1", 0), functools.partial(_Page, directory=str(bench.folder)))
+    serving = threading.Thread(target=server.serve_forever)
+    serving.start()
+    yield f"http://127.0.0.1:{server.server_port}"
+    server.shutdown()
+    serving.join()
+    server.server_close()
+
+
+@pytest.mark.parametrize("where", ["flights", "flights/", "flights/*"])
+def test_recordings_of_a_web_server(bench, web, where):
+    pytest.importorskip("aiohttp")
+    folders = [bench.recording(name, start=start) for name, start in (("f", 0), ("g", 5))]
+    plan = read_plan(bench.write(recordings=[f"{web}/{where}"]))
+    assert [(one.name, one.path) for one in plan.recordings] == [
+        (name, f"{web}/flights/{name}") for name in "fg"]
+    served = results(bench, configurations=ONE, recordings=[f"{web}/{where}"])
+    here = results(bench, configurations=ONE, recordings=[str(folder) for folder in folders])
+    assert [one["detections"] for one in served] == [one["detections"] for one in here]
+    before = fingerprint(plan.recordings[0])
+    with open(folders[0] / "mav0/cam0/data.csv", "a") as file:
+        file.write("9000000000,9.png\n")
+    assert fingerprint(plan.recordings[0]) != before
+
+
+def test_urls_that_cannot_be_read_are_told_in_a_line(bench, web):
+    pytest.importorskip("aiohttp")
+    expected = {f"{web}/none": "not there", "http://127.0.0.1:9/f": "Cannot connect to host"}
+    if importlib.util.find_spec("s3fs") is None:
+        expected["s3://flights/today"] = "Install s3fs to access S3"
+    for url, words in expected.items():
+        with pytest.raises(StudyError) as error:
+            read_plan(bench.write(recordings=[url]))
+        assert f"{url}: {words}" in str(error.value) and "\n" not in str(error.value)
 
 
 def test_a_url_is_another_recording_when_its_file_has_changed(bench):

@@ -97,12 +97,21 @@ def _find_local(pattern, base):
 
 
 def _is_folder(system, path):
+    if _is_web(system):  # a folder is a page of links, which its description does not tell
+        return not path.endswith((*_BAGS, *_VIDEOS)) and system.isdir(path)
     return system.info(path)["type"] == "directory"
+
+
+def _is_web(system):
+    return "http" in system.protocol
 
 
 def _cause(error):
     """Returns what a file system says of an error; each has errors of its own."""
-    return "not there" if isinstance(error, FileNotFoundError) else one_line(error)
+    if not isinstance(error, FileNotFoundError):
+        return one_line(error)
+    # By HTTP a server that does not answer is a missing file, too.
+    return one_line(error.__cause__) if isinstance(error.__cause__, OSError) else "not there"
 
 
 def _open_url(url):
@@ -113,9 +122,32 @@ def _open_url(url):
         raise StudyError(f"{url}: {_cause(error)}") from None
 
 
+def _entries(system, folder):
+    """Yields (path, description) of what lies in a remote folder. A web server's page of it has links
+    to elsewhere, too."""
+    for entry in system.ls(folder, detail=True):
+        path = entry["name"].rstrip("/")
+        if path.startswith(f"{folder.rstrip('/')}/") and "?" not in path:
+            yield path, entry
+
+
+def _remote_files(system, path):
+    """Yields (path, description) of all files of a remote recording. A web server is asked for the
+    descriptions one by one: not of images, of which there are many."""
+    if not _is_folder(system, path):
+        yield path, system.info(path)
+        return
+    for below, entry in sorted(_entries(system, path), key=lambda pair: pair[0]):
+        if entry["type"] != "directory":
+            is_asked = _is_web(system) and not below.lower().endswith(_IMAGES)
+            yield below, system.info(below) if is_asked else entry
+        elif not _is_web(system) or system.exists(below):  # a link upwards looks like a folder
+            yield from _remote_files(system, below)
+
+
 def _remote_folder(system, path):
     """Returns the recordings in a remote folder: itself, or what it holds."""
-    entries = {entry["name"].rstrip("/"): entry["type"] for entry in system.ls(path, detail=True)}
+    entries = {name: entry["type"] for name, entry in _entries(system, path)}
     names = {name.rpartition("/")[2] for name in entries}
     if "mav0" in names or "metadata.yaml" in names:
         return [path]
@@ -124,14 +156,16 @@ def _remote_folder(system, path):
 
 
 def _find_remote(url):
-    system, path = _open_url(url)
+    system, path = _open_url(url.rstrip("/"))
     host = url.rstrip("/").removesuffix(path.rstrip("/"))
     try:
         if _MAGIC.search(path):
-            found, root = sorted(system.glob(path)), str(_root(path))
+            found = sorted(name.rstrip("/") for name in system.glob(path) if "?" not in name)
+            root = path[:_MAGIC.search(path).start()].rpartition("/")[0]
         elif _is_folder(system, path):
             found, root = _remote_folder(system, path), path
         else:
+            system.info(path)  # fails where it is not there
             found, root = [path], path
     except Exception as error:
         raise StudyError(f"recordings: {url}: {_cause(error)}") from None
@@ -201,11 +235,10 @@ def fingerprint(recording):
 def _remote_fingerprint(url):
     system, path = _open_url(url)
     try:
-        files = system.find(path, detail=True) if _is_folder(system, path) \
-            else {path: system.info(path)}
+        said = [[name, *(str(described.get(key)) for key in _IDENTITY)]
+                for name, described in _remote_files(system, path)]
     except Exception as error:
         raise StudyError(f"{url}: {_cause(error)}") from None
-    said = [[name, *(str(files[name].get(key)) for key in _IDENTITY)] for name in sorted(files)]
     return hashlib.sha256(json.dumps(said).encode()).hexdigest()
 
 
@@ -247,9 +280,12 @@ def _hash_large(file):
 def fetch(url, folder):
     """Copies the recording of a URL into a folder and returns its path. Raises StudyError."""
     system, path = _open_url(url)
-    target = Path(folder) / path.rstrip("/").rpartition("/")[2]
+    target = Path(folder) / path.rpartition("/")[2]
     try:
-        system.get(path, str(target), recursive=_is_folder(system, path))
+        for name, _ in _remote_files(system, path):
+            file = Path(f"{target}{name.removeprefix(path)}")
+            file.parent.mkdir(parents=True, exist_ok=True)
+            system.get_file(name, str(file))
     except Exception as error:
         raise StudyError(f"{url}: {_cause(error)}") from None
     return target
