@@ -14,6 +14,13 @@ _LINES = (
     (re.compile(rf"clock offset: {_NUMBER} \+- {_NUMBER} s"), ("clock_offset_s", "clock_sigma_s")),
     (re.compile(rf"RMS: {_NUMBER} m before, {_NUMBER} m after, in (\d+) images \((\d+) left"),
      ("rms_before_m", "rms_after_m", "images_used", "images_left_out")),
+    (re.compile(rf"focal length: {_NUMBER} x {_NUMBER} \+- {_NUMBER} px"),
+     ("fu_px", "fv_px", "focal_sigma_px")),
+    (re.compile(rf"principal point: \({_NUMBER}, {_NUMBER}\) \+- \({_NUMBER}, {_NUMBER}\) px"),
+     ("cu_px", "cv_px", "cu_sigma_px", "cv_sigma_px")),
+    (re.compile(rf"pattern found in (\d+) of (\d+) images, (\d+) views used \((\d+) left out\), "
+                rf"residual {_NUMBER} px"),
+     ("images_found", "images", "images_used", "images_left_out", "residual_px")),
 )
 
 

@@ -14,7 +14,8 @@ def one_line(text):
 
 
 def reason_of(error):
-    """Returns (reason, log) of an error: one line, and a traceback where the input is not at fault."""
+    """Returns (reason, log) of an error: one line, and a traceback where the input is not at
+    fault."""
     if isinstance(error, StudyError):
         return str(error), getattr(error, "log", "")
     if isinstance(error, OSError) and error.strerror:

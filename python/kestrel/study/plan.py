@@ -258,6 +258,8 @@ def read_plan(path, settings=()):
         recordings, configurations = _expand(study, str(Path(path).parent), settings)
         shared = _settings(study)
         pieces = _pieces(study.get("pieces"))
+        if pieces and study["task"] == "calibrate":
+            raise StudyError("pieces: a calibration is of a whole recording")
         _check_gates(study.get("gates", []))
         workers = study.get("workers")
         if workers is not None and workers < 1:

@@ -109,7 +109,7 @@ def plot_effects(effects: dict[str, list[Effect]], file: Path) -> None:
     if not shown:
         return
     most = max(map(len, shown.values()))
-    figure, axes = _figures().subplots(1, len(shown), figsize=(5.6 * len(shown), 1.5 + 0.4 * most),
+    figure, axes = _figures().subplots(1, len(shown), figsize=(6.2 * len(shown), 1.2 + 0.6 * most),
                                        squeeze=False, layout="constrained")
     for axis, (name, rows) in zip(axes.flat, shown.items()):
         _effect_panel(axis, name, rows)
@@ -119,17 +119,20 @@ def plot_effects(effects: dict[str, list[Effect]], file: Path) -> None:
 def _effect_panel(axis: Any, name: str, rows: list[Effect]) -> None:
     scale = MEASURES[name].scale
     for row, effect in enumerate(rows):
-        for value, low, high, color, end in (
-                (effect.at_minus, effect.minus_low, effect.minus_high, _COLORS[0], "-3 sigma"),
-                (effect.at_plus, effect.plus_low, effect.plus_high, _COLORS[1], "+3 sigma")):
-            offset = -0.17 if end == "-3 sigma" else 0.17
+        for value, low, high, color, offset in (
+                (effect.at_minus, effect.minus_low, effect.minus_high, _COLORS[0], -0.17),
+                (effect.at_plus, effect.plus_low, effect.plus_high, _COLORS[1], 0.17)):
             axis.barh(row + offset, scale * value, 0.3, color=color,
-                      label=end if row == 0 else None)
+                      alpha=0.3 if low <= 0 <= high else 1)
             axis.plot([scale * low, scale * high], [row + offset] * 2, color="#1c2733",
                       linewidth=1)
     axis.axvline(0, color="#1c2733", linewidth=0.8)
-    axis.set_yticks(range(len(rows)), [effect.name for effect in rows], fontsize=9)
+    axis.set_yticks(range(len(rows)), [_effect_label(effect) for effect in rows], fontsize=8)
     axis.invert_yaxis()
     axis.set_xlabel(f"change of: {MEASURES[name].title}, {MEASURES[name].unit}")
-    axis.legend(fontsize=8)
     axis.grid(axis="x", alpha=0.3)
+
+
+def _effect_label(effect: Effect) -> str:
+    low, middle, high = (f"{value:.3g}" for value in effect.values)
+    return f"{effect.name}\n{middle} to {low} (blue), to {high} (orange)"

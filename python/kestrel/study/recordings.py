@@ -123,8 +123,8 @@ def _open_url(url):
 
 
 def _entries(system, folder):
-    """Yields (path, description) of what lies in a remote folder. A web server's page of it has links
-    to elsewhere, too."""
+    """Yields (path, description) of what lies in a remote folder. A web server's page of it has
+    links to elsewhere, too."""
     for entry in system.ls(folder, detail=True):
         path = entry["name"].rstrip("/")
         if path.startswith(f"{folder.rstrip('/')}/") and "?" not in path:

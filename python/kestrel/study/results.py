@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from .statistics import Sums
 from .store import DATABASE
 
-# Summary values of a flight that are compared, one a flight.
-_OUTCOMES = ("landed", "touchdown_m", "landing_s")
+# Summary values of a recording that are compared, one a recording.
+_OUTCOMES = ("class_right", "rms_after_m", "residual_px", "landed", "touchdown_m", "landing_s")
 
 
 class ResultsError(ValueError):
@@ -109,8 +109,9 @@ class Results:
     def variants(self) -> list[Variant]:
         """Returns what was run, in the order of the plan."""
         return [Variant(*row) for row in self._rows(
-            "SELECT configuration, unit.version, unit.task FROM unit LEFT JOIN configuration AS plan "
-            "ON name = configuration AND plan.version = unit.version AND plan.task = unit.task "
+            "SELECT configuration, unit.version, unit.task FROM unit "
+            "LEFT JOIN configuration AS plan ON name = configuration "
+            "AND plan.version = unit.version AND plan.task = unit.task "
             "WHERE state IN ('done', 'failed') GROUP BY 1, 2, 3 "
             "ORDER BY min(place) IS NULL, min(place), 1, 2, 3")]
 
@@ -150,8 +151,7 @@ class Results:
         for recording, frame_ms in self._of(variant, _TIMES):
             add(Column("frame_ms"), recording, frame_ms, 1)
         for recording, name, value in self._of(variant, _SUMMARIES):
-            if name in _OUTCOMES:
-                add(Column(name), recording, value, 1)
+            add(Column(name), recording, value, 1)
         return cells
 
     def summary(self, variant: Variant, name: str) -> dict[str, float]:
@@ -212,7 +212,7 @@ GROUP BY recording, 2, quantity, lower, upper"""
 _TIMES = """
 SELECT recording, avg(frame_ms_median) FROM unit JOIN resource ON resource.key = unit.key
 WHERE {unit} AND state='done' AND frame_ms_median IS NOT NULL GROUP BY recording"""
-_SUMMARIES = """
+_SUMMARIES = f"""
 SELECT recording, name, avg(value) FROM unit JOIN summary ON summary.key = unit.key
-WHERE {unit} AND state='done' AND name IN ('landed', 'touchdown_m', 'landing_s')
+WHERE {{unit}} AND state='done' AND name IN {_OUTCOMES}
 GROUP BY recording, name"""

@@ -18,6 +18,16 @@ from .words import MINUS, bin_label, number, place, signed, title
 
 _WORST_FRAMES = 8  # of a kind
 _FAILURES = 50
+# What calibrations estimate: (name of the value, of its standard deviation, words).
+_CALIBRATED = (
+    ("roll_deg", "roll_sigma_deg", "roll of the mount, degrees"),
+    ("pitch_deg", "pitch_sigma_deg", "pitch of the mount, degrees"),
+    ("yaw_deg", "yaw_sigma_deg", "yaw of the mount, degrees"),
+    ("clock_offset_s", "clock_sigma_s", "clock offset, s"),
+    ("fu_px", "focal_sigma_px", "focal length u, px"),
+    ("fv_px", "focal_sigma_px", "focal length v, px"),
+    ("cu_px", "cu_sigma_px", "principal point u, px"),
+    ("cv_px", "cv_sigma_px", "principal point v, px"))
 
 
 def sections(study: Study, effects_of: dict[str, list[Effect]]) -> list[Section]:
@@ -26,7 +36,8 @@ def sections(study: Study, effects_of: dict[str, list[Effect]]) -> list[Section]
     for comparison, suffix in zip(study.comparisons, suffixes(study)):
         if not comparison.is_single:
             parts += _comparison(study, comparison, suffix)
-    parts += _configurations(study) + _misses(study) + _probability(study)
+    parts += _configurations(study) + _calibrations(study) + _misses(study)
+    parts += _probability(study)
     return parts + _disturbances(effects_of) + _worst(study) + _failures(study)
 
 
@@ -61,8 +72,10 @@ def _how(study: Study, comparison: Comparison) -> str:
         "different recordings: two groups of flights"
     left = f"; {comparison.left_out} are in one of the two only and left out" \
         if comparison.left_out else ""
-    return (f"{comparison.recordings} recordings: {how}{left}. Intervals are of each value alone; "
-            "p is the probability that chance makes a difference as large anywhere in the table, "
+    hunt = " Of a hunt each object in view counts as an image." \
+        if comparison.after.task == "hunt" else ""
+    return (f"{comparison.recordings} recordings: {how}{left}.{hunt} Intervals are of each value "
+            "alone; p is the probability that chance makes a difference as large anywhere in the table, "
             f"and below {ALPHA / len(study.comparisons):g} is significant.")
 
 
@@ -124,6 +137,26 @@ def _configurations(study: Study) -> list[Section]:
                         len(rows) > 12)], "found.png")]
 
 
+def _calibrations(study: Study) -> list[Section]:
+    rows = []
+    for variant in study.variants:
+        for name, sigma_name, words in _CALIBRATED:
+            sigmas = study.results.summary(variant, sigma_name)
+            found = study.results.summary(variant, name)
+            values = np.array([found[recording] for recording in sigmas])
+            if values.size:
+                spread = f"{values.std(ddof=1):.4g}" if values.size > 1 else "-"
+                rows.append([study.name(variant), words, str(values.size), f"{values.mean():.5g}",
+                             spread, f"{np.mean(list(sigmas.values())):.2g}"])
+    if not rows:
+        return []
+    return [Section("Calibrations", "A camera that nobody has touched has the same values in every "
+                    "recording: their spread is how far one calibration may be off. It should be "
+                    "about the standard deviation that the calibrations state.", [Table(
+                        "calibrations", ["configuration", "value", "recordings", "mean", "spread",
+                                         "stated"], rows)])]
+
+
 def _misses(study: Study) -> list[Section]:
     rows = []
     for variant in study.variants:
@@ -176,7 +209,7 @@ def _probability(study: Study) -> list[Section]:
 
 
 def _disturbances(effects_of: dict[str, list[Effect]]) -> list[Section]:
-    rows = [[effect.name, MEASURES[measure].title,
+    rows = [[effect.name, MEASURES[measure].title, *(f"{value:.3g}" for value in effect.values),
              f"{signed(effect.at_minus, measure)} ({signed(effect.minus_low, measure)} to "
              f"{signed(effect.minus_high, measure)})",
              f"{signed(effect.at_plus, measure)} ({signed(effect.plus_low, measure)} to "
@@ -184,11 +217,14 @@ def _disturbances(effects_of: dict[str, list[Effect]]) -> list[Section]:
             for measure, found in effects_of.items() for effect in found]
     if not rows:
         return []
-    return [Section("What each disturbance costs", "Change of the outcome from the middle of what "
-                    "was drawn to three standard deviations below and above it, or as far as it "
-                    "was drawn; all configurations together.", [Table("disturbances", [
-                        "disturbance", "of", "at -3 sigma (95 % interval)",
-                        "at +3 sigma (95 % interval)", "unit"], rows)], "disturbances.png")]
+    return [Section("What each disturbance costs", "Change of the outcome when one disturbance "
+                    "goes from the middle of what was drawn to its low and its high value, and all "
+                    "others stay: three standard deviations below and above the middle, or as far "
+                    "as it was drawn. Pale: the interval holds zero, so that it may cost nothing. "
+                    "All configurations together.", [Table("disturbances", [
+                        "disturbance", "of", "low", "middle", "high",
+                        "change at low (95 % interval)", "change at high (95 % interval)",
+                        "unit"], rows)], "disturbances.png")]
 
 
 def disturbance_effects(study: Study) -> dict[str, list[Effect]]:

@@ -191,9 +191,11 @@ def _adjusted_p(before: Sums, after: Sums, paired: bool, random: np.random.Gener
 @dataclass(frozen=True)
 class Effect:
     """The effect of a disturbance on an outcome: its change from the middle to three standard
-    deviations below and above it, or as far as it was drawn, each with its 95 % interval."""
+    deviations below and above it, or as far as it was drawn, each with its 95 % interval. `values`:
+    of the disturbance itself at the lower end, in the middle and at the upper end."""
 
     name: str
+    values: tuple[float, ...]
     at_minus: float
     minus_low: float
     minus_high: float
@@ -219,7 +221,8 @@ def effects(names: list[str], drawn: Array, outcome: Array, seed: int = 1,
     varied = spread > 0
     if len(outcome) < 5 * (1 + 2 * int(varied.sum())) or not varied.any():
         return []
-    units = (drawn[:, varied] - drawn[:, varied].mean(axis=0)) / spread[varied]
+    middle, spread = drawn[:, varied].mean(axis=0), spread[varied]
+    units = (drawn[:, varied] - middle) / spread
     design = np.hstack([np.ones((len(outcome), 1)), units, units**2])
     reach = np.stack([units.min(axis=0).clip(min=-3), units.max(axis=0).clip(max=3)])
     random = np.random.default_rng(seed)
@@ -228,8 +231,9 @@ def effects(names: list[str], drawn: Array, outcome: Array, seed: int = 1,
         chosen = random.integers(0, len(outcome), len(outcome))
         fits.append(_ends(design[chosen], outcome[chosen], reach))
     low, high = np.percentile(fits[1:], [2.5, 97.5], axis=0)
-    found = [Effect(name, *(float(part[end, place]) for end in (0, 1)
-                            for part in (fits[0], low, high)))
+    values = np.stack([middle + reach[0] * spread, middle, middle + reach[1] * spread], axis=1)
+    found = [Effect(name, tuple(map(float, values[place])),
+                    *(float(part[end, place]) for end in (0, 1) for part in (fits[0], low, high)))
              for place, name in enumerate(name for name, used in zip(names, varied) if used)]
     return sorted(found, key=lambda effect: -effect.cost)
 

@@ -171,8 +171,7 @@ def _words(job, path):
     if label in monte_carlo.KINDS:
         return [*monte_carlo.command_words(job.recording.simulation, _CONFIG, _OUTPUT), *arguments]
     target = _CAMERA if label.startswith("calibrate") else _OUTPUT
-    words = [*label.split(), str(path), "--output", target, *arguments]
-    return words if label == "calibrate lens" else [*words, "--config", _CONFIG]
+    return [*label.split(), str(path), "--output", target, *arguments, "--config", _CONFIG]
 
 
 def _score(job, path, folder, run):

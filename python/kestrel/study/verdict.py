@@ -3,11 +3,12 @@
 
 from __future__ import annotations
 
-from .comparison import Change, Comparison
+from .comparison import MEASURES, Change, Comparison
 from .reported_study import Study
 from .words import number, place, signed, title
 
 _NAMED_BINS = 4
+_MAIN = ("found", "landed", "rms_after_m", "residual_px")
 _TELLING = 1.25  # times the change of all images
 
 
@@ -39,19 +40,19 @@ def _doubt(comparison: Comparison) -> str:
 
 
 def _overview(comparison: Comparison) -> str:
-    """Found, or landed, over all; and of how many recordings."""
+    """The main values over all; and of how many recordings."""
     shown = [one for one in comparison.changes if one.column.quantity == "all"
-             and one.column.measure in ("found", "landed")]
+             and one.column.measure in _MAIN]
     parts = [_values(one, comparison) for one in shown]
     return ", ".join([*parts, f"{comparison.recordings} recordings"])
 
 
 def _values(one: Change, comparison: Comparison) -> str:
-    words = title(one.column)
+    words, unit = title(one.column), MEASURES[one.column.measure].unit
     if comparison.is_single:
-        return f"{words} {number(one.after, one.column.measure)} %"
+        return f"{words} {number(one.after, one.column.measure)} {unit}"
     return (f"{words} {number(one.before, one.column.measure)} -> "
-            f"{number(one.after, one.column.measure)} % "
+            f"{number(one.after, one.column.measure)} {unit} "
             f"({signed(one.difference, one.column.measure)}, 95 %: "
             f"{signed(one.low, one.column.measure)} to {signed(one.high, one.column.measure)})")
 
