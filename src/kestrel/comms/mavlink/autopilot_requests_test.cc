@@ -2,6 +2,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -38,6 +39,15 @@ mavlink::ParamValue ValueOf(const char* name, float value, std::uint8_t type) {
   message.param_value = value;
   message.param_type = type;
   return message;
+}
+
+TEST_F(AutopilotTest, AParameterHasTheValueThatWasTyped) {
+  for (const double typed : {0.3, 4.2, 0.05, 1e6, -12.5}) {
+    const auto value = ValueOf("GUID_TIMEOUT", static_cast<float>(typed), 9);
+    EXPECT_EQ(ParameterValue(AutopilotKind::kArduPilot, value), typed);
+  }
+  const auto nan = ValueOf("GUID_TIMEOUT", std::numeric_limits<float>::quiet_NaN(), 9);
+  EXPECT_TRUE(std::isnan(ParameterValue(AutopilotKind::kArduPilot, nan)));
 }
 
 TEST_F(AutopilotTest, ReadsAParameterByAllItsNames) {

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <charconv>
 #include <cmath>
+#include <iterator>
 
 #include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/comms/mavlink/parameter_names.h"
@@ -12,6 +14,16 @@ namespace kestrel {
 namespace {
 
 constexpr int kMaxParameterRequests = 5;
+
+// Returns the shortest decimal number that is 'value' as a float: 0.3, not 0.30000001192, which
+// is above a limit of 0.3.
+double AsTyped(float value) {
+  char text[32];
+  const std::to_chars_result end = std::to_chars(std::begin(text), std::end(text), value);
+  double typed = value;
+  std::from_chars(std::begin(text), end.ptr, typed);
+  return typed;
+}
 
 }  // namespace
 
@@ -32,7 +44,7 @@ double ParameterValue(AutopilotKind kind, const mavlink::ParamValue& message) {
   if (kind == AutopilotKind::kPx4 && message.param_type == mavlink::kParamUint32) {
     return std::bit_cast<std::uint32_t>(message.param_value);
   }
-  return message.param_value;
+  return AsTyped(message.param_value);
 }
 
 float ParameterOnWire(AutopilotKind kind, std::uint8_t type, double value) {

@@ -20,7 +20,8 @@ std::string_view TextOf(std::span<const char> field);
 void SetText(std::string_view text, std::span<char> field);
 
 // Convert a parameter's value from and to the wire: PX4 puts the bits of integers into the float.
-// 'type' is MAV_PARAM_TYPE.
+// 'type' is MAV_PARAM_TYPE. The value of a float is the shortest decimal number for it, as a user
+// typed it.
 double ParameterValue(AutopilotKind kind, const mavlink::ParamValue& message);
 float ParameterOnWire(AutopilotKind kind, std::uint8_t type, double value);
 

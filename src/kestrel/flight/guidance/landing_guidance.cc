@@ -472,8 +472,9 @@ GuidanceRequest LandingGuidance::RequestInContact(const GuidanceInput& input) co
   if (phase_ != GuidancePhase::kLanded) return GuidanceRequest::kNone;
   const bool has_waited = options_.disarm_after_s > 0 &&
                           IsLongerThan(options_.disarm_after_s, contact_since_, input.now);
-  const bool is_carried =
-      options_.disarm_carried_s > 0 && carried_.seconds() >= options_.disarm_carried_s;
+  // An autopilot that has found the ground disarms by itself.
+  const bool is_carried = options_.disarm_carried_s > 0 && !input.is_landed &&
+                          carried_.seconds() >= options_.disarm_carried_s;
   if (has_waited || is_carried) return GuidanceRequest::kDisarm;
   // LAND would brake on a moving deck, unless the autopilot has found that it has landed: until
   // then the set-points go on.
