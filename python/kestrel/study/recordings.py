@@ -110,7 +110,7 @@ def _cause(error):
     """Returns what a file system says of an error; each has errors of its own."""
     if not isinstance(error, FileNotFoundError):
         return one_line(error)
-    # By HTTP a server that does not answer is a missing file, too.
+    # A server of HTTP that does not answer looks like a missing file.
     return one_line(error.__cause__) if isinstance(error.__cause__, OSError) else "not there"
 
 

@@ -18,7 +18,7 @@ from .words import MINUS, bin_label, number, place, signed, title
 
 _WORST_FRAMES = 8  # of a kind
 _FAILURES = 50
-# What calibrations estimate: (name of the value, of its standard deviation, words).
+# Values that calibrations estimate: (name of the value, of its standard deviation, words).
 _CALIBRATED = (
     ("roll_deg", "roll_sigma_deg", "roll of the mount, degrees"),
     ("pitch_deg", "pitch_sigma_deg", "pitch of the mount, degrees"),

@@ -35,7 +35,8 @@ class GuidedFlight {
   // True while guidance flies the UAV and it has not landed.
   bool is_flying() const { return is_begun_ && phase() != GuidancePhase::kLanded; }
   GuidancePhase phase() const { return guidance_->phase(); }
-  // Of the nose over the pad, rad; nothing: any heading will do, or the pad's is not known.
+  // Angle of the nose off the wanted heading, rad; nothing: any heading will do, or the pad's is
+  // not known.
   const std::optional<double>& heading_error() const { return guidance_->heading_error(); }
   int set_points() const { return set_points_; }  // sent
   // Why guidance gave up; empty: it flies, the pilot has taken over since, or it has not begun.

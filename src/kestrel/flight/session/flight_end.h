@@ -28,7 +28,7 @@ struct FlightEnd {
   // Horizontal distance of the feet from the pattern's centre at touch-down, m; nothing: not known.
   std::optional<double> offset_m = {};
   std::string reason = {};  // why it is not known, or what failed
-  // Of the nose off guidance.touchdown_heading at touch-down, rad, counter-clockwise as seen from
+  // Angle of the nose off guidance.touchdown_heading at touch-down, rad, counter-clockwise from
   // above; nothing: any heading would do, or the pad's is not known.
   std::optional<double> heading_error = {};
 };

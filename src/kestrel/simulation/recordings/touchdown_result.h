@@ -38,7 +38,7 @@ struct TouchdownResult {
   double distance_m = 0;               // of the feet's middle from the pattern's, on the board
   double slip_mps = 0;                 // horizontal speed relative to the board
   double sink_mps = 0;                 // vertical speed relative to the board
-  // Of the nose, rad, counter-clockwise as seen from above, off the heading that was wanted over
+  // Angle of the nose, rad, counter-clockwise from above, off the heading that was wanted over
   // the pad; nothing: any heading would do.
   std::optional<double> heading_error;
   double wind_mps = 0;  // mean over the flight

@@ -251,7 +251,7 @@ bool TouchdownSimulation::HasEnded(double time_s, TouchdownResult* result) const
   return true;
 }
 
-// Of the nose over the pad, rad; nothing where any heading will do.
+// Returns the angle of the nose off the wanted heading, rad; nothing where any heading will do.
 std::optional<double> TouchdownSimulation::HeadingError(double time_s) const {
   const auto wanted = options_.guidance.HeadingOverPad();
   if (!wanted) return std::nullopt;
