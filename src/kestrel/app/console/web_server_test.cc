@@ -373,14 +373,14 @@ TEST_F(WebServerTest, AStalledBrowserCostsTheOthersNothing) {
   stalled.Send(R"({"images": true})");
   ASSERT_TRUE(Eventually([&] { return server.counters().clients == 2; }));
 
-  // More than the system's buffers hold.
-  const cv::Mat noise = NoiseImage(4000, 3000);
+  // Images and 4 MB of messages a second soon fill the buffers of the system.
+  const cv::Mat noise = NoiseImage(1600, 1200);
   std::jthread vision([&](const std::stop_token& stop) {
     while (!stop.stop_requested()) {
       ConsoleFrame frame = SomeFrame();
       frame.image = noise;
       feed_.SetFrame(&frame);
-      for (int i = 0; i < 50; ++i) feed_.Add(ConsoleStatus{std::string(2000, 's'), "", false});
+      for (int i = 0; i < 10; ++i) feed_.Add(ConsoleStatus{std::string(2000, 's'), "", false});
       std::this_thread::sleep_for(5ms);
     }
   });
