@@ -34,9 +34,9 @@ constexpr double kStep = 0.88;  // altitude of a frame, of that of the frame bef
 
 struct Sighting {
   double altitude_m = 0;
-  double nees = 0;             // of six degrees of freedom
-  Eigen::Vector3d error;       // of the position, in the pad's axes, m
-  Eigen::Matrix3d covariance;  // of it
+  double nees = 0;             // six degrees of freedom
+  Eigen::Vector3d error;       // error of the position, in the pad's axes, m
+  Eigen::Matrix3d covariance;  // its covariance, m^2
   std::uint32_t parts = 0;     // a bit for each
 };
 
@@ -202,10 +202,12 @@ int main(int argc, char** argv) {
   CLI::App app("Errors of a pad's pose in units of its covariance");
   kestrel::Settings settings;
   app.add_option("--target", settings.target.kind, "Kind of the pad (ring-cross)");
-  app.add_option("--board", settings.target.nested.board, "Of nested and ring-with-tags");
-  app.add_option("--descents", settings.descents, "How many, each with the next seed (10)")
+  app.add_option("--board", settings.target.nested.board,
+                 "Board of nested and ring-with-tags (built in)");
+  app.add_option("--descents", settings.descents,
+                 "Number of descents, each with the next seed (10)")
       ->check(CLI::Range(1, 100000));
-  app.add_option("--seed", settings.seed, "Of the first descent (1)");
+  app.add_option("--seed", settings.seed, "Seed of the first descent (1)");
   CLI11_PARSE(app, argc, argv);
   return kestrel::ReportMain([&] {
     kestrel::Run(settings);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "kestrel/core/base/time.h"
 #include "kestrel/core/poses/gravity.h"
 
 namespace kestrel {
