@@ -120,6 +120,69 @@ def test_a_hunt_has_rows(hunt_flight, tmp_path):
     assert sum(row["found"] for row in result["detections"]) >= whole["found"] > 0
 
 
+@pytest.fixture(scope="module")
+def field(tmp_path_factory):
+    """A flight over objects, some of which drive, and what was found in it."""
+    folder = tmp_path_factory.mktemp("field")
+    kestrel.simulate("sweep", hunt=True, frames=60, rate_hz=6).write(folder / "flight")
+    kestrel.Session(folder / "flight", hunt=True, output=str(folder / "output")).run()
+    return folder
+
+
+@pytest.fixture(scope="module")
+def unknown_field(field, tmp_path_factory):
+    flight = tmp_path_factory.mktemp("unknown") / "flight"
+    shutil.copytree(field / "flight", flight)
+    shutil.rmtree(flight / "mav0" / "objects0")
+    return flight
+
+
+def test_misses_of_a_hunt_are_estimated_without_truth(field, unknown_field):
+    truth, estimate = (scoring.score(str(flight), str(field / "output"), "hunt")
+                       for flight in (field / "flight", unknown_field))
+    (true,), (estimated,) = of(truth["bins"], "all"), of(estimate["bins"], "all")
+    assert truth["summary"]["has_truth"] == 1 and estimate["summary"]["has_truth"] == 0
+    assert true["found"] > 50
+    assert estimated["frames"] == pytest.approx(true["frames"], rel=0.1)
+    share = [row["found"] / row["frames"] for row in (true, estimated)]
+    assert share[1] == pytest.approx(share[0], abs=0.05)
+    assert estimated["false"] <= true["false"] + 2
+    assert estimate["summary"]["class_right"] > 0.9
+
+
+def test_rows_taken_from_a_hunt_are_missed(field, unknown_field, tmp_path):
+    whole = scoring.score(str(unknown_field), str(field / "output"), "hunt")["summary"]
+    lines = (field / "output" / "object_detections.csv").read_text().splitlines()
+    columns = lines[0].split(",")
+    red = [number for number, line in enumerate(lines)
+           if line.split(",")[columns.index("class")] == "red"]
+    assert len(red) > 10
+    for number in red:
+        values = lines[number].split(",")
+        lines[number] = ",".join([*values[:2], *[""] * (len(columns) - 2)])
+    (tmp_path / "object_detections.csv").write_text("\n".join(lines) + "\n")
+    without = scoring.score(str(unknown_field), str(tmp_path), "hunt")["summary"]
+    assert without["missed"] >= whole["missed"] + 0.7 * len(red)
+    assert without["missed_seen"] >= 0.9 * (without["missed"] - whole["missed"])
+
+
+def test_a_detection_where_nothing_is_has_no_object(field, unknown_field, tmp_path):
+    """One row is moved a metre aside, where other images see only the ground."""
+    lines = (field / "output" / "object_detections.csv").read_text().splitlines()
+    columns = lines[0].split(",")
+    number = next(n for n, line in enumerate(lines)
+                  if n > 100 and line.split(",")[columns.index("class")] == "red")
+    values = lines[number].split(",")
+    for name, off in (("u_px", 90), ("p_WO_W_x_m", 1.0)):
+        values[columns.index(name)] = str(float(values[columns.index(name)]) + off)
+    lines[number] = ",".join(values)
+    (tmp_path / "object_detections.csv").write_text("\n".join(lines) + "\n")
+    rows = scoring.score(str(unknown_field), str(tmp_path), "hunt")
+    before = scoring.score(str(unknown_field), str(field / "output"), "hunt")
+    assert of(rows["bins"], "all")[0]["false"] == of(before["bins"], "all")[0]["false"] + 1
+    assert rows["worst"][0]["what"] == "false"
+
+
 def test_a_flight_whose_images_are_not_kept_has_its_track(landing, tmp_path):
     shutil.copy(landing / "output" / "landing_detections.csv", tmp_path)
     result = scoring.score(str(tmp_path), str(tmp_path), "fly")

@@ -14,13 +14,14 @@ from distributed.utils import get_ip
 from .errors import StudyError, one_line
 
 _PATIENCE_S = 600  # for a scheduler that is started anew
-# Memory of the scheduler is bounded: it keeps a history of this length. A worker's death costs the
-# units that were on it one try. No worker takes over what is to be done elsewhere than on it.
+# Memory of the scheduler is bounded: it keeps a history of this length, and no profile of itself. A
+# worker's death costs the units that were on it one try. No worker takes over what is to be done elsewhere than on it.
 _CONFIG = {"distributed.scheduler.transition-log-length": 1000,
            "distributed.scheduler.events-log-length": 1000,
            "distributed.scheduler.allowed-failures": 1,
            "distributed.scheduler.work-stealing": False,
            "distributed.worker.memory.spill": False,
+           "distributed.worker.profile.enabled": False,
            "distributed.logging.distributed": "critical"}
 
 

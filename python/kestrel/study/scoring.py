@@ -12,28 +12,31 @@ import numpy as np
 
 import kestrel
 
-from . import truthless
+from . import truthless, truthless_hunt
 from .frame_score import FrameScore, Row, bins, detections, worst
+from .recorded_poses import RecordedPoses, places
 
 _LANDING = "landing_detections.csv"
 _HUNT = "object_detections.csv"
 _LIGHT_SAMPLES = 20  # images of a recording whose light is measured
 
 
-def score(recording: str, output: str, task: str, config: str | None = None) -> dict[str, Any]:
+def score(recording: str, output: str, task: str, config: str | None = None,
+          model: str | None = None) -> dict[str, Any]:
     """Scores what a command wrote for a recording.
 
     recording: its path; of a closed loop its output. output: folder of the tables. task: 'land',
     'hunt', 'touchdown' or 'fly'. config: file of all options of the run, as `kestrel config` prints
-    them, which says what the pad is. Where the recording has truth, it is the measure; else the
-    search of `truthless` is.
+    them, which says what the pad is. model: file of the objects of a hunt; None: the built-in ones.
+    Where the recording has truth, it is the measure; else the search of `truthless` or
+    `truthless_hunt` is.
     Returns {"frames", "bins", "summary", "worst", "detections", "resource"}; the rows have the
     columns of the study's tables, without the key. Raises kestrel.InputError where a table is
     missing or not valid.
     """
     table = Path(output) / (_HUNT if task == "hunt" else _LANDING)
     rows = [] if task == "fly" and not table.exists() else read_table(table)
-    scores, summary = _judge(recording, output, task, rows, config)
+    scores, summary = _judge(recording, output, task, rows, config, model)
     times = {row["timestamp_ns"] for row in rows}
     summary["images"] = float(len(times))
     if task != "hunt" and rows:
@@ -43,9 +46,11 @@ def score(recording: str, output: str, task: str, config: str | None = None) -> 
 
 
 def _judge(recording: str, output: str, task: str, rows: list[Row],
-           config: str | None) -> tuple[list[FrameScore], Row]:
+           config: str | None, model: str | None) -> tuple[list[FrameScore], Row]:
     if task == "hunt":
-        return _hunt(recording, output, rows)
+        if _has_truth(recording, "objects0"):
+            return _hunt(recording, output, rows)
+        return truthless_hunt.judge(recording, rows, config, model)
     if _has_truth(recording, "landing_pattern0"):
         return _landing(recording, output, rows)
     if task == "fly":  # its images are not kept
@@ -157,11 +162,9 @@ def _landing_summary(compared: list[Any]) -> dict[str, float | None]:
 
 
 def _hunt(recording: str, output: str, rows: list[Row]) -> tuple[list[FrameScore], Row]:
-    if not _has_truth(recording, "objects0"):
-        return [], {"has_truth": 0.0, "detections": sum(bool(row["class"]) for row in rows)}
     light = _light(recording, rows)
     frames = {int(row["timestamp_ns"]): row["frame"] for row in rows}
-    poses = _poses(recording)
+    poses = RecordedPoses(kestrel.open_recording(recording))
     compared = kestrel.compare_hunt(recording, output)
     scores = []
     for one in compared:
@@ -170,28 +173,10 @@ def _hunt(recording: str, output: str, rows: list[Row]) -> tuple[list[FrameScore
             one.time_ns, frames[one.time_ns], one.is_wanted, detected and one.true_id is not None,
             detected and one.true_id is None, one.world_error_m, None,
             one.class_probability if detected else None,
-            _hunt_places(poses.lookup(one.time_ns), light.get(one.time_ns))))
+            places(poses.at(one.time_ns)[0], light.get(one.time_ns))))
     wanted = [one for one in compared if one.is_wanted]
     found = [one for one in compared if one.detected_class and one.true_id is not None]
     right = sum(one.detected_class == one.true_class for one in found)
     return scores, {"has_truth": 1.0, "in_view": len(wanted),
                     "missed": sum(not one.detected_class for one in wanted),
                     "class_right": right / len(found) if found else None}
-
-
-def _poses(recording: str) -> kestrel.PoseHistory:
-    samples = kestrel.open_recording(recording).poses()
-    history = kestrel.PoseHistory(capacity=max(1, len(samples)))
-    for sample in samples:
-        history.add(sample)
-    return history
-
-
-def _hunt_places(pose: Any, light: float | None) -> dict[str, float]:
-    """Height above the world's z = 0, and tilt, as the navigation has them."""
-    places = {} if light is None else {"light": light}
-    if pose is not None:
-        places["altitude_m"] = float(max(0, pose.translation[2]))
-        up = float(np.clip(pose.rotation[2, 2], -1, 1))
-        places["tilt_deg"] = math.degrees(math.acos(up))
-    return places

@@ -175,9 +175,10 @@ def _misses(study: Study) -> list[Section]:
         return []
     return [Section(
         "Misses in recordings without truth", "Estimated: images in which the trajectory, smoothed "
-        "from both directions of time, has the pad in view, and it was not found. 'Seen by the "
-        "search' are surely missed. What neither run nor search ever saw of a flight is not in it.",
-        [Table("misses", ["configuration", "recordings", "images", "pad in view", "missed",
+        "from both directions of time, has the pad in view (of a hunt: the places of all "
+        "detections have an object), and it was not found. 'Seen by the search' are surely "
+        "missed. What neither run nor search ever saw of a flight is not in it.",
+        [Table("misses", ["configuration", "recordings", "images", "in view", "missed",
                           "seen by the search", "missed, % with 95 % interval", "not judged"],
                rows)])]
 

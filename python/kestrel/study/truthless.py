@@ -12,7 +12,6 @@ so a miss of both run and search is counted, too.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +19,7 @@ from numpy.typing import NDArray
 import kestrel
 
 from .frame_score import FrameScore, Row
+from .recorded_poses import RecordedPoses, navigation_variance, tilt_deg
 from .trajectory import Trajectory, smooth
 
 Array = NDArray[np.float64]
@@ -28,8 +28,6 @@ Array = NDArray[np.float64]
 _SEARCH = {"min_ring_px": 6.0, "min_quality": 0.7, "max_search_ms": 0.0}
 _MIN_VISIBLE = 0.25  # as `kestrel evaluate`
 _MAX_SIGMA_M = 0.5  # of a trajectory that says whether the pad is in view
-_POSE_SIGMA_M = 0.03  # of the navigation from image to image, and per metre of distance:
-_POSE_SIGMA_RAD = 0.005
 _NEIGHBOR_S = 0.5  # between detections that are neighbours
 _JUMP_M = 0.5
 _DISC = np.array([[r * np.cos(a), r * np.sin(a), 0.0]  # of radius 1
@@ -91,7 +89,7 @@ def judge(recording: str, rows: list[Row],
 def _search(source: kestrel.Recording, detector: kestrel.TargetDetector,
             rows: list[Row]) -> list[_Image]:
     by_time = {int(row["timestamp_ns"]): row for row in rows}
-    body_poses = _Poses(source)
+    body_poses = RecordedPoses(source)
     images = []
     for frame in source:
         row = by_time.get(frame.time_ns)
@@ -100,26 +98,10 @@ def _search(source: kestrel.Recording, detector: kestrel.TargetDetector,
         body, camera = body_poses.at(frame.time_ns)
         report = detector.detect(frame.image, _level_hint(camera))
         images.append(_Image(frame.time_ns, frame.name, float(frame.image.mean()), camera,
-                             _tilt_deg(body), _live(row),
+                             tilt_deg(body), _live(row),
                              float(row["quality"]) if row["quality"] else None,
                              _seen(report.detection)))
     return images
-
-
-class _Poses:
-    """Poses of body and camera at times of images."""
-
-    def __init__(self, source: kestrel.Recording) -> None:
-        samples = source.poses()
-        self._history = kestrel.PoseHistory(capacity=max(1, len(samples)))
-        for sample in samples:
-            self._history.add(sample)
-        self._mount = source.calibration.body_from_camera
-        self._offset_ns = round(1e9 * (source.calibration.clock_offset_s or 0))
-
-    def at(self, time_ns: int) -> tuple[Any, Any]:
-        body = self._history.lookup(time_ns + self._offset_ns) if len(self._history) else None
-        return body, body @ self._mount if body is not None and self._mount is not None else None
 
 
 def _level_hint(camera: kestrel.RigidTransform | None) -> kestrel.LandingHint:
@@ -127,12 +109,6 @@ def _level_hint(camera: kestrel.RigidTransform | None) -> kestrel.LandingHint:
     if camera is None:
         return kestrel.LandingHint()
     return kestrel.LandingHint(up_in_camera=camera.rotation[2])
-
-
-def _tilt_deg(body: kestrel.RigidTransform | None) -> float | None:
-    if body is None:
-        return None
-    return float(np.degrees(np.arccos(np.clip(body.rotation[2, 2], -1, 1))))
 
 
 def _seen(detection: kestrel.LandingDetection | None) -> _Seen | None:
@@ -161,7 +137,7 @@ def _trajectory(images: list[_Image], in_world: bool) -> Trajectory:
             continue
         distance = float(np.linalg.norm(seen.center))
         measured[k] = camera @ seen.center if in_world and camera is not None else seen.center
-        variance[k] = seen.sigma_m**2 + _POSE_SIGMA_M**2 + (_POSE_SIGMA_RAD * distance)**2
+        variance[k] = seen.sigma_m**2 + navigation_variance(distance)
     times_s = 1e-9 * np.array([image.time_ns - images[0].time_ns for image in images])
     return smooth(times_s, measured, variance)
 

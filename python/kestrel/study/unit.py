@@ -183,7 +183,8 @@ def _score(job, path, folder, run):
     if job.piece:
         _cut_lead_in(output, job.piece.first_ns)
     # The recording of a closed loop is its output.
-    question = str(path or output), str(output), label, str(folder / _CONFIG)
+    model = _argument(job.settings["arguments"], "--model")
+    question = str(path or output), str(output), label, str(folder / _CONFIG), model
     # A flight may take its whole time: its scoring begins anew.
     spent_s = 0 if run.timed_out else run.seconds
     result = scorer().score(question, spent_s, job.settings["limits"])
@@ -192,6 +193,16 @@ def _score(job, path, folder, run):
     if label in monte_carlo.KINDS:
         result["summary"].update(monte_carlo.outcome(label, output, run.log))
     return result
+
+
+def _argument(words, name):
+    """Returns the value of an option of a command line, or None."""
+    for word, following in zip(words, [*words[1:], None]):
+        if word == name:
+            return following
+        if word.startswith(f"{name}="):
+            return word.partition("=")[2]
+    return None
 
 
 def _cut_lead_in(output, first_ns):

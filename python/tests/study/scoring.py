@@ -22,7 +22,7 @@ def misbehave(recording):
     print("a library prints this")
 
 
-def score(recording, output, task, config=None):
+def score(recording, output, task, config=None, model=None):
     misbehave(recording)
     processed = (Path(recording) / "mav0/cam0/data.csv").read_text().count("png")
     with open(Path(output) / "landing_detections.csv", newline="") as file:
