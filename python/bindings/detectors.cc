@@ -111,13 +111,14 @@ using FinderClass = py::class_<Finder, Detector, std::shared_ptr<Finder>>;
 
 // Returns a board from the path of its file, or from a list of dicts as its tags.
 TagBoard BoardOf(const py::object& board) {
+  const TagTargetOptions defaults;
   if (const auto path = PathOf(board)) {
-    return ParseTagBoard(ReadFile(*path), *path, TagTargetOptions().family);
+    return ParseTagBoard(ReadFile(*path), *path, defaults.family, defaults.size_m);
   }
   // A dict is YAML, too.
   const std::string text =
       "tags: " + py::module_::import("json").attr("dumps")(board).cast<std::string>();
-  return ParseTagBoard(text, "board", TagTargetOptions().family);
+  return ParseTagBoard(text, "board", defaults.family, defaults.size_m);
 }
 
 void BindBase(py::module_& module) {

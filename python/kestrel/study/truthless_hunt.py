@@ -371,7 +371,7 @@ def _scores(images: list[_Image], objects: list[_Object],
         for k, seen in enumerate(image.live):
             if k in matched.values():
                 continue
-            if _is_judged(seen, image, doubtful):
+            if _is_false(seen, image, doubtful):
                 scores.append(FrameScore(image.time_ns, image.name, false=True,
                                          quality=seen.probability, where=dict(image.where)))
             else:
@@ -409,7 +409,7 @@ def _take(seen: _Seen, position: Array, score: FrameScore) -> None:
         score.error_m = float(np.linalg.norm(seen.place - position))
 
 
-def _is_judged(seen: _Seen, image: _Image, doubtful: set[int]) -> bool:
+def _is_false(seen: _Seen, image: _Image, doubtful: set[int]) -> bool:
     """Returns whether a detection of no known object is of a place that had nothing when it was in
     view again."""
     same = [seen, *(other for other in image.searched if seen.is_at(other))]

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/core/base/yaml_reader.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -23,6 +24,13 @@ YAML::Node Load(const std::string& text, const std::string& file) {
 }
 
 }  // namespace
+
+std::string WithoutYamlDirective(std::string_view text) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  if (text.starts_with("%YAML")) text.remove_prefix(std::min(text.find('\n'), text.size()));
+  return std::string(text);
+}
 
 YamlReader::YamlReader(const std::string& text, const std::string& file)
     : YamlReader(Load(text, file), file, "") {}

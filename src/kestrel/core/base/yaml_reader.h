@@ -6,6 +6,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace YAML {
@@ -13,6 +14,11 @@ class Node;
 }
 
 namespace kestrel {
+
+// Returns a text without the "%YAML:1.0" that OpenCV starts its files with, which is not the
+// directive that YAML defines, and without a byte order mark. An empty line replaces it, so that
+// the line numbers of messages stay right.
+std::string WithoutYamlDirective(std::string_view text);
 
 // A value of a YAML (or JSON) text, for files that are not options. Every error is an InputError
 // that names file, line and key.

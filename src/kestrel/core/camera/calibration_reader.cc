@@ -20,6 +20,7 @@
 #include "kestrel/core/base/parse_number.h"
 #include "kestrel/core/base/read_file.h"
 #include "kestrel/core/base/shown.h"
+#include "kestrel/core/base/yaml_reader.h"
 
 namespace kestrel {
 namespace {
@@ -376,15 +377,6 @@ CameraCalibration ReadRoot(const Entry& root, const std::string& camera) {
       "one of them");
 }
 
-// OpenCV starts its files with "%YAML:1.0", which is not the directive that YAML defines. An empty
-// line replaces it, so that the line numbers of messages stay right.
-std::string WithoutDirective(std::string_view text) {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-  if (text.starts_with("%YAML")) text.remove_prefix(std::min(text.find('\n'), text.size()));
-  return std::string(text);
-}
-
 void RequireSmall(std::string_view text, const std::string& file) {
   if (text.size() <= kMaxBytes) return;
   throw InputError(
@@ -403,7 +395,7 @@ CameraCalibration ParseCalibration(std::string_view text, const std::string& fil
   RequireSmall(text, file);
   CameraCalibration calibration;
   try {
-    calibration = ReadRoot(Entry(&file, YAML::Load(WithoutDirective(text)), ""), camera);
+    calibration = ReadRoot(Entry(&file, YAML::Load(WithoutYamlDirective(text)), ""), camera);
   } catch (const YAML::Exception& error) {
     throw InputError(fmt::format("{}:{}: the file is not YAML or is truncated: {}", file,
                                  error.mark.line + 1, Shown(error.msg)));

@@ -35,7 +35,6 @@ void AddEdge(int column, int row, std::pair<int, int> step, TagModel* tag) {
 }
 
 TagModel MakeTag(const BoardTag& tag, const PrintedTag& printed) {
-  const TagFamily family(tag.family);
   TagModel model;
   model.id = tag.id;
   model.size_m = tag.size_m;
@@ -43,8 +42,7 @@ TagModel MakeTag(const BoardTag& tag, const PrintedTag& printed) {
   model.board_from_tag = tag.board_from_tag;
   const TagGrid& grid = model.grid();
   const int margin = grid.margin();
-  const TagGrid plain = family.Grid(tag.id);
-  model.dark_inside = (plain.at(margin, margin) == TagCell::kBlack) != tag.inverted;
+  model.dark_inside = tag.Grid().at(margin, margin) == TagCell::kBlack;
   for (int row = 0; row < grid.width; ++row) {
     for (int column = 0; column < grid.width; ++column) {
       model.cell_centers.push_back(printed.OnBoard(column + 0.5, row + 0.5));
@@ -59,7 +57,7 @@ TagModel MakeTag(const BoardTag& tag, const PrintedTag& printed) {
   for (std::size_t i = 0; i < grid.cells.size(); ++i) {
     bits += model.is_data[i] && grid.cells[i] != TagCell::kNone;
   }
-  model.most_wrong = std::min((family.min_distance() - 1) / 2, bits / kBitsPerWrong);
+  model.most_wrong = std::min((tag.MinDistance() - 1) / 2, bits / kBitsPerWrong);
   return model;
 }
 

@@ -117,8 +117,9 @@ OtherTags::OtherTags(const TagBoard& board) {
   const std::vector<PrintedTag> printed = board.Printed();
   for (std::size_t i = 0; i < printed.size(); ++i) {
     const BoardTag& tag = board.tags[i];
-    const TagFamily family(tag.family);
     std::vector<TagGrid>& grids = grids_.emplace_back();
+    if (!tag.IsOfFamily()) continue;
+    const TagFamily family(tag.family);
     for (int id = 0; id < family.id_count(); ++id) {
       const bool own = std::any_of(
           board.tags.begin(), board.tags.end(),

@@ -14,6 +14,7 @@
 #include "kestrel/core/base/violations.h"
 #include "kestrel/core/base/yaml_reader.h"
 #include "kestrel/core/geometry/angles.h"
+#include "kestrel/vision/tags/fractal_marker.h"
 
 namespace kestrel {
 namespace {
@@ -79,7 +80,7 @@ std::string NameOf(const BoardTag& tag) { return fmt::format("{} id {}", tag.fam
 
 PrintedTag Print(const BoardTag& tag) {
   PrintedTag printed;
-  printed.grid = TagFamily(tag.family).Grid(tag.id, tag.inverted);
+  printed.grid = tag.Grid();
   printed.cell_m = tag.size_m / printed.grid.border_width;
   printed.center = tag.board_from_tag.translation.head<2>();
   printed.heading = HeadingOf(tag.board_from_tag.rotation);
@@ -89,7 +90,7 @@ PrintedTag Print(const BoardTag& tag) {
 void AddTagViolations(const BoardTag& tag, std::vector<std::string>* violations) {
   const std::string name = NameOf(tag);
   try {
-    TagFamily(tag.family).Grid(tag.id);
+    tag.Grid();
   } catch (const InputError& error) {
     violations->emplace_back(error.what());
   }
@@ -167,6 +168,12 @@ BoardTag ReadBundleTag(const YamlReader& item, const std::string& family) {
 
 }  // namespace
 
+TagGrid BoardTag::Grid() const { return IsOfFamily() ? TagFamily(family).Grid(id, inverted) : own; }
+
+int BoardTag::MinDistance() const {
+  return IsOfFamily() ? TagFamily(family).min_distance() : TurnDistance(own);
+}
+
 Eigen::Vector2d PrintedTag::OnBoard(double column, double row) const {
   const double x = cell_m * (column - 0.5 * grid.width);
   const double y = cell_m * (0.5 * grid.width - row);
@@ -204,8 +211,9 @@ std::vector<PrintedTag> TagBoard::Printed() const {
   return covered;
 }
 
-TagBoard ParseTagBoard(const std::string& yaml, const std::string& file,
-                       const std::string& family) {
+TagBoard ParseTagBoard(const std::string& yaml, const std::string& file, const std::string& family,
+                       double size_m) {
+  if (IsFractalMarker(yaml)) return ParseFractalMarker(yaml, file, size_m);
   const YamlReader root(yaml, file);
   TagBoard board;
   if (root.Has("tag_bundles")) {
@@ -226,7 +234,7 @@ TagBoard ParseTagBoard(const std::string& yaml, const std::string& file,
 }
 
 TagBoard TagTargetOptions::Board() const {
-  if (!board.empty()) return ParseTagBoard(ReadFile(board), board, family);
+  if (!board.empty()) return ParseTagBoard(ReadFile(board), board, family, size_m);
   BoardTag tag;
   tag.family = family;
   tag.id = id;

@@ -13,13 +13,21 @@ namespace kestrel {
 
 // A tag on a board.
 struct BoardTag {
-  std::string family = "tag36h11";
+  std::string family = "tag36h11";  // a name alone where 'own' has cells
   int id = 0;
+  TagGrid own{};          // cells of a tag that is of no family
   double size_m = 0.5;    // side of the square where its black and white borders meet
   bool inverted = false;  // black and white exchanged
   bool over = false;      // printed over larger tags, which do without the cells that it covers
   // Its frame (TagFamily) on the board, whose z = 0 it lies in.
   RigidTransform board_from_tag;
+
+  bool IsOfFamily() const { return own.cells.empty(); }
+  // Returns its cells. Throws InputError for a family or an id that is not known.
+  TagGrid Grid() const;
+  // It, however turned, differs from other tags of its family (of none: from itself, turned) in at
+  // least so many cells.
+  int MinDistance() const;
 };
 
 // A tag as it is printed, in the plane of the board.
@@ -55,9 +63,12 @@ struct TagBoard {
 //     - {id: 7, size_m: 0.1, x_m: 0.4, y_m: -0.1, yaw_deg: 90, inverted: true, over: true}
 //
 // or the bundle of an apriltag_ros (ROS 1) file of tags: tag_bundles with one item, whose layout
-// has id, size, x, y, z, qw, qx, qy, qz. 'family': of tags that name none. Throws InputError that
-// names 'file', line and key. The board may be invalid.
-TagBoard ParseTagBoard(const std::string& yaml, const std::string& file, const std::string& family);
+// has id, size, x, y, z, qw, qx, qy, qz; or a fractal marker of the library ArUco
+// (ParseFractalMarker). 'family': of tags that name none. 'size_m': side of a fractal marker whose
+// file does not give it in metres. Throws InputError that names 'file', line and key. The board may
+// be invalid.
+TagBoard ParseTagBoard(const std::string& yaml, const std::string& file, const std::string& family,
+                       double size_m);
 
 // One tag, or a board from a file, as a target.
 struct TagTargetOptions {
@@ -76,7 +87,7 @@ struct TagTargetOptions {
     visitor(
         "board", self.board, "",
         "YAML file of a board of several tags, or apriltag_ros' file of a bundle, instead of id "
-        "and size");
+        "and size; or ArUco's file of a fractal marker, of this size");
   }
   // Includes the violations of the board; a file that cannot be read is one, too.
   std::vector<std::string> Validate() const;

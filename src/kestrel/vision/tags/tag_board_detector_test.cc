@@ -17,6 +17,7 @@
 #include "kestrel/core/base/random.h"
 #include "kestrel/core/camera/paper_camera.h"
 #include "kestrel/core/geometry/angles.h"
+#include "kestrel/vision/tags/test_fractal_marker.h"
 #include "kestrel/vision/tags/test_tag_images.h"
 
 namespace kestrel {
@@ -116,6 +117,36 @@ INSTANTIATE_TEST_SUITE_P(Families, FamilyTest,
                                          FamilyCase{"aruco_4x4_50", 7, 7},
                                          FamilyCase{"aruco_6x6_250", 23, 5}),
                          [](const auto& test) { return std::string(test.param.family); });
+
+TEST_F(TagBoardDetectorTest, AFractalMarkerIsFoundFromFarToWhereItsInnerMarkerAloneIsInView) {
+  Use(ParseTagBoard(FractalMarkerText(), "fractal.yml", "", 0.6));
+  Random random(17);
+  for (double height = 5; height > 0.12; height *= 0.8) {
+    const RigidTransform pose = RandomBoardBelow(height, 0.1, 0.1, &random);
+    const LandingReport report = Detect(Image(pose, random.Bits()));
+    ASSERT_TRUE(report.detection) << height;
+    EXPECT_LT(ErrorOf(*report.detection, pose).place, 0.03) << height;
+    EXPECT_EQ(report.detection->heading_symmetry, 1);
+  }
+}
+
+TEST_F(TagBoardDetectorTest, AnotherFractalMarkerIsNotTaken) {
+  const TagBoard other = ParseTagBoard(FractalMarkerText(), "fractal.yml", "", 0.6);
+  std::string text = FractalMarkerText();
+  for (std::size_t at = text.find("bits:"); at < text.find("corners:"); ++at) {
+    if (text[at] == '0' || text[at] == '1') text[at] = text[at] == '0' ? '1' : '0';
+  }
+  TagBoard board = ParseTagBoard(text, "fractal.yml", "", 0.6);
+  board.tags.resize(1);  // both have the same inner marker
+  Use(board);
+  board_ = other;
+  Random random(18);
+  for (double height = 4; height > 0.5; height *= 0.8) {
+    EXPECT_FALSE(
+        Detect(Image(RandomBoardBelow(height, 0.1, 0.1, &random), random.Bits())).detection)
+        << height;
+  }
+}
 
 TEST_F(TagBoardDetectorTest, ErrorsAreWhatTheCovarianceSays) {
   Use({{OneTag("tag36h11", 7, 0.5)}});

@@ -46,7 +46,7 @@ TEST(TagBoardTest, ReadsItsOwnYaml) {
       "  - {id: 3, size_m: 0.5}\n"
       "  - {family: aruco_4x4_50, id: 7, size_m: 0.1, x_m: 0.5, y_m: -0.1, yaw_deg: 90, "
       "inverted: true, over: true}\n",
-      "board.yaml", "tag36h11");
+      "board.yaml", "tag36h11", 0.5);
   ASSERT_EQ(board.tags.size(), 2u);
   EXPECT_EQ(board.tags[0].family, "tag36h11");
   EXPECT_EQ(board.tags[1].family, "aruco_4x4_50");
@@ -68,19 +68,19 @@ TEST(TagBoardTest, ReadsABundleOfApriltagRos) {
       "      {id: 10, size: 0.05, x: 0, y: 0, z: 0, qw: 1, qx: 0, qy: 0, qz: 0},\n"
       "      {id: 1, size: 0.2, x: -0.3, y: 0.1, z: 0, qw: 0, qx: 0, qy: 0, qz: 1}]}\n"
       "  ]\n";
-  const TagBoard board = ParseTagBoard(yaml, "tags.yaml", "tag36h11");
+  const TagBoard board = ParseTagBoard(yaml, "tags.yaml", "tag36h11", 0.5);
   EXPECT_THAT(board.Validate(), IsEmpty());
   ASSERT_EQ(board.tags.size(), 2u);
   EXPECT_EQ(board.tags[1].id, 1);
   EXPECT_EQ(board.tags[1].size_m, 0.2);
   EXPECT_TRUE(board.tags[1].board_from_tag.translation.isApprox(Eigen::Vector3d(-0.3, 0.1, 0)));
   EXPECT_NEAR(std::abs(HeadingOf(board.tags[1].board_from_tag.rotation)), kPi, 1e-12);
-  EXPECT_THAT([] { ParseTagBoard("tag_bundles: []\n", "tags.yaml", "tag36h11"); },
+  EXPECT_THAT([] { ParseTagBoard("tag_bundles: []\n", "tags.yaml", "tag36h11", 0.5); },
               ThrowsMessage<InputError>(HasSubstr("has 0 bundles, expected one")));
 }
 
 TEST(TagBoardTest, ErrorsOfAFileNameTheKey) {
-  EXPECT_THAT([] { ParseTagBoard("tags:\n  - {id: 3, size: 0.5}\n", "b.yaml", "tag36h11"); },
+  EXPECT_THAT([] { ParseTagBoard("tags:\n  - {id: 3, size: 0.5}\n", "b.yaml", "tag36h11", 0.5); },
               ThrowsMessage<InputError>(HasSubstr("unknown key 'size'")));
   TagTargetOptions options;
   options.board = "/nowhere/board.yaml";

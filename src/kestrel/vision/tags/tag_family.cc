@@ -65,6 +65,16 @@ void Invert(TagGrid* grid) {
   }
 }
 
+TagGrid Turned(const TagGrid& grid) {
+  TagGrid turned = grid;
+  for (int row = 0; row < grid.width; ++row) {
+    for (int column = 0; column < grid.width; ++column) {
+      turned.cells[row * grid.width + column] = grid.at(row, grid.width - 1 - column);
+    }
+  }
+  return turned;
+}
+
 const std::string& NearestFamily(std::string_view name) {
   const std::vector<std::string>& names = TagFamily::Names();
   return *std::min_element(names.begin(), names.end(),
@@ -74,6 +84,31 @@ const std::string& NearestFamily(std::string_view name) {
 }
 
 }  // namespace
+
+TagGrid SquareTag(int side, const std::vector<bool>& bits) {
+  const int width = side + 4;
+  TagGrid grid{width, side + 2, std::vector<TagCell>(width * width, TagCell::kNone)};
+  PaintSquare(grid.border_width, TagCell::kBlack, &grid);
+  PaintSquare(width, TagCell::kWhite, &grid);
+  for (int i = 0; i < side * side; ++i) {
+    grid.cells[(i / side + 2) * width + i % side + 2] = bits[i] ? TagCell::kWhite : TagCell::kBlack;
+  }
+  return grid;
+}
+
+int TurnDistance(const TagGrid& grid) {
+  int least = static_cast<int>(grid.cells.size());
+  TagGrid turned = grid;
+  for (int turn = 1; turn < 4; ++turn) {
+    turned = Turned(turned);
+    int differing = 0;
+    for (std::size_t i = 0; i < grid.cells.size(); ++i) {
+      differing += grid.cells[i] != turned.cells[i];
+    }
+    least = std::min(least, differing);
+  }
+  return least;
+}
 
 const std::vector<std::string>& TagFamily::Names() {
   static const std::vector<std::string> names = [] {

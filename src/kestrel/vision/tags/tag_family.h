@@ -22,6 +22,13 @@ struct TagGrid {
   int margin() const { return (width - border_width) / 2; }
 };
 
+// Returns a tag in ArUco's layout: side x side bits (true is white), row by row from the upper
+// left, in a black border of one cell and the white margin.
+TagGrid SquareTag(int side, const std::vector<bool>& bits);
+
+// Returns in how many cells a tag differs from itself, turned to where it is most alike.
+int TurnDistance(const TagGrid& grid);
+
 // A family of tags: the AprilTag families of libapriltag by its names ("tag36h11",
 // "tagStandard41h12", "tagCircle21h7", ...) and the ArUco dictionaries of OpenCV ("aruco_4x4_50",
 // ... "aruco_original"). A tag has the margin of one white cell that its finders need, ArUco too.

@@ -60,7 +60,9 @@ TagTargetOptions Apriltag(const TargetOptions& target) {
   return WithId(target.apriltag, target.id);
 }
 TagTargetOptions Aruco(const TargetOptions& target) { return WithId(target.aruco, target.id); }
-TagTargetOptions Nested(const TargetOptions& target) { return {.board = target.nested.board}; }
+TagTargetOptions Nested(const TargetOptions& target) {
+  return {.size_m = target.nested.size_m, .board = target.nested.board};
+}
 
 using TagsOf = TagTargetOptions (*)(const TargetOptions&);
 

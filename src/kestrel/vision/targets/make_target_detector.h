@@ -19,13 +19,16 @@ namespace kestrel {
 
 // A board of tags of any families, as a target.
 struct NestedTargetOptions {
-  std::string board;  // path of its file: ParseTagBoard
+  std::string board;    // path of its file: ParseTagBoard
+  double size_m = 0.5;  // of a fractal marker
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("board", self.board, "",
             "YAML file of a board of tags of any families and sizes, inside each other or beside "
-            "each other");
+            "each other, or ArUco's file of a fractal marker");
+    visitor("size_m", self.size_m, "m",
+            "side of a fractal marker's largest square, unless its file has metres");
   }
 };
 
