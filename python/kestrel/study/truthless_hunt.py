@@ -38,6 +38,7 @@ _MIN_SEEN_SHARE = 0.2  # of the images that have it in view
 _MAX_SIGMA_M = 0.15  # of a place that is known
 _MIN_AREA_PX = 50  # of an object that should be found, and
 _MIN_REACH_PX = 5.0  # distance of a detection of it: as `kestrel evaluate`
+_BESIDE_PX = 100.0  # beyond the border: the centre of an object that is half in view
 _CIRCLE = np.array([[np.cos(a), np.sin(a), 0.0] for a in np.arange(0, 2 * np.pi, np.pi / 12)])
 
 
@@ -290,12 +291,24 @@ def _project_all(camera: kestrel.CameraModel, images: list[_Image],
         _measure(one, camera)
     result = []
     for image in images:
-        projections = [projection for one in objects
-                       if (projection := _project(one, image, camera)) is not None]
+        projections = [_project(one, image, camera) for one in _near(objects, image, camera)]
         for projection in projections:
             projection.object.in_view += projection.is_wanted
         result.append(projections)
     return result
+
+
+def _near(objects: list[_Object], image: _Image, camera: kestrel.CameraModel) -> list[_Object]:
+    """Returns the objects that are in an image, or beside it, as far as their places are known."""
+    known = [one for one in objects if one.sigma_m[image.index] <= max(_MAX_SIGMA_M, one.radius_m)]
+    if not known:
+        return []
+    centers = np.array([one.position[image.index] for one in known])
+    pixels = camera.project(image.world_from_camera.inverse() @ centers)
+    size = np.array([camera.intrinsics.width_px, camera.intrinsics.height_px])
+    with np.errstate(invalid="ignore"):  # what the lens does not show is NaN
+        inside = ((pixels > -_BESIDE_PX) & (pixels < size + _BESIDE_PX)).all(axis=1)
+    return [one for one, is_near in zip(known, inside) if is_near]
 
 
 def _locate(one: _Object, images: list[_Image]) -> None:
@@ -327,21 +340,16 @@ def _measure(one: _Object, camera: kestrel.CameraModel) -> None:
         one.radius_m = float(np.median(radii))
 
 
-def _project(one: _Object, image: _Image, camera: kestrel.CameraModel) -> _Projection | None:
-    position, sigma = one.position[image.index], float(one.sigma_m[image.index])
-    if sigma > max(_MAX_SIGMA_M, one.radius_m):
-        return None
-    camera_from_world = image.world_from_camera.inverse()
-    pixels = camera.project(camera_from_world @ (position + one.radius_m * _CIRCLE))
-    center = camera.project((camera_from_world @ position)[None])[0]
-    if not np.isfinite(center).all():
-        return None
+def _project(one: _Object, image: _Image, camera: kestrel.CameraModel) -> _Projection:
+    outline = one.position[image.index] + one.radius_m * np.vstack([np.zeros(3), _CIRCLE])
+    center, *circle = camera.project(image.world_from_camera.inverse() @ outline)
+    pixels = np.array(circle)
     size = np.array([camera.intrinsics.width_px, camera.intrinsics.height_px])
-    with np.errstate(invalid="ignore"):  # what the lens does not show is NaN
+    with np.errstate(invalid="ignore"):
         is_whole = bool(((pixels > -0.5) & (pixels < size - 0.5)).all())
     radius_px = float(np.nanmax(np.linalg.norm(pixels - center, axis=1), initial=0))
-    return _Projection(one, center, 3 * sigma / one.radius_m * radius_px,
-                       is_whole and _area_px(pixels) >= _MIN_AREA_PX)
+    off_px = 3 * float(one.sigma_m[image.index]) / one.radius_m * radius_px
+    return _Projection(one, center, off_px, is_whole and _area_px(pixels) >= _MIN_AREA_PX)
 
 
 def _area_px(outline: Array) -> float:

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kMostMarkers = 8;
 constexpr int kLeastSide = 3, kMostSide = 32;  // bits
-constexpr double kSquareTolerance = 1e-3;            // of a square's side
+constexpr double kSquareTolerance = 1e-3;      // of a square's side
 
 enum FractalUnit { kPixels = 0, kMetres = 1, kHalfSides = 2 };
 
@@ -85,8 +85,7 @@ MarkerSquare ReadCorners(const YamlReader& list) {
   const std::array<Eigen::Vector2d, kCorners> turns{
       {{-0.5, 0.5}, {0.5, 0.5}, {0.5, -0.5}, {-0.5, -0.5}}};
   for (std::size_t i = 0; i < kCorners; ++i) {
-    const Eigen::Vector3d expected =
-        center + side * Eigen::Vector3d(turns[i].x(), turns[i].y(), 0);
+    const Eigen::Vector3d expected = center + side * Eigen::Vector3d(turns[i].x(), turns[i].y(), 0);
     if (!(side > 0) || !((corners[i] - expected).norm() <= kSquareTolerance * side)) {
       list.Fail(
           "are not those of an upright square, from the upper left one on, clockwise, with y up");
@@ -143,9 +142,9 @@ TagBoard ParseFractalMarker(const std::string& text, const std::string& file, do
     root["markers"].Fail(
         fmt::format("has {} markers, expected 1 to {}", markers.size(), kMostMarkers));
   }
-  std::stable_sort(markers.begin(), markers.end(), [](const FractalLevel& a, const FractalLevel& b) {
-    return a.square.side > b.square.side;
-  });
+  std::stable_sort(
+      markers.begin(), markers.end(),
+      [](const FractalLevel& a, const FractalLevel& b) { return a.square.side > b.square.side; });
   const MarkerSquare& largest = markers.front().square;
   const double scale = MetresPerUnit(root, largest.side, size_m);
   TagBoard board;

@@ -76,7 +76,8 @@ TEST(FractalMarkerTest, EachErrorNamesFileLineAndKey) {
               ThrowsMessage<InputError>(HasSubstr("has 3 corners, expected 4")));
   EXPECT_THAT(error(With("[ 1., 1., 0. ]", "[ 1., 0.5, 0. ]")),
               ThrowsMessage<InputError>(HasSubstr("are not those of an upright square")));
-  EXPECT_THAT(error(With("[ 1., 1., 0. ]", "[ 1., .nan, 0. ]")), ThrowsMessage<InputError>(HasSubstr("corners")));
+  EXPECT_THAT(error(With("[ 1., 1., 0. ]", "[ 1., .nan, 0. ]")),
+              ThrowsMessage<InputError>(HasSubstr("corners")));
   EXPECT_THAT(error(With("submarkers_id:[ 1 ]", "submarkers: [ 1 ]")),
               ThrowsMessage<InputError>(HasSubstr("submarkers")));
 }
