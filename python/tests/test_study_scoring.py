@@ -30,12 +30,18 @@ def missing(landing, tmp_path_factory):
     return output
 
 
+def copied(source, tmp_path_factory, *truths):
+    """Copies a flight without these folders of truth."""
+    flight = tmp_path_factory.mktemp("unknown") / "flight"
+    shutil.copytree(source / "flight", flight)
+    for truth in truths:
+        shutil.rmtree(flight / "mav0" / truth)
+    return flight
+
+
 @pytest.fixture(scope="module")
 def without_truth(landing, tmp_path_factory):
-    flight = tmp_path_factory.mktemp("unknown") / "flight"
-    shutil.copytree(landing / "flight", flight)
-    shutil.rmtree(flight / "mav0" / "landing_pattern0")
-    shutil.rmtree(flight / "mav0" / "state_groundtruth_estimate0")
+    flight = copied(landing, tmp_path_factory, "landing_pattern0", "state_groundtruth_estimate0")
     (flight / "mav0" / "scene.yaml").unlink()
     return flight
 
@@ -131,10 +137,7 @@ def field(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def unknown_field(field, tmp_path_factory):
-    flight = tmp_path_factory.mktemp("unknown") / "flight"
-    shutil.copytree(field / "flight", flight)
-    shutil.rmtree(flight / "mav0" / "objects0")
-    return flight
+    return copied(field, tmp_path_factory, "objects0")
 
 
 def test_misses_of_a_hunt_are_estimated_without_truth(field, unknown_field):
