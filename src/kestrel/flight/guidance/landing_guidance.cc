@@ -15,7 +15,8 @@ using Eigen::Vector3d;
 constexpr double kHeightGain = 1;      // climb rate per metre below the wanted height
 constexpr double kResting_mps = 0.25;  // a UAV that is told to descend and sinks more slowly rests
 constexpr double kToldDown_mps = 0.3;
-constexpr double kStanding_mps = 0.5;  // a slower deck stands
+constexpr double kStanding_mps = 0.5;  // a slower deck stands,
+constexpr double kStood_s = 5;         // and has stopped for good after so long
 constexpr double kMaxClosing_mps = 1;  // if it moves faster over the target it does not descend
 // Offset, in cones, at which following ends, and at which the last bit ends.
 constexpr double kFollowCones = 4;
@@ -459,6 +460,7 @@ bool LandingGuidance::FindContact(const GuidanceInput& input, const Situation& n
     if (!was_in_contact) {
       ride_.Reset();
       carried_.Reset();
+      stands_since_.reset();
       Enter(GuidancePhase::kLanded, "contact with the deck");
     }
     return true;
@@ -476,10 +478,9 @@ GuidanceRequest LandingGuidance::RequestInContact(const GuidanceInput& input) co
   const bool is_carried = options_.disarm_carried_s > 0 && !input.is_landed &&
                           carried_.seconds() >= options_.disarm_carried_s;
   if (has_waited || is_carried) return GuidanceRequest::kDisarm;
-  // LAND would brake on a moving deck, unless the autopilot has found that it has landed: until
-  // then the set-points go on.
-  const bool may_land =
-      input.is_landed || input.uav->velocity_in_world.head<2>().norm() < kStanding_mps;
+  // LAND would brake on a deck that moves or starts, unless the autopilot has found that it has
+  // landed: until then the set-points go on.
+  const bool may_land = input.is_landed || IsLongerThan(kStood_s, stands_since_, input.now);
   return options_.land_in_contact && may_land ? GuidanceRequest::kLand : GuidanceRequest::kNone;
 }
 
@@ -487,6 +488,7 @@ GuidanceRequest LandingGuidance::RequestInContact(const GuidanceInput& input) co
 // not lean against the motion of the deck. One that needs a velocity gets the deck's.
 SetPoint LandingGuidance::Rest(const GuidanceInput& input, const Situation& now) {
   ride_.Observe(input.now, now.velocity.head<2>());
+  Remember(now.velocity.head<2>().norm() < kStanding_mps, input.now, &stands_since_);
   carried_.Observe(input.now, {input.uav->world_from_body.rotation * Vector3d::UnitZ(),
                                ride_.acceleration(), now.velocity.z()});
   SetPoint command;

@@ -193,7 +193,8 @@ class LandingGuidance {
   std::optional<Time> beyond_since_;         // following demands more than the limits
   Eigen::Vector3d velocity_trend_{0, 0, 0};  // the UAV's velocity through a low pass
   std::optional<Time> contact_since_;
-  Eigen::Vector2d place_{0, 0};  // where the vehicle was last, or should pass
+  std::optional<Time> stands_since_;  // the deck, in contact
+  Eigen::Vector2d place_{0, 0};       // where the vehicle was last, or should pass
   std::optional<SetPoint> sent_;
 };
 

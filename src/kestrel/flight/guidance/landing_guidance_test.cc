@@ -284,6 +284,18 @@ TEST(LandingGuidanceTest, AsksForLandOrDisarmsOnlyByOptionAndInContact) {
   EXPECT_EQ(flight.output.phase, Phase::kGoAround);
 }
 
+TEST(LandingGuidanceTest, AsksForLandOnceTheDeckHasStoppedForGood) {
+  GuidanceOptions options;
+  options.land_in_contact = true;
+  VehicleMotionOptions vehicle;
+  vehicle.path = "standing";
+  TestFlight flight(options, {}, vehicle);
+  flight.LandOnDeck();
+  const auto is_asked = [&] { return flight.output.request == GuidanceRequest::kLand; };
+  EXPECT_FALSE(flight.FlyUntil(is_asked, 4.5)) << "a car at a traffic light drives on";
+  EXPECT_TRUE(flight.FlyUntil(is_asked, 2));
+}
+
 TEST(LandingGuidanceTest, DisarmsOnADeckThatCarriesItThroughCurves) {
   TestFlight flight;  // the figure of eight at 15 km/h
   flight.LandOnDeck();
