@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Any content of a file of a board of tags gives a board that can be looked for and printed, or one
-// with violations, or is refused with an InputError of one line.
+// with violations, or is refused with an InputError.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <string>
-#include <string_view>
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/vision/tags/board_model.h"
@@ -18,8 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!board.Validate().empty()) return 0;
     kestrel::PrintOf(board);
     if (kestrel::BoardModel(board).tags.size() != board.tags.size()) std::abort();
-  } catch (const kestrel::InputError& error) {
-    if (std::string_view(error.what()).find('\n') != std::string_view::npos) std::abort();
+  } catch (const kestrel::InputError&) {
   }
   return 0;
 }

@@ -11,6 +11,7 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/parse_number.h"
+#include "kestrel/core/base/shown.h"
 
 namespace kestrel {
 namespace {
@@ -60,7 +61,7 @@ void YamlReader::RequireKeys(const std::set<std::string>& names) const {
   for (const auto& entry : *node_) {
     if (!entry.first.IsScalar()) Fail("expected 'name: value'");
     const std::string& name = entry.first.Scalar();
-    if (!names.contains(name)) Fail(fmt::format("unknown key '{}'", name));
+    if (!names.contains(name)) Fail(fmt::format("unknown key '{}'", Shown(name)));
     if (!seen.insert(name).second) Fail(fmt::format("'{}' is given twice", name));
   }
 }
