@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "kestrel/core/base/options.h"
+#include "kestrel/flight/guidance/since.h"
 
 namespace kestrel {
 namespace {
@@ -15,8 +16,6 @@ using Eigen::Vector3d;
 constexpr double kHeightGain = 1;      // climb rate per metre below the wanted height
 constexpr double kResting_mps = 0.25;  // a UAV that is told to descend and sinks more slowly rests
 constexpr double kToldDown_mps = 0.3;
-constexpr double kStanding_mps = 0.5;  // a slower deck stands,
-constexpr double kStood_s = 5;         // and has stopped for good after so long
 constexpr double kMaxClosing_mps = 1;  // if it moves faster over the target it does not descend
 // Offset, in cones, at which following ends, and at which the last bit ends.
 constexpr double kFollowCones = 4;
@@ -34,19 +33,6 @@ constexpr double kLeastAcceleration = 1;  // m/s^2; every autopilot is set up fo
 constexpr const char* kWaits = "waits for the pilot to give the mode";
 constexpr const char* kWasGuided = "the mode was on already: leave it and give it anew";
 
-bool IsLongerThan(double seconds, const std::optional<Time>& since, Time now) {
-  return since && ToSeconds(now - *since) >= seconds;
-}
-
-// Keeps in 'since' the time at which 'is' became true; nothing while it is false.
-void Remember(bool is, Time now, std::optional<Time>* since) {
-  if (!is) {
-    since->reset();
-  } else if (!*since) {
-    *since = now;
-  }
-}
-
 bool IsFinite(const UavState& uav) {
   return uav.world_from_body.translation.allFinite() &&
          uav.world_from_body.rotation.coeffs().allFinite() && uav.velocity_in_world.allFinite();
@@ -57,42 +43,6 @@ bool IsFinite(const TargetEstimate& target) {
 }
 
 }  // namespace
-
-const char* ToString(GuidancePhase phase) {
-  switch (phase) {
-    case GuidancePhase::kIdle:
-      return "idle";
-    case GuidancePhase::kSearch:
-      return "search";
-    case GuidancePhase::kApproach:
-      return "approach";
-    case GuidancePhase::kFollow:
-      return "follow";
-    case GuidancePhase::kDescend:
-      return "descend";
-    case GuidancePhase::kCommit:
-      return "commit";
-    case GuidancePhase::kGoAround:
-      return "go-around";
-    case GuidancePhase::kLanded:
-      return "landed";
-  }
-  return "";
-}
-
-const char* ToString(GuidanceRequest request) {
-  switch (request) {
-    case GuidanceRequest::kNone:
-      return "none";
-    case GuidanceRequest::kLand:
-      return "land";
-    case GuidanceRequest::kHold:
-      return "hold";
-    case GuidanceRequest::kDisarm:
-      return "disarm";
-  }
-  return "";
-}
 
 LandingGuidance::LandingGuidance(const GuidanceOptions& options,
                                  const std::optional<Vector2d>& place)
@@ -105,6 +55,7 @@ LandingGuidance::LandingGuidance(const GuidanceOptions& options,
       search_(options),
       demand_(options.limits),
       contact_(options.contact),
+      stay_(options),
       heading_(options),
       reason_(kWaits),
       may_stream_(options.stream_before_start),
@@ -267,7 +218,8 @@ GuidanceOutput LandingGuidance::Fly(const GuidanceInput& input) {
   if (!is_active_) return Idle(input);
   SetPoint wanted;
   if (phase_ == GuidancePhase::kLanded) {
-    wanted = Rest(input, now);
+    wanted =
+        stay_.Rest(input.now, input.uav->world_from_body.rotation, now.velocity, model_.delay_s());
   } else {
     wanted = input.target ? Pursue(input, now) : Search(input, now);
   }
@@ -282,7 +234,10 @@ GuidanceOutput LandingGuidance::Fly(const GuidanceInput& input) {
   if (is_flying) stale_.SetPlace(position, now.velocity, input.link_delay_s, &limited);
   model_.Observe(input.now, now.velocity, input.uav->world_from_body.rotation * Vector3d::UnitZ(),
                  is_flying ? std::optional(limited) : std::nullopt, input.link_delay_s);
-  return Output(limited, RequestInContact(input));
+  const GuidanceRequest request = is_flying
+                                      ? GuidanceRequest::kNone
+                                      : stay_.Request(input.now, input.is_landed, contact_since_);
+  return Output(limited, request);
 }
 
 // True when guidance ends although the pilot has not left the mode.
@@ -458,9 +413,7 @@ bool LandingGuidance::FindContact(const GuidanceInput& input, const Situation& n
   Remember(touches, input.now, &contact_since_);
   if (touches || (may_touch && input.is_landed)) {
     if (!was_in_contact) {
-      ride_.Reset();
-      carried_.Reset();
-      stands_since_.reset();
+      stay_.Reset();
       Enter(GuidancePhase::kLanded, "contact with the deck");
     }
     return true;
@@ -468,35 +421,6 @@ bool LandingGuidance::FindContact(const GuidanceInput& input, const Situation& n
   if (was_in_contact) GoAround("has lost contact with the deck");
   if (input.is_landed) End("the UAV is on the ground");
   return false;
-}
-
-GuidanceRequest LandingGuidance::RequestInContact(const GuidanceInput& input) const {
-  if (phase_ != GuidancePhase::kLanded) return GuidanceRequest::kNone;
-  const bool has_waited = options_.disarm_after_s > 0 &&
-                          IsLongerThan(options_.disarm_after_s, contact_since_, input.now);
-  // An autopilot that has found the ground disarms by itself.
-  const bool is_carried = options_.disarm_carried_s > 0 && !input.is_landed &&
-                          carried_.seconds() >= options_.disarm_carried_s;
-  if (has_waited || is_carried) return GuidanceRequest::kDisarm;
-  // LAND would brake on a deck that moves or starts, unless the autopilot has found that it has
-  // landed: until then the set-points go on.
-  const bool may_land = input.is_landed || IsLongerThan(kStood_s, stands_since_, input.now);
-  return options_.land_in_contact && may_land ? GuidanceRequest::kLand : GuidanceRequest::kNone;
-}
-
-// On the deck: goes on down, and is carried. The autopilot then finds that it has landed: it does
-// not lean against the motion of the deck. One that needs a velocity gets the deck's.
-SetPoint LandingGuidance::Rest(const GuidanceInput& input, const Situation& now) {
-  ride_.Observe(input.now, now.velocity.head<2>());
-  Remember(now.velocity.head<2>().norm() < kStanding_mps, input.now, &stands_since_);
-  carried_.Observe(input.now, {input.uav->world_from_body.rotation * Vector3d::UnitZ(),
-                               ride_.acceleration(), now.velocity.z()});
-  SetPoint command;
-  command.velocity << ride_.Velocity(model_.delay_s()), -options_.touchdown_sink_mps;
-  command.acceleration.head<2>() = ride_.acceleration();
-  command.yaw = HeadingOf(input.uav->world_from_body.rotation);  // a deck that turns turns it
-  command.is_carried = true;
-  return command;
 }
 
 SetPoint LandingGuidance::Search(const GuidanceInput& input, const Situation& now) {

@@ -10,16 +10,16 @@
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/geometry/rigid_transform.h"
 #include "kestrel/core/poses/set_point.h"
-#include "kestrel/flight/guidance/carried_proof.h"
 #include "kestrel/flight/guidance/contact_detector.h"
-#include "kestrel/flight/guidance/deck_ride.h"
 #include "kestrel/flight/guidance/flight_limits.h"
 #include "kestrel/flight/guidance/flight_model.h"
 #include "kestrel/flight/guidance/following_demand.h"
 #include "kestrel/flight/guidance/guidance_options.h"
 #include "kestrel/flight/guidance/guidance_phase.h"
+#include "kestrel/flight/guidance/guidance_request.h"
 #include "kestrel/flight/guidance/road_memory.h"
 #include "kestrel/flight/guidance/stale_safety.h"
+#include "kestrel/flight/guidance/stay_on_deck.h"
 #include "kestrel/flight/guidance/target_pursuit.h"
 #include "kestrel/flight/guidance/target_search.h"
 #include "kestrel/flight/guidance/touchdown_heading.h"
@@ -27,16 +27,6 @@
 #include "kestrel/vision/tracking/target_tracker.h"
 
 namespace kestrel {
-
-// Request to the autopilot beside the set-points. It is repeated for as long as it holds: the
-// caller limits how often it asks.
-enum class GuidanceRequest {
-  kNone,
-  kLand,    // its LAND mode, in contact
-  kHold,    // LOITER or HOLD: guidance has given up
-  kDisarm,  // by force, in contact
-};
-const char* ToString(GuidanceRequest request);  // "none", "land", "hold", "disarm"
 
 // The UAV's own state.
 struct UavState {
@@ -142,10 +132,8 @@ class LandingGuidance {
   GuidanceOutput Fly(const GuidanceInput& input);
   SetPoint Search(const GuidanceInput& input, const Situation& now);
   SetPoint Pursue(const GuidanceInput& input, const Situation& now);
-  SetPoint Rest(const GuidanceInput& input, const Situation& now);
   double ClimbRate(const GuidanceInput& input, const Situation& now);
   std::optional<double> WaitHeight(Time now, double height_m);
-  GuidanceRequest RequestInContact(const GuidanceInput& input) const;
   GuidanceOutput Output(const std::optional<SetPoint>& set_point, GuidanceRequest request) const;
 
   // Choice of the phase.
@@ -171,8 +159,7 @@ class LandingGuidance {
   TargetSearch search_;
   DemandWatch demand_;
   ContactDetector contact_;
-  DeckRide ride_;
-  CarriedProof carried_;
+  StayOnDeck stay_;
   TouchdownTiming timing_;
   TouchdownHeading heading_;
 
@@ -193,8 +180,7 @@ class LandingGuidance {
   std::optional<Time> beyond_since_;         // following demands more than the limits
   Eigen::Vector3d velocity_trend_{0, 0, 0};  // the UAV's velocity through a low pass
   std::optional<Time> contact_since_;
-  std::optional<Time> stands_since_;  // the deck, in contact
-  Eigen::Vector2d place_{0, 0};       // where the vehicle was last, or should pass
+  Eigen::Vector2d place_{0, 0};  // where the vehicle was last, or should pass
   std::optional<SetPoint> sent_;
 };
 

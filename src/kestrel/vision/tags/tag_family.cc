@@ -103,7 +103,8 @@ int TurnDistance(const TagGrid& grid) {
     turned = Turned(turned);
     int differing = 0;
     for (std::size_t i = 0; i < grid.cells.size(); ++i) {
-      differing += grid.cells[i] != turned.cells[i];
+      differing += grid.cells[i] != turned.cells[i] && grid.cells[i] != TagCell::kNone &&
+                   turned.cells[i] != TagCell::kNone;
     }
     least = std::min(least, differing);
   }
