@@ -39,6 +39,7 @@ _MAX_SIGMA_M = 0.15  # of a place that is known
 _MIN_AREA_PX = 50  # of an object that should be found, and
 _MIN_REACH_PX = 5.0  # distance of a detection of it: as `kestrel evaluate`
 _BESIDE_PX = 100.0  # beyond the border: the centre of an object that is half in view
+_GRAY_OF_BGR = np.array([0.114, 0.587, 0.299])  # ITU-R BT.601, as of gray images
 _CIRCLE = np.array([[np.cos(a), np.sin(a), 0.0] for a in np.arange(0, 2 * np.pi, np.pi / 12)])
 
 
@@ -187,15 +188,17 @@ def _search(source: kestrel.Recording, detector: kestrel.ObjectDetector, rows: l
         if camera is None or frame.time_ns not in by_time:
             continue
         report = detector.detect(frame.image, **ground.hint(camera))
-        live = [_live(row, camera) for row in by_time[frame.time_ns] if row["class"]]
-        merged = [row["shape"] == _MERGED for row in by_time[frame.time_ns] if row["class"]]
+        detected = [row for row in by_time[frame.time_ns] if row["class"]]
         images.append(_Image(
-            len(images), frame.time_ns, frame.name, camera,
-            places(body, float(frame.image.mean())),
-            [seen for seen, skip in zip(live, merged) if not skip],
+            len(images), frame.time_ns, frame.name, camera, places(body, _gray_level(frame.image)),
+            [_live(row, camera) for row in detected if row["shape"] != _MERGED],
             [_found(one, report.model, camera) for one in report.detections],
-            [seen for seen, skip in zip(live, merged) if skip]))
+            [_live(row, camera) for row in detected if row["shape"] == _MERGED]))
     return images
+
+
+def _gray_level(image: NDArray[np.uint8]) -> float:
+    return float(image.mean(axis=(0, 1)) @ _GRAY_OF_BGR)
 
 
 def _live(row: Row, camera: kestrel.RigidTransform) -> _Seen:
