@@ -27,8 +27,8 @@ class StayOnDeck {
   // Returns the set-point, by the UAV's attitude (body to world) and velocity (m/s, world) at
   // 'now'. 'delay_s': from a set-point to its effect. The autopilot then finds that it has landed:
   // it does not lean against the motion of the deck. One that needs a velocity gets the deck's.
-  SetPoint Rest(Time now, const Eigen::Quaterniond& world_from_body, const Eigen::Vector3d& velocity,
-                double delay_s);
+  SetPoint Rest(Time now, const Eigen::Quaterniond& world_from_body,
+                const Eigen::Vector3d& velocity, double delay_s);
 
   // Returns the request after Rest: LAND, disarming, or none. 'is_landed': the autopilot says that
   // it is on the ground. 'touches_since': the feet rest against the deck, by their motion.
