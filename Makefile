@@ -140,6 +140,6 @@ package:  ## packages for DIST (bookworm, trixie) and ARCH (amd64, arm64), in ou
 repository:  ## a signed repository for apt of all packages, in out/repository; KEY=<key of gpg>
 	packaging/repository $(KEY)
 
-package-test: repository  ## packages of DIST installed, used, upgraded and removed on a fresh machine
-	scripts/install-deps --package
-	packaging/test $(DIST)
+package-test: repository  ## packages of DIST and ARCH installed, used, upgraded and removed on a fresh machine
+	scripts/install-deps --package $(if $(filter $(ARCH),$(shell dpkg --print-architecture)),,--emulator)
+	packaging/test $(DIST) $(ARCH)
