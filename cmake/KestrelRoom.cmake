@@ -1,15 +1,21 @@
-# kestrel_room(NAME SOURCES ... [ALONE ...] [TESTS ...] [PUBLIC ...] [PRIVATE ...] [TEST_LINKS ...])
+# kestrel_room(NAME SOURCES ... [HEAVY ...] [ALONE ...] [TESTS ...] [PUBLIC ...] [PRIVATE ...] [TEST_LINKS ...])
 #
 # One library per room of src/kestrel, `kestrel_<name>` (alias `kestrel::<name>`). PUBLIC names the
 # rooms and libraries that its headers use: these links are the arrows between the rooms, and
-# scripts/check-layers holds the includes to them. ALONE are sources that are not joined with others
+# scripts/check-layers holds the includes to them. In a unity build SOURCES are one unit, and so are HEAVY, which share
+# headers that take long to compile. ALONE are sources that are not joined with others
 # (unity build): those that Highway compiles for one instruction set after the other, and those that
 # have names in common with another source. TESTS become one test binary per room.
 function(kestrel_room name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;ALONE;TESTS;PUBLIC;PRIVATE;TEST_LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;HEAVY;ALONE;TESTS;PUBLIC;PRIVATE;TEST_LINKS" ${ARGN})
   set(target kestrel_${name})
   if(ARG_SOURCES)
-    add_library(${target} STATIC ${ARG_SOURCES} ${ARG_ALONE})
+    add_library(${target} STATIC ${ARG_SOURCES} ${ARG_HEAVY} ${ARG_ALONE})
+    if(ARG_HEAVY)
+      set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+      set_source_files_properties(${ARG_SOURCES} PROPERTIES UNITY_GROUP light)
+      set_source_files_properties(${ARG_HEAVY} PROPERTIES UNITY_GROUP heavy)
+    endif()
     set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     set(scope PUBLIC)
     target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})

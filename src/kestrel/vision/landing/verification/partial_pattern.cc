@@ -25,7 +25,7 @@ constexpr double kBarReach = 1.2;       // half lengths of an arm from the middl
 constexpr double kParallel = 0.99;      // cosine
 constexpr double kRightAngle = 0.14;    // cosine
 
-double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+double CrossProduct(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
@@ -125,7 +125,8 @@ class Finder {
     if (std::max(a.width, b.width) > kMaxWidthRatio * std::min(a.width, b.width)) return;
     // The point where the axes meet, and its distance from the bars: both bars must be parts of one
     // cross.
-    const double along = Cross(b.middle - a.middle, b.direction) / Cross(a.direction, b.direction);
+    const double along =
+        CrossProduct(b.middle - a.middle, b.direction) / CrossProduct(a.direction, b.direction);
     const Eigen::Vector2d center = a.middle + along * a.direction;
     const double width = 0.5 * (a.width + b.width);
     const double reach = kBarReach * pattern_.arm_half_length_m / pattern_.arm_width_m * width;
