@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The examples, each on a simulated flight of a few frames."""
+import json
 import os
 import subprocess
 import sys
 from pathlib import Path
 
+import nbclient
+import nbformat
 import pytest
 
 import kestrel
@@ -33,3 +36,27 @@ def test_detect_image(recording):
 
 def test_follow_video(recording):
     assert "in half a second at" in run("follow_video.py", recording).splitlines()[-1]
+
+
+FIGURES = """
+import json
+rms_cm = {name: 100 * np.sqrt((rows.east_m**2 + rows.north_m**2).mean()) for name, rows in places.items()}
+print(json.dumps({"found": {name: rows.found.mean() for name, rows in results.items()}, "rms_cm": rms_cm,
+                  "undistortion_px": table_1.max().tolist()}))
+"""
+
+
+def test_notebook_repeats_the_paper(monkeypatch):
+    monkeypatch.setenv("PYTHONPATH", str(Path(kestrel.__file__).parents[1]))
+    notebook = nbformat.read(EXAMPLES / "paper.ipynb", as_version=4)
+    notebook.cells.append(nbformat.v4.new_code_cell(FIGURES))
+    nbclient.NotebookClient(notebook, timeout=300).execute()
+    outputs = [output for cell in notebook.cells if cell.cell_type == "code" for output in cell.outputs]
+    assert sum("image/png" in output.get("data", {}) for output in outputs) == 2
+    figures = json.loads(outputs[-1].text)
+    assert min(figures["found"].values()) > 0.98
+    calm, aggressive, late = figures["rms_cm"].values()
+    assert calm < 2 and aggressive < 5 and late > 2 * aggressive
+    algorithm_2, ray_table = figures["undistortion_px"]
+    assert 0.01 < algorithm_2 < 0.1
+    assert ray_table < 0.001
