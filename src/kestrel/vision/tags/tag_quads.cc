@@ -64,31 +64,45 @@ std::array<int, 4> RoughCorners(const PlanePoints& border) {
   return corners;
 }
 
-// Fits a line to the points between two corners; the ends, which are round, do not count.
-bool FitSide(const PlanePoints& border, int from, int to, PlaneLine* line) {
+// Fits a line to the points between two corners that lie near the straight way from one to the
+// other; the ends, which are round, do not count. Elsewhere the border may leave that way: a light
+// cell that blurs into the light around the tag is a gap in its dark frame. False where most of the
+// side is such gaps.
+bool FitSide(const PlanePoints& border, int from, int to, double allowed, PlaneLine* line) {
   const int around = static_cast<int>(border.size());
-  const int length = (to - from + around) % around;
-  const int trim = std::max(1, length / 8);
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  const int steps = (to - from + around) % around;
+  const Eigen::Vector2d start = border[from];
+  const Eigen::Vector2d way = border[to] - start;
+  const double length = way.norm();
+  const Eigen::Vector2d along = way / length;
+  const double trim = length / 8;
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+  double covered = 0;
   int count = 0;
-  for (int i = trim; i <= length - trim; ++i, ++count) {
-    mean += border[(from + i) % around];
+  bool was_near = false;
+  double last = 0;
+  for (int i = 0; i <= steps; ++i) {
+    const Eigen::Vector2d d = border[(from + i) % around] - start;
+    const double here = along.dot(d);
+    const bool is_near = std::abs(along.x() * d.y() - along.y() * d.x()) <= allowed;
+    if (is_near && here >= trim && here <= length - trim) {
+      sum += d;
+      squares += d * d.transpose();
+      ++count;
+      if (was_near) covered += here - last;
+    }
+    was_near = is_near;
+    last = here;
   }
-  if (count < 3) return false;
-  mean /= count;
-  double xx = 0, xy = 0, yy = 0;
-  for (int i = trim; i <= length - trim; ++i) {
-    const Eigen::Vector2d d = border[(from + i) % around] - mean;
-    xx += d.x() * d.x();
-    xy += d.x() * d.y();
-    yy += d.y() * d.y();
-  }
-  const double angle = 0.5 * std::atan2(2 * xy, xx - yy);
+  constexpr double kLeastCovered = 0.6;  // of the length without its ends
+  if (count < 3 || !(covered >= kLeastCovered * (length - 2 * trim))) return false;
+  const Eigen::Vector2d mean = sum / count;
+  const Eigen::Matrix2d spread = squares / count - mean * mean.transpose();
+  const double angle = 0.5 * std::atan2(2 * spread(0, 1), spread(0, 0) - spread(1, 1));
   line->normal = {-std::sin(angle), std::cos(angle)};
-  line->offset = line->normal.dot(mean);
-  const Eigen::Vector2d& n = line->normal;
-  line->rms = std::sqrt(
-      std::max(0.0, (n.x() * n.x() * xx + 2 * n.x() * n.y() * xy + n.y() * n.y() * yy) / count));
+  line->offset = line->normal.dot(start + mean);
+  line->rms = std::sqrt(std::max(0.0, line->normal.dot(spread * line->normal)));
   return true;
 }
 
@@ -107,7 +121,8 @@ bool MayBeQuad(const Border& border, cv::Size image) {
   const int height = border.max.y - border.min.y;
   const bool cut_off = border.min.x <= 0 || border.min.y <= 0 || border.max.x >= image.width ||
                        border.max.y >= image.height;
-  constexpr double kLongest = 2.7;    // a convex border: 2 (width + height)
+  // A convex border: 2 (width + height); that of a tag may go around the cells inside, too.
+  constexpr double kLongest = 6;
   constexpr double kLeastArea = 0.3;  // of the bounding box
   return !cut_off && static_cast<double>(border.count) <= kLongest * (width + height) &&
          std::abs(border.signed_area) >= kLeastArea * width * height;
@@ -147,10 +162,14 @@ bool TagQuadFinder::FitQuad(const Border& border, const cv::Rect& part, int pass
   std::array<PlaneLine, 4> sides;
   const double allowed = 0.6 * borders_.Scale(pass) / focal_px_;
   for (int k = 0; k < 4; ++k) {
-    if (!FitSide(on_plane, rough[k], rough[(k + 1) % 4], &sides[k])) return false;
+    const int next = rough[(k + 1) % 4];
     constexpr double kBend = 0.02;  // of the length
-    const double length = (on_plane[rough[(k + 1) % 4]] - on_plane[rough[k]]).norm();
-    if (sides[k].rms > std::max(allowed, kBend * length)) return false;
+    constexpr double kNear = 2.5;   // the corners are only rough
+    const double length = (on_plane[next] - on_plane[rough[k]]).norm();
+    const double bend = std::max(allowed, kBend * length);
+    if (!FitSide(on_plane, rough[k], next, kNear * bend, &sides[k]) || sides[k].rms > bend) {
+      return false;
+    }
   }
   std::array<Eigen::Vector2d, 4> corners;
   for (int k = 0; k < 4; ++k) {
