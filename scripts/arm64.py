@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ARM's code on this machine, under qemu-user: in the system that `packaging/build bookworm arm64` has made and built in."""
+"""ARM's code on this machine, under qemu-user: in the system that `packaging/build DIST arm64` has made and built in; DIST is an
+environment variable, bookworm if it is not set."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
 
 PROJECT = Path(__file__).resolve().parent.parent
-ROOT = PROJECT / "build/package_root/bookworm-arm64"
+DIST = os.environ.get("DIST", "bookworm")
+ROOT = PROJECT / f"build/package_root/{DIST}-arm64"
 SOURCE = "/build/kestrel"
 BUILD = f"{SOURCE}/obj-aarch64-linux-gnu"
 EMULATOR = "qemu-aarch64-static"
@@ -34,7 +37,7 @@ def build(targets):
     """Builds targets there, of the same objects that the packages have, linked without libkestrel: names of functions
     are those of the program."""
     if not (ROOT / BUILD[1:] / "CMakeCache.txt").exists():
-        sys.exit("arm64: no build for ARM in build/package_root, expected `packaging/build bookworm arm64` before")
+        sys.exit(f"arm64: no build for ARM in build/package_root, expected `packaging/build {DIST} arm64` before")
     inside("sh", "-c", f"dpkg -s {' '.join(NEEDED)} >/dev/null 2>&1 || "
            f"{{ apt-get -qq update && apt-get -qq -y --no-install-recommends install {' '.join(NEEDED)}; }}", check=True,
            stdout=subprocess.DEVNULL)
