@@ -2,10 +2,10 @@
 #
 # One library per room of src/kestrel, `kestrel_<name>` (alias `kestrel::<name>`). PUBLIC names the
 # rooms and libraries that its headers use: these links are the arrows between the rooms, and
-# scripts/check-layers holds the includes to them. In a unity build SOURCES are one unit, and so are HEAVY, which share
-# headers that take long to compile. ALONE are sources that are not joined with others
-# (unity build): those that Highway compiles for one instruction set after the other, and those that
-# have names in common with another source. TESTS become one test binary per room.
+# scripts/check-layers holds the includes to them. In a unity build SOURCES are one unit, and HEAVY,
+# which share headers that take long to compile, another. ALONE are not joined with others: sources
+# that Highway compiles for one instruction set after the other, and those that have names in common
+# with another source. TESTS become one test binary per room.
 function(kestrel_room name)
   cmake_parse_arguments(ARG "" "" "SOURCES;HEAVY;ALONE;TESTS;PUBLIC;PRIVATE;TEST_LINKS" ${ARGN})
   set(target kestrel_${name})
