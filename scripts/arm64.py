@@ -21,7 +21,7 @@ mount -t proc proc "$root/proc"
 mount --rbind /dev "$root/dev"
 mount --bind "$cache" "$root/ccache"
 [ ! -d "$shared" ] || mount --bind -o ro "$shared" "$root/build/shared"
-exec env --ignore-environment HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 CCACHE_DIR=/ccache \\
+exec env --ignore-environment HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive CCACHE_DIR=/ccache \\
   CCACHE_SLOPPINESS=locale,time_macros chroot "$root" "$@"
 """
 
