@@ -71,7 +71,7 @@ std::array<int, 4> RoughCorners(const PlanePoints& border) {
 bool FitSide(const PlanePoints& border, int from, int to, double allowed, PlaneLine* line) {
   const int around = static_cast<int>(border.size());
   const int steps = (to - from + around) % around;
-  const Eigen::Vector2d start = border[from];
+  const Eigen::Vector2d& start = border[from];
   const Eigen::Vector2d way = border[to] - start;
   const double length = way.norm();
   const Eigen::Vector2d along = way / length;

@@ -105,7 +105,7 @@ SmallPrintVerifier::Outcome SmallPrintVerifier::TestPose(const CirclePose& pose,
 // Returns nothing for a print smaller than the smallest searched for.
 std::optional<PrintFinding> SmallPrintVerifier::FindingOf(const SmallPatternFitter::Fit& fit,
                                                           Light light) const {
-  constexpr double kTolerance = 0.75;  // of the size, which so few pixels hardly determine
+  constexpr double kSizeTolerance = 0.75;  // so few pixels hardly determine it
   const RigidTransform& pose = fit.location.camera_from_pattern;
   PrintFinding finding;
   finding.kind = PrintKind::kAsAWhole;
@@ -113,7 +113,7 @@ std::optional<PrintFinding> SmallPrintVerifier::FindingOf(const SmallPatternFitt
   finding.diameters_px =
       RingDiametersPx(search_.models.camera, search_.models.options.pattern.outer_radius_m(),
                       {pose.translation, pose.rotation * Eigen::Vector3d::UnitZ()});
-  if (finding.diameters_px.y() < kTolerance * search_.models.options.min_ring_px ||
+  if (finding.diameters_px.y() < kSizeTolerance * search_.models.options.min_ring_px ||
       search_.models.camera.Project(pose.translation, &finding.center_px) ==
           ProjectionStatus::kOutsideModel) {
     return std::nullopt;
