@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -31,6 +32,13 @@ struct RigidTransform {
 inline double HeadingOf(const Eigen::Quaterniond& rotation) {
   const Eigen::Vector3d forward = rotation * Eigen::Vector3d::UnitX();
   return std::atan2(forward.y(), forward.x());
+}
+
+// Returns the heading that the x axis has once the frame is levelled by the shortest rotation: that
+// of a UAV which touches a level deck with a lean and then stands on it. rad from x to y. The twist
+// about z of the swing-twist decomposition; not defined upside down.
+inline double LevelHeadingOf(const Eigen::Quaterniond& rotation) {
+  return std::remainder(2 * std::atan2(rotation.z(), rotation.w()), 2 * std::numbers::pi);
 }
 
 // Returns the rotation for a rotation vector: about its direction, by its length in rad.

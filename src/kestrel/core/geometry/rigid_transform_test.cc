@@ -51,6 +51,19 @@ TEST(RigidTransform, RotatesByTheLengthOfTheVectorAboutItsDirection) {
   EXPECT_TRUE(RotationVector(RotationBy(quarter_about_z)).isApprox(quarter_about_z, 1e-12));
 }
 
+TEST(RigidTransform, HasItsHeadingWhenLevelledHoweverItLeans) {
+  for (const double yaw : {-3.0, -1.0, 0.0, 0.5, 2.5}) {
+    for (const double direction : {0.0, 0.8, 2.0, 4.5}) {
+      const Eigen::Vector3d lean(0.6 * std::cos(direction), 0.6 * std::sin(direction), 0);
+      const Eigen::Quaterniond rotation =
+          RotationBy(lean) * Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ());
+      EXPECT_NEAR(LevelHeadingOf(rotation), yaw, 1e-12);
+      const Eigen::Quaterniond negated(-rotation.coeffs());
+      EXPECT_NEAR(LevelHeadingOf(negated), yaw, 1e-12);
+    }
+  }
+}
+
 TEST(RigidTransform, IsMovedInTheFrameThatItMapsTo) {
   Random random(3);
   for (int trial = 0; trial < 100; ++trial) {

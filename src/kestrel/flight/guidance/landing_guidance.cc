@@ -143,7 +143,7 @@ void LandingGuidance::Start(const GuidanceInput& input) {
   }
   has_given_up_ = false;
   is_active_ = true;
-  heading_.Start(HeadingOf(input.uav->world_from_body.rotation));
+  heading_.Start(LevelHeadingOf(input.uav->world_from_body.rotation));
   last_ = input.now;
   go_arounds_ = 0;
   poses_lost_.reset();
@@ -211,7 +211,7 @@ GuidanceOutput LandingGuidance::Fly(const GuidanceInput& input) {
   if (input.deck) {
     timing_.Observe(input.deck->time, input.deck->height_m, input.deck->normal);
   }
-  heading_.Update(input.now, HeadingOf(input.uav->world_from_body.rotation), input.target,
+  heading_.Update(input.now, LevelHeadingOf(input.uav->world_from_body.rotation), input.target,
                   input.link_delay_s);
   const Situation now = Look(input);
   ChoosePhase(input, now);

@@ -52,7 +52,7 @@ void SimulatedUav::Step(Time now, const FlightCommand& command, bool motors) {
   const RigidTransform before = pose_.world_from_body;
   pose_.time = now;
   if (body_in_support_ && motors && command.set_point.velocity.z() > kLiftOff_mps) {
-    heading_ = HeadingOf(before.rotation);
+    heading_ = LevelHeadingOf(before.rotation);
     multicopter_ = Multicopter(options_.multicopter, before.translation, heading_,
                                pose_.motion->velocity_in_world);
     body_in_support_.reset();
@@ -102,7 +102,7 @@ void SimulatedUav::ComeDown() {
   const Vector3d support_velocity =
       on_board ? world_.VelocityAt(pose_.time) : Vector3d(Vector3d::Zero());
   const double heading =
-      HeadingOf(body.rotation) - HeadingOf(world_.PatternAt(pose_.time).rotation);
+      LevelHeadingOf(body.rotation) - LevelHeadingOf(world_.PatternAt(pose_.time).rotation);
   contact_ = Contact{pose_.time, on_board, feet_in_pattern,
                      pose_.motion->velocity_in_world - support_velocity,
                      std::remainder(heading, 2 * std::numbers::pi)};
@@ -112,7 +112,7 @@ void SimulatedUav::ComeDown() {
 void SimulatedUav::StandOn(bool board) {
   on_board_ = board;
   RigidTransform body_in_support = Support().Inverse() * pose_.world_from_body;
-  body_in_support.rotation = Level(HeadingOf(body_in_support.rotation));
+  body_in_support.rotation = Level(LevelHeadingOf(body_in_support.rotation));
   body_in_support.translation.z() = options_.leg_m;
   body_in_support_ = body_in_support;
   pose_.world_from_body = Support() * body_in_support;

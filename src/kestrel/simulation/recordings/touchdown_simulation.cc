@@ -255,8 +255,8 @@ bool TouchdownSimulation::HasEnded(double time_s, TouchdownResult* result) const
 std::optional<double> TouchdownSimulation::HeadingError(double time_s) const {
   const auto wanted = options_.guidance.HeadingOverPad();
   if (!wanted) return std::nullopt;
-  const double over_pad = HeadingOf(path_.At(time_s).rotation) -
-                          HeadingOf(landing_.world_from_pattern()(time_s).rotation);
+  const double over_pad = LevelHeadingOf(path_.At(time_s).rotation) -
+                          LevelHeadingOf(landing_.world_from_pattern()(time_s).rotation);
   const int symmetry = HeadingSymmetryOf(options_.target.kind).value();
   return std::remainder(over_pad - *wanted, 2 * std::numbers::pi / symmetry);
 }

@@ -5,9 +5,10 @@
 #include <cmath>
 #include <numbers>
 
+#include <Eigen/Geometry>
+
 #include "kestrel/core/base/violations.h"
 #include "kestrel/core/poses/gravity.h"
-#include "kestrel/simulation/vehicle/multicopter_motion.h"
 
 namespace kestrel {
 namespace {
@@ -93,7 +94,9 @@ Vector3d Multicopter::WithinTilt(const Vector3d& thrust) const {
 }
 
 RigidTransform Multicopter::world_from_body() const {
-  return {MulticopterAttitude(thrust_, heading_), position_};
+  // As ArduPilot composes it: the heading first, then the shortest rotation to the thrust.
+  const auto lean = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), thrust_);
+  return {lean * Eigen::AngleAxisd(heading_, Vector3d::UnitZ()), position_};
 }
 
 }  // namespace kestrel

@@ -11,7 +11,7 @@
 namespace kestrel {
 
 // Returns the attitude (world_from_body) of a multicopter whose thrust, as an acceleration in the
-// world, is along its z axis; 'yaw' is the heading of x, rad.
+// world, is along its z axis; x lies above the heading 'yaw', rad, up to the product of both leans.
 Eigen::Quaterniond MulticopterAttitude(const Eigen::Vector3d& thrust, double yaw);
 
 // Returns the motion of a multicopter's body (x forward, y left, z up) that follows 'position': its
