@@ -41,8 +41,16 @@ void PlaneBorders::Begin(const cv::Mat& image, const cv::Rect& part, BorderBuffe
     buffers->pyramid.Build(image);
     for (int pass = 0; pass < kPasses; ++pass) Trace(whole, pass, buffers);
   }
-  buffers->pyramid.Build(WriteLogGrays(image(part), buffers->log_grays.data()),
-                         passes_[0].tile_level + kLargerTiles);
+  BuildPyramid(WriteLogGrays(image(part), buffers->log_grays.data()), buffers);
+}
+
+void PlaneBorders::BeginLinear(const cv::Mat& image, const cv::Rect& part,
+                               BorderBuffers* buffers) const {
+  BuildPyramid(image(part), buffers);
+}
+
+void PlaneBorders::BuildPyramid(const cv::Mat& grays, BorderBuffers* buffers) const {
+  buffers->pyramid.Build(grays, passes_[0].tile_level + kLargerTiles);
 }
 
 std::span<const Border> PlaneBorders::Trace(const cv::Rect& part, int pass_index,

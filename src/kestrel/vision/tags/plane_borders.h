@@ -57,6 +57,10 @@ class PlaneBorders {
   // it has seen an image of this size.
   void Begin(const cv::Mat& image, const cv::Rect& part, BorderBuffers* buffers) const;
 
+  // From here on Trace searches the gray values of 'part' themselves: a dark line between light
+  // areas that blur into it stays dark there, but not in a shadow. Begin comes before it.
+  void BeginLinear(const cv::Mat& image, const cv::Rect& part, BorderBuffers* buffers) const;
+
   // Returns the borders of one pass, in pixels of its level.
   std::span<const Border> Trace(const cv::Rect& part, int pass, BorderBuffers* buffers) const;
 
@@ -79,6 +83,8 @@ class PlaneBorders {
   }
 
  private:
+  void BuildPyramid(const cv::Mat& grays, BorderBuffers* buffers) const;
+
   RayTable rays_;
   Passes passes_;
 };

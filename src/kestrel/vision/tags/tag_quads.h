@@ -37,6 +37,9 @@ class TagQuadFinder {
     return borders_.Covers(pass, least_px, most_px);
   }
   void Begin(const cv::Mat& image, const cv::Rect& part, TagQuadBuffers* buffers) const;
+  void BeginLinear(const cv::Mat& image, const cv::Rect& part, TagQuadBuffers* buffers) const {
+    borders_.BeginLinear(image, part, &buffers->borders);
+  }
 
   // Writes what one pass finds to 'buffers->quads'.
   void Find(const cv::Rect& part, int pass, TagQuadBuffers* buffers) const;

@@ -63,10 +63,17 @@ bool TagSearch::MayHaveSize(int pass, double distance_m, double error) const {
   });
 }
 
-void TagSearch::SearchStep(const cv::Rect& part, int pass) {
+// Gray values are searched where their logarithms show no tag.
+int TagSearch::Steps() const { return 2 * PlaneBorders::kPasses; }
+
+void TagSearch::SearchStep(const cv::Rect& part, int step) {
   {
     const SearchLog::Timer timer = log_.Time(LandingStage::kAreas);
-    tags_.finder.Find(part, pass, &quads_);
+    if (step >= PlaneBorders::kPasses && !is_linear_) {
+      tags_.finder.BeginLinear(image_, part, &quads_);
+      is_linear_ = true;
+    }
+    tags_.finder.Find(part, step % PlaneBorders::kPasses, &quads_);
   }
   ExamineBorders(quads_.examined, "no border is a quadrangle");
   const SearchLog::Timer timer = log_.Time(LandingStage::kCross);

@@ -33,7 +33,8 @@ class TagSearch final : public BoardSearch {
  private:
   void Follow(const RigidTransform& expected) override;
   void Begin(const cv::Rect& part) override;
-  void SearchStep(const cv::Rect& part, int pass) override;
+  int Steps() const override;
+  void SearchStep(const cv::Rect& part, int step) override;
   bool MayHaveSize(int pass, double distance_m, double error) const override;
 
   const TagModel* LeadingTag(const RigidTransform& pose);
@@ -46,6 +47,7 @@ class TagSearch final : public BoardSearch {
 
   const TagSearchModels& tags_;
   TagQuadBuffers& quads_;
+  bool is_linear_ = false;  // the gray values are searched, not their logarithms
 };
 
 }  // namespace kestrel
