@@ -331,6 +331,24 @@ TEST_F(TagBoardDetectorTest, ATagIsFoundWithoutAHintUnderTheEdgeOfAShadow) {
   EXPECT_GE(found, kFrames - 2);
 }
 
+// In the logarithms a light cell that blurs into the margin cuts the frame.
+TEST_F(TagBoardDetectorTest, ATagIsFoundWhoseLightCellsBlurIntoTheMargin) {
+  Use({{OneTag("tag36h11", 7, 0.5)}});
+  Random random(31);
+  taken_.blur_px = 1;
+  taken_.contrast = 1.3;
+  int found = 0;
+  constexpr int kFrames = 40;
+  for (int i = 0; i < kFrames; ++i) {
+    const RigidTransform pose = RandomBoardBelow(random.Uniform(7, 9), 0.3, 0.1, &random);
+    const LandingReport report = Detect(Image(pose, random.Bits()));
+    if (!report.detection) continue;
+    ++found;
+    EXPECT_LT(ErrorOf(*report.detection, pose).place, 0.05) << i;
+  }
+  EXPECT_GE(found, kFrames - 2);
+}
+
 TEST(WideLensTest, ATagIsFoundBeyondNinetyDegreesFromTheAxis) {
   // TUM VI's lens: 108 degrees from the axis in the corners of the image.
   const CameraModel camera({512,
