@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Geometry>
 
 #include "kestrel/core/geometry/angles.h"
+#include "kestrel/core/geometry/mirror_pose.h"
 
 namespace kestrel {
 namespace {
@@ -78,16 +78,6 @@ void SetPoses(const std::vector<RigidTransform>& poses, std::vector<LensView>* v
   for (std::size_t i = 0; i < views->size(); ++i) (*views)[i].camera_from_pattern = poses[i];
 }
 
-// Returns the pose with which a far print looks the same: its normal is mirrored at the line of
-// sight.
-RigidTransform Mirrored(const RigidTransform& pose) {
-  const Eigen::Vector3d sight = pose.translation.normalized();
-  const Eigen::Vector3d normal = pose.rotation * Eigen::Vector3d::UnitZ();
-  const Eigen::Vector3d mirrored = 2 * normal.dot(sight) * sight - normal;
-  return {(Eigen::Quaterniond::FromTwoVectors(normal, mirrored) * pose.rotation).normalized(),
-          pose.translation};
-}
-
 double SumOfMagnitudes(const std::vector<double>& residuals) {
   double sum = 0;
   for (const double residual : residuals) sum += std::abs(residual);
@@ -118,7 +108,7 @@ std::vector<DistortionModel> LensChoice::Kinds() const {
 bool LensChoice::Resect(const CameraIntrinsics& lens) {
   constexpr LensFreedom kNothing{.focal = false, .aspect = false, .principal = false};
   std::vector<LensView> mirrored = views_;
-  for (LensView& view : mirrored) view.camera_from_pattern = Mirrored(view.camera_from_pattern);
+  for (LensView& view : mirrored) view.camera_from_pattern = MirrorPose(view.camera_from_pattern);
   const auto fit = FitLens(views_, lens, kNothing, edge_sigma_px_);
   if (!fit) return false;
   SetPoses(fit->camera_from_pattern, &views_);

@@ -95,8 +95,9 @@ Vector3d Multicopter::WithinTilt(const Vector3d& thrust) const {
 
 RigidTransform Multicopter::world_from_body() const {
   // As ArduPilot composes it: the heading first, then the shortest rotation to the thrust.
-  const auto lean = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), thrust_);
-  return {lean * Eigen::AngleAxisd(heading_, Vector3d::UnitZ()), position_};
+  const Vector3d up = thrust_.normalized();
+  const Eigen::Quaterniond lean(1 + up.z(), -up.y(), up.x(), 0);
+  return {lean.normalized() * Eigen::AngleAxisd(heading_, Vector3d::UnitZ()), position_};
 }
 
 }  // namespace kestrel

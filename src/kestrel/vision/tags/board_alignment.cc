@@ -236,12 +236,4 @@ std::optional<AlignedBoard> BoardAlignment::Align(const cv::Mat& image, const Ri
   return aligned;
 }
 
-RigidTransform MirrorPose(const RigidTransform& camera_from_board) {
-  const Eigen::Vector3d sight = camera_from_board.translation.normalized();
-  const Eigen::Vector3d face = camera_from_board.rotation * Eigen::Vector3d::UnitZ();
-  const Eigen::Vector3d mirrored = 2 * face.dot(sight) * sight - face;
-  return {Eigen::Quaterniond::FromTwoVectors(face, mirrored) * camera_from_board.rotation,
-          camera_from_board.translation};
-}
-
 }  // namespace kestrel

@@ -77,8 +77,4 @@ class BoardAlignment {
   const BoardModel& board_;
 };
 
-// Returns the other pose under which a small plane looks nearly the same: its face mirrored at the
-// line of sight.
-RigidTransform MirrorPose(const RigidTransform& camera_from_board);
-
 }  // namespace kestrel

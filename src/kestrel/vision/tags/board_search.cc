@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "kestrel/core/geometry/angles.h"
+#include "kestrel/core/geometry/mirror_pose.h"
 
 namespace kestrel {
 namespace {
