@@ -9,7 +9,8 @@
 namespace kestrel {
 
 FlySource::FlySource(const SourceArguments& arguments, const KestrelOptions& options)
-    : simulated(options.fly.sim_camera, static_cast<std::uint64_t>(options.fly.sim_seed)),
+    : simulated(options.fly.sim_camera, options.landing.target,
+                static_cast<std::uint64_t>(options.fly.sim_seed)),
       dds(
           options.dds, [&arguments, dds = options.dds] { return arguments.dds.OpenNode(dds); },
           [](const std::string& text) { fmt::print(stderr, "kestrel: {}\n", text); }),

@@ -177,6 +177,17 @@ TEST(VehicleWorldTest, UnknownScenariosAreNamed) {
   }
 }
 
+TEST(VehicleWorldOptions, TheVehicleCarriesThePadThatIsLookedForUnlessASettingNamesAnother) {
+  TargetOptions target;
+  target.kind = "apriltag";
+  target.apriltag.id = 7;
+  const VehicleWorldOptions own = ReadVehicleWorld("standing", {}, target);
+  EXPECT_EQ(own.target.kind, "apriltag");
+  EXPECT_EQ(own.target.apriltag.id, 7);
+  const VehicleWorldOptions other = ReadVehicleWorld("standing", {"target.apriltag.id=8"}, target);
+  EXPECT_EQ(other.target.apriltag.id, 8);
+}
+
 TEST_F(SimulatedCameraTest, HasFaultsForAWhile) {
   const auto image_at = [&](const std::string& fault, Duration after_start) {
     SimulatedCameraOptions options;

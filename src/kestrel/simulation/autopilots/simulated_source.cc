@@ -70,7 +70,8 @@ OpenedLiveSource SimulatedSource::Open(const LiveSourceChoice& choice) {
   const std::string scenario = settings.front();
   settings.erase(settings.begin());
   const Time start = Now();
-  world_ = std::make_unique<VehicleWorld>(ReadVehicleWorld(scenario, settings), start, seed_);
+  world_ =
+      std::make_unique<VehicleWorld>(ReadVehicleWorld(scenario, settings, target_), start, seed_);
   auto source = std::make_unique<RenderedSource>(options_, world_.get(), start, seed_);
   OpenedLiveSource opened;
   opened.calibration = CalibrationFor(choice.recording, source->camera().calibration());
@@ -82,7 +83,8 @@ OpenedLiveSource SimulatedSource::Open(const LiveSourceChoice& choice) {
 
 VehicleWorld* SimulatedSource::World() {
   if (!world_) {
-    world_ = std::make_unique<VehicleWorld>(ReadVehicleWorld("standing", {}), Now(), seed_);
+    world_ =
+        std::make_unique<VehicleWorld>(ReadVehicleWorld("standing", {}, target_), Now(), seed_);
   }
   return world_.get();
 }

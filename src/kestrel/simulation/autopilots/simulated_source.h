@@ -18,8 +18,10 @@ namespace kestrel {
 // simulated autopilot shares. Must outlive the scheme and its source.
 class SimulatedSource {
  public:
-  SimulatedSource(const SimulatedCameraOptions& options, std::uint64_t seed)
-      : options_(options), seed_(seed) {}
+  // 'target': the pad on the vehicle, unless the settings of the source name another.
+  SimulatedSource(const SimulatedCameraOptions& options, const TargetOptions& target,
+                  std::uint64_t seed)
+      : options_(options), target_(target), seed_(seed) {}
 
   // The source has the simulated camera's calibration, or the one that the user gives; a file
   // without a mount gets the simulated camera's. It throws InputError for a scenario or settings
@@ -44,6 +46,7 @@ class SimulatedSource {
   OpenedLiveSource Open(const LiveSourceChoice& choice);
 
   SimulatedCameraOptions options_;
+  TargetOptions target_;
   std::uint64_t seed_;
   std::unique_ptr<VehicleWorld> world_;
   SimulatedCamera* camera_ = nullptr;  // of the source; null: none was opened

@@ -78,8 +78,10 @@ std::vector<std::string> VehicleWorldOptions::Validate() const {
 std::span<const VehicleScenario> SitlScenarios() { return AllSitlScenarios(); }
 
 VehicleWorldOptions ReadVehicleWorld(const std::string& scenario,
-                                     const std::vector<std::string>& settings) {
+                                     const std::vector<std::string>& settings,
+                                     const TargetOptions& target) {
   VehicleWorldOptions options;
+  options.target = target;
   for (const char* setting : FindSitlScenario(scenario).settings) SetOption(setting, &options);
   for (const std::string& setting : settings) SetOption(setting, &options);
   RequireValid(options);

@@ -46,11 +46,12 @@ struct VehicleWorldOptions : LandingSceneOptions {
 // The vehicles of `sim:SCENARIO`.
 std::span<const VehicleScenario> SitlScenarios();
 
-// Returns the options of a scenario (standing, straight, circle, figure8, ...), changed by the
-// settings "key=value". Throws InputError when the scenario does not exist, a setting is wrong, or
-// the result is not valid.
+// Returns the options of a scenario (standing, straight, circle, figure8, ...) with the pad
+// 'target', changed by the settings "key=value". Throws InputError when the scenario does not
+// exist, a setting is wrong, or the result is not valid.
 VehicleWorldOptions ReadVehicleWorld(const std::string& scenario,
-                                     const std::vector<std::string>& settings);
+                                     const std::vector<std::string>& settings,
+                                     const TargetOptions& target = {});
 
 // World shared by the simulated camera and the simulated autopilot: one vehicle, on one clock. The
 // options and the seed determine its scene. Thread-safe.
