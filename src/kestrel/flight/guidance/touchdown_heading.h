@@ -19,11 +19,12 @@ class TouchdownHeading {
 
   bool is_wanted() const { return over_pad_.has_value(); }
 
-  // Begins anew, with the heading that the nose has (rad from east to north).
+  // Begins anew, with the heading that the levelled nose has (rad from east to north).
   void Start(double yaw);
 
-  // Turns on to 'now'. 'nose': the heading of the nose; 'link_delay_s': until the autopilot acts.
-  // Without a target, or one whose heading is not known, the heading that was reached is kept.
+  // Turns on to 'now'. 'nose': the heading of the levelled nose (LevelHeadingOf), with which the
+  // UAV will stand on the deck; 'link_delay_s': until the autopilot acts. Without a target, or one
+  // whose heading is not known, the heading that was reached is kept.
   void Update(Time now, double nose, const std::optional<TargetEstimate>& target,
               double link_delay_s);
 
