@@ -11,7 +11,8 @@
 namespace kestrel {
 
 // Returns the attitude (world_from_body) of a multicopter whose thrust, as an acceleration in the
-// world, is along its z axis; x lies above the heading 'yaw', rad, up to the product of both leans.
+// world, is along its z axis. y is across the heading 'yaw' (rad). x points along it where the lean
+// is to one side only, and else aside from it by about the product of both leans (rad).
 Eigen::Quaterniond MulticopterAttitude(const Eigen::Vector3d& thrust, double yaw);
 
 // Returns the motion of a multicopter's body (x forward, y left, z up) that follows 'position': its
