@@ -311,8 +311,9 @@ std::vector<std::string> CameraIntrinsics::Validate() const {
   Violations violations;
   CheckSide("width", width_px, &violations);
   CheckSide("height", height_px, &violations);
+  const bool has_size = violations.empty();
   CheckDistortion(*this, &violations);
-  if (width_px > 0 && height_px > 0) {
+  if (has_size) {
     CheckFocalLength("fx", fx_px, width_px, &violations);
     CheckFocalLength("fy", fy_px, width_px, &violations);
     CheckPrincipalPoint("cx", cx_px, width_px, &violations);

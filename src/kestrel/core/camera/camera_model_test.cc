@@ -216,6 +216,12 @@ TEST(CameraIntrinsics, EveryViolationIsNamed) {
               ElementsAre("image width is 0 px, expected 1 to 65535"));
   EXPECT_THAT(violations_of([](auto& c) { c.height_px = 70000; }),
               ElementsAre("image height is 70000 px, expected 1 to 65535"));
+  // No other value is judged by a size that cannot be.
+  EXPECT_THAT(violations_of([](auto& c) {
+                c.width_px = std::numeric_limits<int>::max();
+                c.cx_px = -800;
+              }),
+              ElementsAre("image width is 2147483647 px, expected 1 to 65535"));
   EXPECT_THAT(violations_of([](auto& c) { c.fx_px = 0; }),
               ElementsAre(HasSubstr("focal length fx is 0 px, expected 37.6")));
   EXPECT_THAT(violations_of([](auto& c) { c.fy_px = -261; }),
