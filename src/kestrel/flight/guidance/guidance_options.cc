@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/flight/guidance/guidance_options.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -66,6 +67,17 @@ std::vector<std::string> GuidanceOptions::Validate() const {
     violations.push_back("search_altitude_m is not between limits.floor_m and limits.ceiling_m");
   }
   return violations;
+}
+
+GuidanceOptions GuidanceOptions::WithinSight(double range_m) const {
+  constexpr double kLeastSearch_m = 1, kLeastFollow_m = 0.5;
+  constexpr double kAside = 0.8;  // a target beside the UAV is farther away, and seen obliquely
+  GuidanceOptions options = *this;
+  const double search_m = std::max({kAside * range_m, limits.floor_m, kLeastSearch_m});
+  options.search_altitude_m = std::min(search_altitude_m, search_m);
+  const double follow_m = std::max(kAside * range_m - leg_m, kLeastFollow_m);
+  options.follow_height_m = std::min(follow_height_m, follow_m);
+  return options;
 }
 
 std::optional<double> GuidanceOptions::HeadingOverPad() const {

@@ -15,8 +15,8 @@ namespace kestrel {
 struct GuidanceOptions {
   double leg_m = 0.35;  // distance from the body's origin down to the feet
   // Search, without a target: flies to the place where the vehicle should pass or was last, at this
-  // altitude above the world's z = 0. After search_wait_s there it flies a spiral out to
-  // search_radius_m (0: it stays).
+  // altitude above the world's z = 0 (lower: WithinSight). After search_wait_s there it flies a
+  // spiral out to search_radius_m (0: it stays).
   double search_altitude_m = 10;
   double search_wait_s = 15;
   double search_radius_m = 0;
@@ -105,7 +105,8 @@ struct GuidanceOptions {
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("leg_m", self.leg_m, "m", "from the body's origin down to the feet");
-    visitor("search_altitude_m", self.search_altitude_m, "m", "height above ground of the search");
+    visitor("search_altitude_m", self.search_altitude_m, "m",
+            "height above ground of the search; lower for a pad that is not seen from there");
     visitor("search_wait_s", self.search_wait_s, "s",
             "time at the search point before the UAV circles outwards");
     visitor("search_radius_m", self.search_radius_m, "m",
@@ -179,6 +180,10 @@ struct GuidanceOptions {
     visitor.Group("model", self.model);
   }
   std::vector<std::string> Validate() const;
+
+  // Returns these options for a target that is seen from 'range_m' at most: the search and the
+  // approach fly no higher than 0.8 of that, but not below limits.floor_m. 'range_m' is positive.
+  GuidanceOptions WithinSight(double range_m) const;
 
   // Returns touchdown_heading in rad; nothing for "any", and for a text that is not valid.
   std::optional<double> HeadingOverPad() const;

@@ -321,6 +321,23 @@ TEST(LandingGuidanceTest, TheAutopilotsOwnContactCounts) {
   EXPECT_EQ(flight.output.phase, Phase::kLanded);
 }
 
+TEST(GuidanceOptionsTest, SearchAndApproachStayWhereThePadIsSeen) {
+  const GuidanceOptions options;
+  const GuidanceOptions far = options.WithinSight(22);
+  EXPECT_EQ(far.search_altitude_m, options.search_altitude_m);
+  EXPECT_EQ(far.follow_height_m, options.follow_height_m);
+  EXPECT_EQ(options.WithinSight(5).search_altitude_m, 4);
+  EXPECT_EQ(options.WithinSight(5).follow_height_m, options.follow_height_m);
+  // The floor stays: it may be above trees.
+  const GuidanceOptions near = options.WithinSight(1.6);
+  EXPECT_EQ(near.search_altitude_m, options.limits.floor_m);
+  EXPECT_NEAR(near.follow_height_m, 0.8 * 1.6 - options.leg_m, 1e-12);
+  EXPECT_THAT(options.WithinSight(1e-3).Validate(), IsEmpty());
+  GuidanceOptions without_floor;
+  without_floor.limits.floor_m = 0;
+  EXPECT_THAT(without_floor.WithinSight(1e-3).Validate(), IsEmpty());
+}
+
 TEST(GuidanceOptionsTest, FaultyOptionsAreNamed) {
   GuidanceOptions options;
   options.leg_m = 3;

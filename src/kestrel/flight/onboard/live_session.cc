@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/flight/onboard/live_session.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -103,6 +104,7 @@ class LiveSession::Impl {
 
  private:
   void OpenVision();
+  void StayWithinSight();
   void OpenAutopilot();
   std::optional<ExposureDrive> Exposure();
   std::unique_ptr<FlightRecorder> OpenRecorder(const std::filesystem::path& folder, bool replace);
@@ -141,6 +143,7 @@ LiveSession::Impl::Impl(LiveSessionParts parts, LiveSessionOptions options)
   if (parts_.autopilot.empty() && !parts_.has_poses) options_.flight.events.pose_wait_s = 0;
   if (!parts_.record.empty()) recording_.Start(parts_.record, parts_.replace);
   OpenVision();
+  if (parts_.guides && landing_ != nullptr) StayWithinSight();
   if (!parts_.autopilot.empty()) OpenAutopilot();
   program_.emplace(options_.flight, options_.landing.tracker, ProgramParts(),
                    [this](const std::string& text) { Say(text); });
@@ -196,6 +199,26 @@ void LiveSession::Impl::OpenVision() {
     vision_ = std::move(landing);
   }
   vision_->SetAltitude(options_.altitude_m);
+}
+
+// A small pad, or a coarse image, shows nothing from the search altitude.
+void LiveSession::Impl::StayWithinSight() {
+  const CameraIntrinsics& camera = parts_.calibration.intrinsics;
+  const double range_m = ShapeOfTarget(options_.landing.target, options_.landing.detector)
+                             .SightRange(std::min(camera.fx_px, camera.fy_px));
+  GuidanceOptions& guidance = options_.flight.guidance;
+  const double asked_m = guidance.search_altitude_m;
+  guidance = guidance.WithinSight(range_m);
+  if (guidance.search_altitude_m == asked_m) return;
+  Say(
+      fmt::format("this camera sees the pad from {:.1f} m at most: guidance searches at {:.1f} m, "
+                  "not at search_altitude_m {:g}",
+                  range_m, guidance.search_altitude_m, asked_m));
+  if (range_m < guidance.limits.floor_m) {
+    Say(fmt::format("limits.floor_m {:g} is above that: a lost pad will not be found again",
+                    guidance.limits.floor_m),
+        EventLevel::kWarning);
+  }
 }
 
 std::optional<ExposureDrive> LiveSession::Impl::Exposure() {

@@ -38,6 +38,12 @@ LandingPipelineOptions PipelineOptions(const TouchdownSimulationOptions& simulat
   return options;
 }
 
+GuidanceOptions OptionsOfGuidance(const TouchdownSimulationOptions& simulation,
+                                  const CameraIntrinsics& camera) {
+  const TargetShape shape = ShapeOfTarget(simulation.target, PipelineOptions(simulation).detector);
+  return simulation.guidance.WithinSight(shape.SightRange(std::min(camera.fx_px, camera.fy_px)));
+}
+
 }  // namespace
 
 std::vector<std::string> TouchdownOptions::Validate() const {
@@ -94,7 +100,7 @@ TouchdownSimulation::TouchdownSimulation(const TouchdownSimulationOptions& optio
           [this](double time_s) { return path_.At(time_s); }, seed),
       start_(DrawStart()),
       multicopter_(options.multicopter, start_.position, start_.heading, start_.velocity),
-      guidance_(options.guidance, start_.place),
+      guidance_(OptionsOfGuidance(options, camera.intrinsics), start_.place),
       navigation_(landing_.flight().navigation()),
       clock_offset_(DurationFromSeconds(landing_.flight().errors().clock_offset_s)),
       pipeline_(WithClockOffset(camera, clock_offset_), PipelineOptions(options)),

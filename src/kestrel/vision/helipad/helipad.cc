@@ -119,9 +119,11 @@ TargetPrint PrintOf(const Helipad& helipad) {
 }
 
 TargetShape ShapeOf(const Helipad& helipad) {
+  constexpr double kSightPx = 20;  // extent of an H that nearly all images show
   TargetShape shape;
   shape.board_size_m = helipad.board_size_m;
   shape.diameter_m = std::hypot(helipad.height_m, helipad.width_m);
+  shape.max_pixel_m = shape.diameter_m / kSightPx;
   if (helipad.frame == "circle") {
     shape.outlines.push_back(CircleLine(0.5 * helipad.frame_size_m));
   } else if (helipad.frame == "square") {

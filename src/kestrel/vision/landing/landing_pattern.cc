@@ -73,9 +73,11 @@ std::vector<std::string> LandingPattern::Validate() const {
 }
 
 TargetShape ShapeOf(const LandingPattern& pattern) {
+  constexpr double kSightPx = 10;  // diameter of a ring that nearly all images show
   return {
       pattern.outer_diameter_m,
       pattern.board_size_m,
+      pattern.outer_diameter_m / kSightPx,
       {Circle(pattern.outer_radius_m()), Circle(pattern.inner_radius_m()), CrossOutline(pattern)}};
 }
 

@@ -39,6 +39,7 @@ std::vector<Eigen::Vector3d> OutlineOf(const PrintedTag& tag) {
 }  // namespace
 
 TargetShape ShapeOf(const TagBoard& board) {
+  constexpr double kSightPx = 20;  // side of a tag that nearly all images show
   TargetShape shape{};
   for (const PrintedTag& tag : board.Printed()) {
     shape.outlines.push_back(OutlineOf(tag));
@@ -46,6 +47,7 @@ TargetShape ShapeOf(const TagBoard& board) {
     shape.diameter_m = std::max(shape.diameter_m, 2 * (tag.center.norm() + M_SQRT2 * reach));
     shape.board_size_m =
         std::max(shape.board_size_m, 2 * (tag.center.lpNorm<Eigen::Infinity>() + reach));
+    shape.max_pixel_m = std::max(shape.max_pixel_m, 2 * reach / kSightPx);
   }
   for (const BoardTag& tag : board.tags) {
     shape.tags.push_back({tag.family, tag.id, tag.size_m, tag.board_from_tag});

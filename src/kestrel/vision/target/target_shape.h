@@ -25,12 +25,17 @@ struct TargetTag {
 struct TargetShape {
   double diameter_m = 0;    // of the circle around all that is detected
   double board_size_m = 0;  // side of the square board with its margin
+  // Largest size of a pixel on the board with which nearly all images of a search without a track
+  // show the pad (bench/sight_range).
+  double max_pixel_m = 0;
   // The edges of the print in frame P, m. The first one is the outermost. A lens bends lines:
   // straight edges therefore have points in between.
   std::vector<std::vector<Eigen::Vector3d>> outlines;
   std::vector<TargetTag> tags{};  // that it has, if any
 
   double radius_m() const { return 0.5 * diameter_m; }
+  // Distance (m) up to which it is found so, on the axis of a camera with that focal length.
+  double SightRange(double focal_px) const { return max_pixel_m * focal_px; }
 };
 
 }  // namespace kestrel

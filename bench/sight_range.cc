@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Part of the frames in which a pad is found without a track, by its extent in the image, through
+// the paper's lens at full and at half resolution. Usage:
+// sight_range [--target KIND] [--family NAME] [--board FILE] [--frames N] [--seed N]
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <opencv2/core.hpp>
+
+#include "for_each_index.h"
+#include "kestrel/core/base/random.h"
+#include "kestrel/core/camera/paper_camera.h"
+#include "kestrel/vision/helipad/test_helipad_images.h"
+#include "kestrel/vision/targets/make_target_detector.h"
+#include "report_main.h"
+
+namespace kestrel {
+namespace {
+
+constexpr std::array<double, 12> kExtents{8, 10, 12, 14, 16, 18, 20, 23, 26, 30, 35, 40};  // px
+
+struct Settings {
+  TargetOptions target;
+  int frames = 40;
+  std::uint64_t seed = 1;
+};
+
+CameraIntrinsics Halved(CameraIntrinsics camera) {
+  camera.width_px /= 2;
+  camera.height_px /= 2;
+  camera.fx_px /= 2;
+  camera.fy_px /= 2;
+  camera.cx_px /= 2;
+  camera.cy_px /= 2;
+  return camera;
+}
+
+// Returns the part of the frames at 'altitude' in which the pad is found at its place.
+double FoundAt(const TargetDetector& detector, const TargetPrint& print,
+               const PadRenderer& renderer, double altitude, const Settings& settings) {
+  std::vector<char> found(settings.frames);
+  ForEachIndex(found.size(), [&](std::size_t i) {
+    Random random(settings.seed + i);
+    PadImageOptions taken;
+    taken.noise = random.Uniform(1, 5);
+    taken.blur_px = random.Uniform(0.3, 0.9);
+    taken.contrast = random.Uniform(0.5, 1);
+    const RigidTransform pose = RandomPadBelow(altitude, &random);
+    LandingHint hint;
+    hint.up_in_camera = pose.rotation * Eigen::Vector3d::UnitZ();
+    const auto workspace = detector.MakeWorkspace();
+    const cv::Mat image = renderer.Render(print, pose, taken, random.Bits());
+    const auto report = detector.Detect(image, hint, *workspace);
+    if (!report.detection) return;
+    const Eigen::Vector3d error =
+        report.detection->camera_from_pattern.translation - pose.translation;
+    found[i] = error.norm() < 0.25 * altitude;
+  });
+  int sum = 0;
+  for (const char one : found) sum += one;
+  return static_cast<double>(sum) / settings.frames;
+}
+
+void PrintRange(const CameraModel& camera, const Settings& settings) {
+  const LandingPatternDetectorOptions ring;
+  const auto detector = MakeTargetDetector(camera, settings.target, ring);
+  const TargetPrint print = PrintOfTarget(settings.target, ring.pattern);
+  const PadRenderer renderer(camera);
+  for (const double extent : kExtents) {
+    const double altitude = detector->shape().diameter_m * camera.intrinsics().fx_px / extent;
+    fmt::print("| {} | {} px | {:.1f} m | {:.0f} px | {:.0f} % |\n", settings.target.kind,
+               camera.width_px(), altitude, extent,
+               100 * FoundAt(*detector, print, renderer, altitude, settings));
+  }
+}
+
+void Run(const Settings& settings) {
+  cv::setNumThreads(1);
+  fmt::print("| pad | image | altitude | extent | found |\n|---|---|---|---|---|\n");
+  PrintRange(CameraModel(PaperCamera()), settings);
+  PrintRange(CameraModel(Halved(PaperCamera())), settings);
+}
+
+}  // namespace
+}  // namespace kestrel
+
+int main(int argc, char** argv) {
+  CLI::App app("Extent in the image from which a pad is found");
+  kestrel::Settings settings;
+  app.add_option("--target", settings.target.kind, "Kind of the pad (ring-cross)");
+  app.add_option("--family", settings.target.apriltag.family, "Family of an apriltag (tag36h11)");
+  app.add_option("--board", settings.target.nested.board,
+                 "Board of nested and ring-with-tags (built in)");
+  app.add_option("--frames", settings.frames, "Frames for each extent (40)")
+      ->check(CLI::Range(1, 100000));
+  app.add_option("--seed", settings.seed, "Seed of the first frame (1)");
+  CLI11_PARSE(app, argc, argv);
+  return kestrel::ReportMain([&] {
+    kestrel::Run(settings);
+    return 0;
+  });
+}
