@@ -2,6 +2,7 @@
 // Part of the frames in which a pad is found without a track, by its extent in the image, through
 // the paper's lens at full and at half resolution. Usage:
 // sight_range [--target KIND] [--family NAME] [--board FILE] [--frames N] [--seed N]
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -12,10 +13,10 @@
 #include <opencv2/core.hpp>
 
 #include "for_each_index.h"
-#include "kestrel/core/base/random.h"
 #include "kestrel/core/camera/paper_camera.h"
 #include "kestrel/vision/helipad/test_helipad_images.h"
 #include "kestrel/vision/targets/make_target_detector.h"
+#include "kestrel/vision/targets/test_pad_search.h"
 #include "report_main.h"
 
 namespace kestrel {
@@ -29,40 +30,14 @@ struct Settings {
   std::uint64_t seed = 1;
 };
 
-CameraIntrinsics Halved(CameraIntrinsics camera) {
-  camera.width_px /= 2;
-  camera.height_px /= 2;
-  camera.fx_px /= 2;
-  camera.fy_px /= 2;
-  camera.cx_px /= 2;
-  camera.cy_px /= 2;
-  return camera;
-}
-
 // Returns the part of the frames at 'altitude' in which the pad is found at its place.
 double FoundAt(const TargetDetector& detector, const TargetPrint& print,
                const PadRenderer& renderer, double altitude, const Settings& settings) {
   std::vector<char> found(settings.frames);
   ForEachIndex(found.size(), [&](std::size_t i) {
-    Random random(settings.seed + i);
-    PadImageOptions taken;
-    taken.noise = random.Uniform(1, 5);
-    taken.blur_px = random.Uniform(0.3, 0.9);
-    taken.contrast = random.Uniform(0.5, 1);
-    const RigidTransform pose = RandomPadBelow(altitude, &random);
-    LandingHint hint;
-    hint.up_in_camera = pose.rotation * Eigen::Vector3d::UnitZ();
-    const auto workspace = detector.MakeWorkspace();
-    const cv::Mat image = renderer.Render(print, pose, taken, random.Bits());
-    const auto report = detector.Detect(image, hint, *workspace);
-    if (!report.detection) return;
-    const Eigen::Vector3d error =
-        report.detection->camera_from_pattern.translation - pose.translation;
-    found[i] = error.norm() < 0.25 * altitude;
+    found[i] = IsFoundFrom(altitude, detector, print, renderer, settings.seed + i);
   });
-  int sum = 0;
-  for (const char one : found) sum += one;
-  return static_cast<double>(sum) / settings.frames;
+  return static_cast<double>(std::count(found.begin(), found.end(), 1)) / settings.frames;
 }
 
 void PrintRange(const CameraModel& camera, const Settings& settings) {
@@ -82,7 +57,7 @@ void Run(const Settings& settings) {
   cv::setNumThreads(1);
   fmt::print("| pad | image | altitude | extent | found |\n|---|---|---|---|---|\n");
   PrintRange(CameraModel(PaperCamera()), settings);
-  PrintRange(CameraModel(Halved(PaperCamera())), settings);
+  PrintRange(CameraModel(AtHalfResolution(PaperCamera())), settings);
 }
 
 }  // namespace
