@@ -113,7 +113,8 @@ def _html_table(table: Table) -> str:
     text = f"<div class='table'><table><tr>{head}</tr>{rows}</table></div>"
     if not table.is_folded:
         return text
-    return f"<details><summary>{len(table.rows)} rows</summary>{text}</details>"
+    count = "1 row" if len(table.rows) == 1 else f"{len(table.rows)} rows"
+    return f"<details><summary>{count}</summary>{text}</details>"
 
 
 def _html_row(row: list[str]) -> str:
