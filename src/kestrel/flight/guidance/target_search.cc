@@ -16,6 +16,7 @@ constexpr double kLapsOnRoad = 1;  // follows a lap in the mind for no longer
 
 void TargetSearch::Start(const Vector2d& place) {
   lost_.reset();
+  waited_s_ = 0;
   is_on_road_ = false;
   step_ = "";
   spiral_.Start(place, {.wait_s = options_.search_wait_s, .radius_m = options_.search_radius_m});
@@ -46,6 +47,10 @@ Vector2d TargetSearch::Advance(Time now, const RoadMemory& road, const Vector2d&
       step_ = "searches around the place where it would be";
       spiral_.Start(uav, {.wait_s = 0, .radius_m = options_.search_distance_m});
     }
+  }
+  waited_s_ += seconds;
+  if (!lost_ && options_.search_radius_m == 0 && waited_s_ > options_.search_wait_s) {
+    step_ = "the target does not come into sight; stays here, as search_radius_m is 0";
   }
   return spiral_.Advance(uav, seconds);
 }

@@ -40,6 +40,7 @@ class TargetSearch {
   SearchPath spiral_;
   std::optional<Time> lost_;  // nothing: the target was never seen
   Eigen::Vector2d lost_at_{0, 0};
+  double waited_s_ = 0;
   bool is_on_road_ = false;  // expects the target where its road leads
   const char* step_ = "";
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -125,6 +126,23 @@ TEST(TargetSearchTest, EndsAfterItsLimitOnlyAfterALoss) {
   search.StartAfterLoss(AtSecond(1000), Driven(Straight, 5), {0, 0});
   EXPECT_FALSE(search.IsOver(AtSecond(1059)));
   EXPECT_TRUE(search.IsOver(AtSecond(1061)));
+}
+
+// The pilot learns why the UAV only hovers.
+TEST(TargetSearchTest, SaysThatItStaysWhereNothingComesIntoSight) {
+  GuidanceOptions options;
+  const auto step_after = [&](double wait_s) {
+    TargetSearch search(options);
+    search.Start({0, 0});
+    for (double time_s = 0; time_s < wait_s; time_s += 0.05) {
+      search.Advance(AtSecond(time_s), {}, {0, 0}, 0.05);
+    }
+    return std::string(search.step());
+  };
+  EXPECT_EQ(step_after(options.search_wait_s - 1), "");
+  EXPECT_THAT(step_after(options.search_wait_s + 1), HasSubstr("search_radius_m is 0"));
+  options.search_radius_m = 20;
+  EXPECT_EQ(step_after(options.search_wait_s + 1), "");
 }
 
 }  // namespace
