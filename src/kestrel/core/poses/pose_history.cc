@@ -27,6 +27,15 @@ double Growth(double rate_sigma, double acceleration, double ahead, double age) 
   return std::hypot(rate_sigma * ahead, acceleration * ahead * (0.5 * ahead + age));
 }
 
+// An autopilot turns a multicopter no faster (PX4's MC_ROLLRATE_MAX is 220 deg/s); the shock of a
+// touch-down does, for an instant.
+constexpr double kFastestTurn_radps = 4;
+
+Eigen::Vector3d WithoutShock(const Eigen::Vector3d& rate) {
+  const double turn = rate.norm();
+  return turn > kFastestTurn_radps ? Eigen::Vector3d(kFastestTurn_radps / turn * rate) : rate;
+}
+
 }  // namespace
 
 std::vector<std::string> UnmodelledMotion::Validate() const {
@@ -166,7 +175,7 @@ std::optional<PredictedPose> PoseHistory::Predict(Time time, Duration max_ahead,
   const double age = ToSeconds(motion_age);
   const RigidTransform& pose = newest.world_from_body;
   return PredictedPose{
-      {(pose.rotation * RotationBy(ahead * motion.rate_in_body)).normalized(),
+      {(pose.rotation * RotationBy(ahead * WithoutShock(motion.rate_in_body))).normalized(),
        pose.translation + ahead * motion.velocity_in_world},
       {Growth(unmodelled.velocity_sigma_mps, unmodelled.acceleration_mps2, ahead, age),
        Growth(unmodelled.rate_sigma_radps, unmodelled.angular_acceleration_radps2, ahead, age)},

@@ -106,8 +106,9 @@ class PoseHistory {
   std::optional<RigidTransform> Smooth(Time time, Duration half_window) const;
 
   // Same as Lookup, and up to 'max_ahead' after the newest sample it extrapolates the motion of
-  // that sample, with the uncertainty due to 'unmodelled'. When the newest sample has no motion, it
-  // uses the mean motion over the last 50 ms. Nothing when no motion is known.
+  // that sample, with the uncertainty due to 'unmodelled', but no turn above 4 rad/s. When the
+  // newest sample has no motion, it uses the mean motion over the last 50 ms. Nothing when no
+  // motion is known.
   std::optional<PredictedPose> Predict(Time time, Duration max_ahead,
                                        const UnmodelledMotion& unmodelled) const;
 

@@ -157,6 +157,17 @@ TEST(PoseHistory, PredictsByTheMotionOfTheNewestSample) {
   EXPECT_FALSE(history.Predict(At(1.101), kAhead, {}));
 }
 
+// The deck turns a UAV that touches down upright at once.
+TEST(PoseHistory, TheShockOfATouchDownDoesNotGoOn) {
+  PoseHistory history(10, kMaxGap);
+  PoseSample sample = Sample(1, 0);
+  sample.motion = BodyMotion{{0, 0, -0.7}, {30, 0, 0}};
+  history.Add(sample);
+  const auto pose = history.Predict(At(1.05), kAhead, {});
+  const Eigen::Quaterniond& before = sample.world_from_body.rotation;
+  EXPECT_NEAR(before.angularDistance(pose->world_from_body.rotation), 0.2, 1e-9);
+}
+
 TEST(PoseHistory, APredictionCostsMoreTheFurtherItGoes) {
   PoseHistory history(4, kMaxGap);
   PoseSample sample = Sample(1, 10);
