@@ -103,10 +103,7 @@ LandingHint HintAt(const RigidTransform& pose, double altitude_m, Random* random
 Descent FlyDown(const TargetDetector& detector, const TargetPrint& print,
                 const PadRenderer& renderer, std::uint64_t seed) {
   Random random(seed);
-  PadImageOptions taken;
-  taken.noise = random.Uniform(1, 5);
-  taken.blur_px = random.Uniform(0.3, 0.9);
-  taken.contrast = random.Uniform(0.5, 1);
+  const PadImageOptions taken = RandomPadImage(&random);
   const auto workspace = detector.MakeWorkspace();
   Descent descent;
   const double first = kBinEdges.back() * std::pow(kStep, random.Uniform());

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/flight/onboard/live_session.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -203,9 +202,8 @@ void LiveSession::Impl::OpenVision() {
 
 // A small pad, or a coarse image, shows nothing from the search altitude.
 void LiveSession::Impl::StayWithinSight() {
-  const CameraIntrinsics& camera = parts_.calibration.intrinsics;
   const double range_m = ShapeOfTarget(options_.landing.target, options_.landing.detector)
-                             .SightRange(std::min(camera.fx_px, camera.fy_px));
+                             .SightRange(parts_.calibration.intrinsics);
   GuidanceOptions& guidance = options_.flight.guidance;
   const double asked_m = guidance.search_altitude_m;
   guidance = guidance.WithinSight(range_m);

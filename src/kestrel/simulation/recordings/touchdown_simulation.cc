@@ -38,12 +38,6 @@ LandingPipelineOptions PipelineOptions(const TouchdownSimulationOptions& simulat
   return options;
 }
 
-GuidanceOptions OptionsOfGuidance(const TouchdownSimulationOptions& simulation,
-                                  const CameraIntrinsics& camera) {
-  const TargetShape shape = ShapeOfTarget(simulation.target, PipelineOptions(simulation).detector);
-  return simulation.guidance.WithinSight(shape.SightRange(std::min(camera.fx_px, camera.fy_px)));
-}
-
 }  // namespace
 
 std::vector<std::string> TouchdownOptions::Validate() const {
@@ -100,10 +94,12 @@ TouchdownSimulation::TouchdownSimulation(const TouchdownSimulationOptions& optio
           [this](double time_s) { return path_.At(time_s); }, seed),
       start_(DrawStart()),
       multicopter_(options.multicopter, start_.position, start_.heading, start_.velocity),
-      guidance_(OptionsOfGuidance(options, camera.intrinsics), start_.place),
       navigation_(landing_.flight().navigation()),
       clock_offset_(DurationFromSeconds(landing_.flight().errors().clock_offset_s)),
       pipeline_(WithClockOffset(camera, clock_offset_), PipelineOptions(options)),
+      guidance_(
+          options.guidance.WithinSight(pipeline_.detector().shape().SightRange(camera.intrinsics)),
+          start_.place),
       exposure_(options.exposure, options.recording.shutter.exposure_s),
       exposures_s_(kExposureDelay + 1, exposure_.exposure_s()) {
   Random random = RandomOf(seed, LandingPart::kWind);

@@ -151,12 +151,12 @@ class TouchdownSimulation {
   Path wind_;
   Start start_;
   Multicopter multicopter_;
-  LandingGuidance guidance_;
   NavigationSensor navigation_;
   PoseSample newest_pose_;
   int poses_ = 0;  // number of reported poses
   Duration clock_offset_;
   LandingPipeline pipeline_;
+  LandingGuidance guidance_;
   ExposureController exposure_;
   std::deque<double> exposures_s_;  // of the next images
   cv::Rect pattern_area_;           // in the newest processed image

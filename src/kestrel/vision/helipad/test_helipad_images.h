@@ -75,6 +75,15 @@ struct PadImageOptions {
   PadShadow shadow = {};
 };
 
+// Returns the conditions of a common image.
+inline PadImageOptions RandomPadImage(Random* random) {
+  PadImageOptions taken;
+  taken.noise = random->Uniform(1, 5);
+  taken.blur_px = random->Uniform(0.3, 0.9);
+  taken.contrast = random->Uniform(0.5, 1);
+  return taken;
+}
+
 // Renders prints on a textured ground through any lens, by the area at each of 16 places in a
 // pixel.
 class PadRenderer {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "kestrel/core/camera/camera_model.h"
 #include "kestrel/core/geometry/rigid_transform.h"
 
 namespace kestrel {
@@ -34,8 +36,10 @@ struct TargetShape {
   std::vector<TargetTag> tags{};  // that it has, if any
 
   double radius_m() const { return 0.5 * diameter_m; }
-  // Distance (m) up to which it is found so, on the axis of a camera with that focal length.
-  double SightRange(double focal_px) const { return max_pixel_m * focal_px; }
+  // Distance (m) up to which it is found so, on the axis of the camera.
+  double SightRange(const CameraIntrinsics& camera) const {
+    return max_pixel_m * std::min(camera.fx_px, camera.fy_px);
+  }
 };
 
 }  // namespace kestrel

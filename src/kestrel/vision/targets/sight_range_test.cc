@@ -23,7 +23,7 @@ class SightRangeTest : public testing::TestWithParam<std::string> {
     print_ = PrintOfTarget(target_, {});
   }
 
-  double Range() const { return detector_->shape().SightRange(camera_.intrinsics().fx_px); }
+  double Range() const { return detector_->shape().SightRange(camera_.intrinsics()); }
 
   // Returns in how many of kFrames frames from 'altitude' the pad is found without a track.
   int FoundFrom(double altitude) const {

@@ -27,10 +27,7 @@ inline CameraIntrinsics AtHalfResolution(CameraIntrinsics camera) {
 inline bool IsFoundFrom(double altitude, const TargetDetector& detector, const TargetPrint& print,
                         const PadRenderer& renderer, std::uint64_t seed) {
   Random random(seed);
-  PadImageOptions taken;
-  taken.noise = random.Uniform(1, 5);
-  taken.blur_px = random.Uniform(0.3, 0.9);
-  taken.contrast = random.Uniform(0.5, 1);
+  const PadImageOptions taken = RandomPadImage(&random);
   const RigidTransform pose = RandomPadBelow(altitude, &random);
   LandingHint hint;
   hint.up_in_camera = pose.rotation * Eigen::Vector3d::UnitZ();
