@@ -169,6 +169,14 @@ TEST_F(KestrelCommandTest, SaysWhereThePatternIsInTheWorld) {
   EXPECT_NEAR(std::stod(cells[12]), 0, 0.03);                    // p_WP_W_z_m
 }
 
+TEST_F(KestrelCommandTest, PicturesHaveTheColorsOfTheSource) {
+  const std::string output = folder_ / "out";
+  const std::string land = "land " + WriteRecording(3) + " --output " + output;
+  Succeed(land + " --annotate=images");
+  const cv::Mat picture = ReadImage(output + "/annotated/mav0/cam0/data/100000000.png");
+  EXPECT_EQ(picture.at<cv::Vec3b>(0, 600), cv::Vec3b(0, 0, 200));
+}
+
 TEST_F(KestrelCommandTest, WritesAnAnnotatedVideo) {
   const std::string output = folder_ / "out";
   Succeed("land --annotate " + WriteRecording() + " --output " + output);

@@ -24,6 +24,7 @@ void RunLand(const LandArguments& arguments) {
   LandingPipelineOptions options = all_options.landing;
   if (arguments.source.still) options.still = true;
   const OpenedSource opened = arguments.source.OpenOrAssume(PixelFormat::kGray);
+  opened.source->set_keeps_color(!arguments.source.annotate.empty());
   const bool has_track = opened.has_world() && !options.still;
   if (!arguments.predict_s.empty() && !has_track) {
     fmt::print(stderr,

@@ -21,7 +21,9 @@ CLI::Validator InRange(double min, double max, const std::string& words) {
   return CLI::Validator(
       [=](const std::string& text) {
         const auto number = ParseNumber<double>(text);
-        return number && *number > min && *number < max ? "" : "expected " + words;
+        return number && *number > min && *number < max
+                   ? ""
+                   : "expected " + words + DecimalCommaAdvice(text);
       },
       "");
 }

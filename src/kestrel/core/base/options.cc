@@ -54,7 +54,8 @@ std::string Expected(const OptionField& field) {
 
 void AssignText(const std::string& text, const std::string& where, const OptionField& field) {
   if (std::visit(Assigner{text}, field.value)) return;
-  throw InputError(fmt::format("{}: {} is '{}', {}", where, field.key, text, Expected(field)));
+  throw InputError(fmt::format("{}: {} is '{}', {}{}", where, field.key, text, Expected(field),
+                               DecimalCommaAdvice(text)));
 }
 
 std::pair<std::string_view, std::string_view> SplitLast(std::string_view key) {

@@ -10,6 +10,7 @@ namespace kestrel {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 struct LensOptions {
   double focal_px = 261.25;
@@ -91,8 +92,17 @@ TEST(Options, WrongTypeNamesFileLineKeyAndWhatWasExpected) {
   EXPECT_THAT(ReadError("lens: 3\n"), HasSubstr("expected a group"));
 }
 
+TEST(Options, ReadsNumbersAsTheyAreWritten) {
+  for (const char* value : {"8.5", "+8.5", " 8.5 ", "85e-1", "008.50"}) {
+    EXPECT_EQ(Read(std::string("range_m: ") + value + "\n").range_m, 8.5) << value;
+  }
+  EXPECT_THAT(ReadError("range_m: 8,5\n"), HasSubstr("expected a finite number (m): write 8.5"));
+  EXPECT_THAT(ReadError("range_m: a,b\n"), Not(HasSubstr("write")));
+}
+
 TEST(Options, RefusesNumbersThatAreNone) {
-  for (const char* value : {"nan", ".nan", "inf", "-inf", ".inf", "1e999", "1 2", "''", "~"}) {
+  for (const char* value :
+       {"nan", "+", "+-1", "++1", ".nan", "inf", "-inf", ".inf", "1e999", "1 2", "''", "~"}) {
     EXPECT_NE(ReadError(std::string("range_m: ") + value + "\n"), "") << value;
   }
 }

@@ -5,19 +5,21 @@
 #include <cmath>
 #include <concepts>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace kestrel {
 
-// Parses 'text' as a single number. Blanks around it are ignored, and the locale has no effect.
-// Returns nothing when there is any other text, when the number does not fit into Number, or when
-// it is NaN or infinite.
+// Parses 'text' as a single number. Blanks around it and a plus before it are ignored, and the
+// locale has no effect. Returns nothing when there is any other text, when the number does not fit
+// into Number, or when it is NaN or infinite.
 template <class Number>
 std::optional<Number> ParseNumber(std::string_view text) {
   constexpr std::string_view kBlanks = " \t\r";
   const std::size_t first = text.find_first_not_of(kBlanks);
   if (first == std::string_view::npos) return std::nullopt;
   text = text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
   Number number{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
@@ -25,6 +27,14 @@ std::optional<Number> ParseNumber(std::string_view text) {
     if (!std::isfinite(number)) return std::nullopt;
   }
   return number;
+}
+
+// Returns advice that follows "expected a number": for "8,5" that 8.5 is meant, else nothing.
+inline std::string DecimalCommaAdvice(std::string text) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string::npos) return "";
+  text[comma] = '.';
+  return ParseNumber<double>(text) ? ": write " + text : "";
 }
 
 }  // namespace kestrel

@@ -67,7 +67,8 @@ void LandingFiles::Take(const Observation& observation) {
   const TargetDetector& detector = pipeline_->detector();
   results_.WritePicture(
       frame.name,
-      DrawLandingOverlay(frame.image, detector.camera(), detector.shape(), seen,
+      DrawLandingOverlay(frame.color.empty() ? frame.image : frame.color, detector.camera(),
+                         detector.shape(), seen,
                          {only_in_image_, NextSecond(pipeline_->tracker(), seen.time)}));
 }
 

@@ -103,7 +103,9 @@ Frame BagSource::FrameOf(const BagMessage& message) const {
   frame.time = TimeOf(image.header, message);
   frame.name = fmt::format("{}/{}", topic.name.substr(topic.name.starts_with('/')),
                            ToNanoseconds(frame.time));
-  frame.image = DecodeImage(image, format(), fmt::format("{}: {}", path_, frame.name));
+  const std::string name = fmt::format("{}: {}", path_, frame.name);
+  frame.image = DecodeImage(image, format(), name);
+  if (keeps_color()) frame.color = DecodeImage(image, PixelFormat::kBgr, name);
   return frame;
 }
 

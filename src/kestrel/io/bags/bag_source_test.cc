@@ -109,6 +109,17 @@ INSTANTIATE_TEST_SUITE_P(Kinds, EveryBag,
                            return name;
                          });
 
+TEST(BagSource, KeepsTheColorsBesideTheGray) {
+  const TestFolder folder;
+  WriteTestFlight(folder / "flight.mcap", 3);
+  BagSource source(folder / "flight.mcap", {});
+  source.set_keeps_color(true);
+  Frame frame;
+  ASSERT_TRUE(source.Next(&frame));
+  EXPECT_EQ(frame.image.type(), CV_8UC1);
+  EXPECT_EQ(frame.color.type(), CV_8UC3);
+}
+
 // A cut removes only images that are not complete.
 TEST(BagSource, ReadsAllWholeImagesOfACutBag) {
   const TestFolder folder;

@@ -20,6 +20,7 @@ struct Frame {
   std::string name;  // path of the image, as given or relative to the source
   Time time;         // middle of the exposure, on the clock of the images
   cv::Mat image;     // in the format that was requested of the source
+  cv::Mat color{};   // the same in colour, CV_8UC3, where the source keeps it; else empty
 };
 
 }  // namespace kestrel

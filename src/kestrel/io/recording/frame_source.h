@@ -42,6 +42,8 @@ class FrameSource {
 
   // Sets the pixel format of the next frames; it is gray by default.
   void set_format(PixelFormat format) { format_ = format; }
+  // The next frames also have their image in colour, for pictures of them; not by default.
+  void set_keeps_color(bool keeps_color) { keeps_color_ = keeps_color; }
 
   // Fills 'frame' with the next image; returns false at the end. Frames are in order of time.
   // Throws InputError when an image is missing, broken or of an unsupported kind (16 bits), and at
@@ -69,9 +71,11 @@ class FrameSource {
 
  protected:
   PixelFormat format() const { return format_; }
+  bool keeps_color() const { return keeps_color_; }
 
  private:
   PixelFormat format_ = PixelFormat::kGray;
+  bool keeps_color_ = false;
 };
 
 inline CameraMount FrameSource::mount() const {

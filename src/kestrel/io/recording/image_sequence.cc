@@ -86,6 +86,7 @@ bool ImageSequence::Read(std::size_t index, Frame* frame) const {
   frame->name = item.name;
   frame->time = item.time;
   frame->image = ReadImage(item.path, format());
+  if (keeps_color()) frame->color = ReadImage(item.path, PixelFormat::kBgr);
   return true;
 }
 

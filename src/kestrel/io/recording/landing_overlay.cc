@@ -41,9 +41,9 @@ Polyline LineBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
 
 class Canvas {
  public:
-  explicit Canvas(const cv::Mat& gray) {
-    cv::cvtColor(gray, image_, cv::COLOR_GRAY2BGR);
-    scale_ = std::clamp(gray.cols / 900.0, 0.4, 4.0);
+  explicit Canvas(const cv::Mat& image) : image_(image.clone()) {
+    if (image.channels() == 1) cv::cvtColor(image, image_, cv::COLOR_GRAY2BGR);
+    scale_ = std::clamp(image.cols / 900.0, 0.4, 4.0);
   }
 
   void DrawLine(const Polyline& line, const Projection& project, const cv::Scalar& color) {

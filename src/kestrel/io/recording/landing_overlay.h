@@ -18,12 +18,12 @@ struct LandingOverlayOptions {
   std::vector<Eigen::Vector3d> path_in_world;
 };
 
-// Returns the frame (CV_8UC1) with the result drawn in, as CV_8UC3 (BGR). With a detection: the
-// outlines of the pad as the pose projects them through the lens, the centre, the axes (x red, y
-// green, z blue), and in words what it is, id, distance and quality. Otherwise: the stage at which
-// the best candidate was rejected, and why. For a misfit also the print where it is seen, in
-// another colour. Where the pose of the camera is known: the path of the track. At the bottom a
-// legend of the colours.
+// Returns the frame (CV_8UC1, or CV_8UC3 in BGR) with the result drawn in, as CV_8UC3 (BGR). With a
+// detection: the outlines of the pad as the pose projects them through the lens, the centre, the
+// axes (x red, y green, z blue), and in words what it is, id, distance and quality. Otherwise: the
+// stage at which the best candidate was rejected, and why. For a misfit also the print where it is
+// seen, in another colour. Where the pose of the camera is known: the path of the track. At the
+// bottom a legend of the colours.
 cv::Mat DrawLandingOverlay(const cv::Mat& image, const CameraModel& camera,
                            const TargetShape& shape, const LandingObservation& observation,
                            const LandingOverlayOptions& options = {});

@@ -37,6 +37,7 @@ class VideoSource : public FrameSource {
     frame->name = fmt::format("{}/{:06}", name_, next_);
     frame->time = last_time_ = NextTime(time);
     frame->image = ToFormat(image, format(), frame->name);
+    if (keeps_color()) frame->color = ToFormat(image, PixelFormat::kBgr, frame->name);
     ++next_;
     return true;
   }

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kestrel/io/recording/image_file.h"
 #include "kestrel/io/recording/test_files.h"
 
 namespace kestrel {
@@ -50,8 +51,19 @@ TEST(VideoSource, GivesColorsAsTheyWere) {
       ASSERT_TRUE(source->Next(&frame));
       ASSERT_EQ(frame.image.type(), CV_8UC3);
       EXPECT_LT(cv::norm(cv::mean(frame.image) - color, cv::NORM_INF), 6) << file.path() << color;
+      EXPECT_TRUE(frame.color.empty());
     }
   }
+}
+
+TEST(VideoSource, KeepsTheColorsBesideTheGray) {
+  const TestFolder folder;
+  const auto source = OpenVideoFile(WriteVideo(folder, VideoFormat::kAvi));
+  source->set_keeps_color(true);
+  Frame frame;
+  ASSERT_TRUE(source->Next(&frame));
+  ASSERT_EQ(frame.color.type(), CV_8UC3);
+  EXPECT_EQ(cv::norm(ToFormat(frame.color, PixelFormat::kGray, ""), frame.image, cv::NORM_INF), 0);
 }
 
 TEST(VideoSource, VideoThatEndsEarlyGivesItsFramesAndThenSaysSo) {
