@@ -12,6 +12,7 @@ namespace kestrel {
 namespace {
 
 constexpr std::size_t kWaitingPoses = 256;  // several seconds of poses of any autopilot
+constexpr std::size_t kWaitingFrames = 10;  // of 30 per second, for poses as late as below
 constexpr double kDelayMemory_s = 5;        // a large delay of a pose counts for so long
 constexpr double kLongestDelay_s = 0.3;     // a pose that is later is of no use
 
@@ -29,17 +30,25 @@ std::vector<std::string> LiveEventsOptions::Validate() const {
 }
 
 LiveEvents::LiveEvents(const LiveEventsOptions& options, Duration lead)
-    : pose_wait_(PoseWaitOf(options)), lead_(lead), poses_(kWaitingPoses) {}
+    : pose_wait_(PoseWaitOf(options)), lead_(lead), poses_(kWaitingPoses) {
+  frames_.reserve(kWaitingFrames);
+}
 
 void LiveEvents::Push(Frame frame) {
-  std::optional<WaitingFrame> arrived(WaitingFrame{std::move(frame), Time()});
+  WaitingFrame arrived{std::move(frame), Time(), false};
   {
     const std::lock_guard lock(mutex_);
-    arrived->deadline = DeadlineOf(arrived->frame, Now());
-    // The frame that waits for its pose stays. If every newer frame replaced it, and poses took
-    // longer than the time between frames, no frame would ever get through.
-    std::swap(waiting_ ? newest_ : waiting_, arrived);
-    if (arrived) ++counters_.dropped_frames;
+    const Time now = Now();
+    arrived.has_pose = IsPosed(arrived.frame);
+    arrived.ready = arrived.has_pose ? now : DeadlineOf(arrived.frame, now);
+    // Those that have waited longer stay. If newer ones replaced them, and poses took longer than
+    // so many frames, none would ever get through.
+    if (frames_.size() < kWaitingFrames) {
+      frames_.push_back(std::move(arrived));
+    } else {
+      std::swap(frames_.back(), arrived);
+      ++counters_.dropped_frames;
+    }
   }
   changed_.notify_one();
 }
@@ -60,13 +69,20 @@ void LiveEvents::LearnDelay(const PoseSample& pose, Time now) {
 void LiveEvents::Push(const PoseSample& pose) {
   {
     const std::lock_guard lock(mutex_);
-    LearnDelay(pose, Now());
+    const Time now = Now();
+    LearnDelay(pose, now);
     if (pose_count_ == poses_.size()) {
       first_pose_ = (first_pose_ + 1) % poses_.size();
       --pose_count_;
       ++counters_.dropped_poses;
     }
     poses_[(first_pose_ + pose_count_++) % poses_.size()] = pose;
+    newest_pose_ = pose.time;
+    for (WaitingFrame& waiting : frames_) {
+      if (waiting.has_pose || !IsPosed(waiting.frame)) continue;
+      waiting.has_pose = true;
+      waiting.ready = std::min(waiting.ready, now);
+    }
   }
   changed_.notify_one();
 }
@@ -79,27 +95,32 @@ void LiveEvents::Close() {
   changed_.notify_all();
 }
 
-bool LiveEvents::HasPoseAfter(const Frame& frame) const {
+bool LiveEvents::IsPosed(const Frame& frame) const {
   return newest_pose_ && *newest_pose_ >= frame.time + lead_;
 }
 
-bool LiveEvents::IsReady(const std::optional<WaitingFrame>& frame, Time now) const {
-  return frame && (now >= frame->deadline || HasPoseAfter(frame->frame));
+// Drops frames that could have gone while the reader was busy, and have a successor that can go
+// now. Those that become ready together, as their poses came together, stay.
+void LiveEvents::DropStale(Time now) {
+  constexpr Duration kFresh = std::chrono::milliseconds(10);
+  while (frames_.size() > 1 && frames_[0].ready + kFresh < now && frames_[1].ready <= now) {
+    frames_.erase(frames_.begin());
+    ++counters_.dropped_frames;
+  }
 }
 
 Event LiveEvents::TakePose() {
   const PoseSample pose = poses_[first_pose_];
   first_pose_ = (first_pose_ + 1) % poses_.size();
   --pose_count_;
-  newest_pose_ = pose.time;
   return pose;
 }
 
 Event LiveEvents::TakeFrame() {
   ++counters_.frames;
-  if (!HasPoseAfter(waiting_->frame)) ++counters_.unposed_frames;
-  Event event = std::move(waiting_->frame);
-  waiting_ = std::exchange(newest_, std::nullopt);
+  if (!frames_.front().has_pose) ++counters_.unposed_frames;
+  Event event = std::move(frames_.front().frame);
+  frames_.erase(frames_.begin());
   return event;
 }
 
@@ -108,17 +129,14 @@ Event LiveEvents::Next() {
   for (;;) {
     if (is_closed_) return EndOfStream{};
     if (pose_count_ > 0) return TakePose();
-    if (!waiting_) {
+    if (frames_.empty()) {
       changed_.wait(lock);
       continue;
     }
     const Time now = Now();
-    if (IsReady(newest_, now)) {
-      waiting_ = std::exchange(newest_, std::nullopt);
-      ++counters_.dropped_frames;
-    }
-    if (IsReady(waiting_, now)) return TakeFrame();
-    changed_.wait_for(lock, waiting_->deadline - now);
+    DropStale(now);
+    if (frames_.front().ready <= now) return TakeFrame();
+    changed_.wait_for(lock, frames_.front().ready - now);
   }
 }
 

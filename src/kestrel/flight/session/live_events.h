@@ -29,9 +29,10 @@ struct LiveEventsOptions {
   std::vector<std::string> Validate() const;
 };
 
-// The stream of a flight: several threads put in frames and poses, one thread processes them. While
-// that thread is busy, only the newest frame that has its pose is kept for it. The threads that put
-// in never wait, and nothing is allocated once the image memory is.
+// The stream of a flight: several threads put in frames and poses, one thread processes them.
+// Frames wait for the pose after them, in order; over a slow link many are on their way at once.
+// While the thread is busy, only the newest of those that have their pose is kept for it. The
+// threads that put in never wait, and nothing is allocated once the image memory is.
 class LiveEvents : public EventSource {
  public:
   // 'lead': a frame needs poses until its time + 'lead', see RecordingEvents. Throws InputError
@@ -53,12 +54,13 @@ class LiveEvents : public EventSource {
  private:
   struct WaitingFrame {
     Frame frame;
-    Time deadline;  // time at which the frame goes without a pose
+    Time ready;  // time at which it goes: when its pose came, or else its deadline
+    bool has_pose;
   };
   Time DeadlineOf(const Frame& frame, Time now) const;
   void LearnDelay(const PoseSample& pose, Time now);
-  bool HasPoseAfter(const Frame& frame) const;
-  bool IsReady(const std::optional<WaitingFrame>& frame, Time now) const;
+  bool IsPosed(const Frame& frame) const;
+  void DropStale(Time now);
   Event TakePose();
   Event TakeFrame();
 
@@ -70,11 +72,10 @@ class LiveEvents : public EventSource {
   std::vector<PoseSample> poses_;  // a ring
   std::size_t first_pose_ = 0;
   std::size_t pose_count_ = 0;
-  std::optional<Time> newest_pose_;  // that was given out
+  std::optional<Time> newest_pose_;  // that was put in
   double pose_delay_s_ = 0;          // the largest of the last seconds
   Time delay_learnt_;
-  std::optional<WaitingFrame> waiting_;  // the next frame to be given out
-  std::optional<WaitingFrame> newest_;   // the newest frame that came after it
+  std::vector<WaitingFrame> frames_;  // in order of time
   Counters counters_;
   bool is_closed_ = false;
 };
