@@ -92,6 +92,7 @@ PoseFate AutopilotPoses::MakePose(const AttitudeSample& sample, Time received, C
   const double age_s = position_ ? SecondsBetween(position_->boot_ms, sample.boot_ms) : 0;
   if (!position_ || std::abs(age_s) > position_age_s_) return PoseFate::kWithoutPosition;
   pose->time = clock->sync().ToLocal(remote_ns);
+  pose->time_sigma_s = clock->sync().sigma_s(received);
   pose->world_from_body = {EnuFluFromNedFrd(sample.ned_from_frd).normalized(),
                            position_->in_world + age_s * position_->velocity_in_world};
   pose->motion = BodyMotion{position_->velocity_in_world, FluFromFrd(sample.rate_in_frd)};

@@ -24,6 +24,7 @@ struct PoseSample {
   Time time;
   RigidTransform world_from_body;
   std::optional<BodyMotion> motion = std::nullopt;  // where the navigation reports it
+  double time_sigma_s = 0;  // standard deviation of 'time': over a link clocks agree within this
 };
 
 // Changes of the motion that no sample reports, which make a prediction beyond the samples

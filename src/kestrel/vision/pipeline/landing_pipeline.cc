@@ -2,6 +2,7 @@
 #include "kestrel/vision/pipeline/landing_pipeline.h"
 
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 #include "kestrel/core/base/options.h"
@@ -43,7 +44,10 @@ class LandingPipeline::Impl {
   Impl(const CameraCalibration& calibration, std::unique_ptr<const TargetDetector> own_detector,
        const LandingPipelineOptions& options);
 
-  PoseStatus AddPose(const PoseSample& sample) { return poses_.Add(sample); }
+  PoseStatus AddPose(const PoseSample& sample) {
+    pose_time_sigma_s_ = sample.time_sigma_s;
+    return poses_.Add(sample);
+  }
   void SetAltitude(std::optional<double> altitude_m) { altitude_m_ = altitude_m; }
   void LimitSearch(double max_search_ms) { max_search_ms_ = max_search_ms; }
   void ChangeOptions(const LandingPipelineOptions& options);
@@ -77,6 +81,7 @@ class LandingPipeline::Impl {
   void AddTrack(const LandingObservation& observation, LandingHint* hint) const;
   void AddLastSighting(const LandingObservation& observation, LandingHint* hint) const;
   void LocateInWorld(LandingObservation* observation) const;
+  Eigen::Vector3d SweepOf(const LandingObservation& observation) const;
   TargetMeasurement MeasurementOf(const LandingObservation& observation) const;
   void Track(LandingObservation* observation);
   void Remember(const LandingObservation& observation);
@@ -86,6 +91,7 @@ class LandingPipeline::Impl {
   std::unique_ptr<const TargetDetector> detector_;
   std::unique_ptr<TargetWorkspace> workspace_;
   CameraPoses poses_;
+  double pose_time_sigma_s_ = 0;
   std::optional<double> altitude_m_;
   TargetTracker tracker_;
   bool is_track_trusted_ = true;  // the last detection was where the track predicted it
@@ -240,17 +246,30 @@ void LandingPipeline::Impl::LocateInWorld(LandingObservation* observation) const
   observation->position_method = PositionMethod::kAltitude;
 }
 
+// Velocity (m/s) with which the view sweeps over the ground where the pad is seen.
+Eigen::Vector3d LandingPipeline::Impl::SweepOf(const LandingObservation& observation) const {
+  constexpr Duration kStep = std::chrono::milliseconds(10);
+  const auto before = poses_.At(observation.time - kStep);
+  if (!before) return Eigen::Vector3d::Zero();
+  const Eigen::Vector3d& center = observation.report.detection->camera_from_pattern.translation;
+  return (*observation.world_from_camera * center - before->world_from_camera * center) /
+         ToSeconds(kStep);
+}
+
 TargetMeasurement LandingPipeline::Impl::MeasurementOf(
     const LandingObservation& observation) const {
   const LandingDetection& detection = *observation.report.detection;
   const Eigen::Vector3d& center = detection.camera_from_pattern.translation;
   const Eigen::Quaterniond& rotation = observation.world_from_camera->rotation;
   const MeasurementNoise noise = WithPose(options_.noise, observation.pose_uncertainty);
+  const double clock_sigma_s = std::hypot(noise.clock_sigma_s, pose_time_sigma_s_);
+  const Eigen::Vector3d late_m = clock_sigma_s * SweepOf(observation);
   TargetMeasurement measurement;
   measurement.time = observation.time;
   measurement.position_in_world = *observation.center_in_world;
   measurement.covariance =
-      CovarianceInWorld(detection.covariance.topLeftCorner<3, 3>(), center, rotation, noise);
+      CovarianceInWorld(detection.covariance.topLeftCorner<3, 3>(), center, rotation, noise) +
+      late_m * late_m.transpose();
   measurement.shared_covariance = SharedCovarianceInWorld(center, rotation, noise);
   if (!options_.track_yaw || !observation.yaw_in_world) return measurement;
   measurement.yaw = observation.yaw_in_world;

@@ -123,6 +123,34 @@ TEST_F(LandingPipelineTest, FindsThePatternAgainWhereverItJumps) {
   }
 }
 
+// The UAV swings, and its poses are stamped 10 ms too late: a pattern 10 m below seems to move to
+// and fro by a third of a metre. Who knows how uncertain the stamps are keeps the track.
+TEST_F(LandingPipelineTest, PosesOfAnUncertainTimeDoNotEndATrack) {
+  constexpr Duration kFrame = std::chrono::milliseconds(50);
+  constexpr Duration kLate = std::chrono::milliseconds(10);
+  const auto body_at = [](Time time) {
+    const double swing_rad = 0.35 * std::sin(9 * ToSeconds(time - kTime));
+    return RigidTransform{Rotation(swing_rad, Eigen::Vector3d::UnitX()), {10, 20, 10}};
+  };
+  const auto count_outside = [&](double sigma_s) {
+    LandingPipeline pipeline(calibration_, options_);
+    int outside = 0;
+    for (int i = 0; i < 40; ++i) {
+      const Time time = kTime + i * kFrame;
+      for (const Duration before : {kFrame / 2, Duration::zero()}) {
+        pipeline.AddPose({time - before, body_at(time - before - kLate), std::nullopt, sigma_s});
+      }
+      world_from_body_ = body_at(time);
+      const LandingObservation observation = pipeline.Process(Draw(), time);
+      EXPECT_TRUE(observation.report.detection) << i;
+      outside += observation.fate == MeasurementFate::kFarFromTrack ? 1 : 0;
+    }
+    return outside;
+  };
+  EXPECT_GT(count_outside(0), 5);
+  EXPECT_EQ(count_outside(0.01), 0);
+}
+
 // The UAV hovers, the pattern moves at 2 m/s; the frames are 0.1 s apart.
 TEST_F(LandingPipelineTest, FollowsAndPredictsThePattern) {
   LandingPipeline pipeline(calibration_, options_);

@@ -34,6 +34,7 @@ std::vector<std::string> MeasurementNoise::Validate() const {
   };
   require(pose_sigma_m > 0 && pose_sigma_m < 100, "pose_sigma_m must be positive, below 100");
   require(attitude_sigma_deg >= 0 && attitude_sigma_deg < 90, "attitude_sigma_deg must be 0 to 90");
+  require(clock_sigma_s >= 0 && clock_sigma_s < 1, "clock_sigma_s must be 0 to 1");
   require(pose_bias_m >= 0 && pose_bias_m < 100, "pose_bias_m must be 0 to 100");
   require(attitude_bias_deg >= 0 && attitude_bias_deg < 90, "attitude_bias_deg must be 0 to 90");
   require(scale_bias >= 0 && scale_bias < 1, "scale_bias must be 0 to 1");

@@ -16,6 +16,7 @@ namespace kestrel {
 struct MeasurementNoise {
   double pose_sigma_m = 0.01;        // of the UAV's position, per axis
   double attitude_sigma_deg = 0.15;  // of the UAV's attitude, per axis
+  double clock_sigma_s = 0;          // of the poses' times, besides PoseSample::time_sigma_s
   double pose_bias_m = 0.03;         // of the UAV's position, per axis, the same in all frames
   double attitude_bias_deg = 0.2;    // of the UAV's attitude and the camera's mount, per axis
   double scale_bias = 0.002;         // of the pattern's size and the focal length, relative
@@ -25,6 +26,8 @@ struct MeasurementNoise {
     visitor("pose_sigma_m", self.pose_sigma_m, "m", "noise of the UAV's position, per axis");
     visitor("attitude_sigma_deg", self.attitude_sigma_deg, "deg",
             "noise of the UAV's attitude, per axis");
+    visitor("clock_sigma_s", self.clock_sigma_s, "s",
+            "error of the poses' times, besides what the autopilot's link is known to cause");
     visitor("pose_bias_m", self.pose_bias_m, "m",
             "error of the UAV's position that all frames share, per axis");
     visitor("attitude_bias_deg", self.attitude_bias_deg, "deg",
@@ -39,7 +42,8 @@ struct MeasurementNoise {
 MeasurementNoise WithPose(const MeasurementNoise& noise, const PoseUncertainty& pose);
 
 // Returns the covariance (m^2) of the errors that differ from frame to frame, for a position in the
-// world seen at 'center_in_camera' with 'covariance_in_camera'.
+// world seen at 'center_in_camera' with 'covariance_in_camera'. Without that of the poses'
+// times.
 Eigen::Matrix3d CovarianceInWorld(const Eigen::Matrix3d& covariance_in_camera,
                                   const Eigen::Vector3d& center_in_camera,
                                   const Eigen::Quaterniond& world_from_camera,

@@ -40,7 +40,7 @@ TEST(YawVarianceInWorld, IsThatAboutTheVertical) {
 
 TEST(MeasurementNoise, IsChecked) {
   EXPECT_TRUE(MeasurementNoise().Validate().empty());
-  EXPECT_EQ((MeasurementNoise{0, -1, -1, 90, 2}).Validate().size(), 5u);
+  EXPECT_EQ((MeasurementNoise{0, -1, -1, -1, 90, 2}).Validate().size(), 6u);
 }
 
 }  // namespace
