@@ -34,7 +34,7 @@ TEST(GuidedSession, SearchesWhereThePadIsSeen) {
   // size.
   const std::string small = EventsWithTagOf(0.8);
   EXPECT_THAT(small, HasSubstr("sees the pad from 7.5 m at most"));
-  EXPECT_THAT(small, HasSubstr("searches at 6.0 m, not at search_altitude_m 10"));
+  EXPECT_THAT(small, HasSubstr("searches at 6.0 m, not at search_altitude_m 10, and out to 4.0 m"));
   EXPECT_THAT(small, Not(HasSubstr("limits.floor_m")));
   EXPECT_THAT(EventsWithTagOf(2), Not(HasSubstr("sees the pad")));
   EXPECT_THAT(EventsWithTagOf(0.2), HasSubstr("limits.floor_m 3 is above that"));

@@ -75,6 +75,9 @@ GuidanceOptions GuidanceOptions::WithinSight(double range_m) const {
   GuidanceOptions options = *this;
   const double search_m = std::max({kAside * range_m, limits.floor_m, kLeastSearch_m});
   options.search_altitude_m = std::min(search_altitude_m, search_m);
+  // From lower the camera sees less to the sides: a spiral covers what is missing.
+  options.search_radius_m =
+      std::max(search_radius_m, search_altitude_m - options.search_altitude_m);
   const double follow_m = std::max(kAside * range_m - leg_m, kLeastFollow_m);
   options.follow_height_m = std::min(follow_height_m, follow_m);
   return options;

@@ -182,7 +182,8 @@ struct GuidanceOptions {
   std::vector<std::string> Validate() const;
 
   // Returns these options for a target that is seen from 'range_m' at most: the search and the
-  // approach fly no higher than 0.8 of that, but not below limits.floor_m. 'range_m' is positive.
+  // approach fly no higher than 0.8 of that, but not below limits.floor_m. A search that flies
+  // lower for that spirals out as far as it flies lower. 'range_m' is positive.
   GuidanceOptions WithinSight(double range_m) const;
 
   // Returns touchdown_heading in rad; nothing for "any", and for a text that is not valid.

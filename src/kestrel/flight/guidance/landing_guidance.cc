@@ -379,7 +379,10 @@ void LandingGuidance::ChooseDescent(const GuidanceInput& input, const Situation&
   if (phase_ == GuidancePhase::kDescend) {
     if (!now.is_known) return GoAround("the target is not known well enough");
     if (!now.is_credible) return GoAround("the target rises or sinks: not a deck");
-    if (now.off_m > 2 * cone_m) return GoAround("too far beside the target");
+    if (now.off_m > 2 * cone_m) {
+      if (now.height_m < options_.sight_height_m) return GoAround("too far beside the target");
+      return Enter(GuidancePhase::kApproach, "too far beside the target");
+    }
     if (!now.is_in_sight && now.height_m < options_.sight_height_m) {
       return GoAround("low, and the target is not in sight");
     }

@@ -326,7 +326,9 @@ TEST(GuidanceOptionsTest, SearchAndApproachStayWhereThePadIsSeen) {
   const GuidanceOptions far = options.WithinSight(22);
   EXPECT_EQ(far.search_altitude_m, options.search_altitude_m);
   EXPECT_EQ(far.follow_height_m, options.follow_height_m);
+  EXPECT_EQ(far.search_radius_m, 0);
   EXPECT_EQ(options.WithinSight(5).search_altitude_m, 4);
+  EXPECT_EQ(options.WithinSight(5).search_radius_m, options.search_altitude_m - 4);
   EXPECT_EQ(options.WithinSight(5).follow_height_m, options.follow_height_m);
   // The floor stays: it may be above trees.
   const GuidanceOptions near = options.WithinSight(1.6);

@@ -210,8 +210,8 @@ void LiveSession::Impl::StayWithinSight() {
   if (guidance.search_altitude_m == asked_m) return;
   Say(
       fmt::format("this camera sees the pad from {:.1f} m at most: guidance searches at {:.1f} m, "
-                  "not at search_altitude_m {:g}",
-                  range_m, guidance.search_altitude_m, asked_m));
+                  "not at search_altitude_m {:g}, and out to {:.1f} m around the place",
+                  range_m, guidance.search_altitude_m, asked_m, guidance.search_radius_m));
   if (range_m < guidance.limits.floor_m) {
     Say(fmt::format("limits.floor_m {:g} is above that: a lost pad will not be found again",
                     guidance.limits.floor_m),
