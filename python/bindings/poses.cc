@@ -112,7 +112,8 @@ void BindSample(py::module_& module) {
                          "navigation's clock.")
       .Field("time_ns", &PoseSample::time, "int, ns.")
       .Field("world_from_body", &PoseSample::world_from_body, "RigidTransform.")
-      .Field("motion", &PoseSample::motion, "BodyMotion where the navigation reports it, or None.");
+      .Field("motion", &PoseSample::motion, "BodyMotion where the navigation reports it, or None.")
+      .Field("time_sigma_s", &PoseSample::time_sigma_s, "Standard deviation of time_ns, s.");
   ValueClass<PoseUncertainty>(module, "PoseUncertainty",
                               "Standard deviations per axis that a predicted pose has beyond those "
                               "of the samples.")
