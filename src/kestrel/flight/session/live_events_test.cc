@@ -56,15 +56,15 @@ TEST(LiveEvents, AFrameWaitsNoLongerThanAsked) {
   EXPECT_EQ(events.counters().unposed_frames, 1u);
 }
 
-// Over a slow link every pose comes 100 ms late.
+// Over a slow link every pose comes 250 ms late.
 TEST(LiveEvents, AFrameWaitsForPosesThatAreAlwaysLate) {
-  LiveEvents events({.pose_wait_s = 0.03}, Duration::zero());
-  events.Push(PoseSample{Now() - milliseconds(100), {}});
+  LiveEvents events({.pose_wait_s = 0.2}, Duration::zero());
+  events.Push(PoseSample{Now() - milliseconds(250), {}});
   events.Next();
   const Time captured = Now();
   events.Push(Frame{"", captured, {}});
   std::thread link([&] {
-    std::this_thread::sleep_for(milliseconds(100));
+    std::this_thread::sleep_for(milliseconds(250));
     events.Push(PoseSample{captured, {}});
   });
   EXPECT_EQ(InWords(events.Next()).front(), 'p');
