@@ -37,7 +37,7 @@ Vector2d TargetSearch::Advance(Time now, const RoadMemory& road, const Vector2d&
                                double seconds) {
   if (is_on_road_) {
     const auto target = road.Predict(now);
-    if (target && !IsTooUncertain(now, *target, road)) return target->position;
+    if (target && !HasMissed(now, *target, road, uav)) return target->position;
     is_on_road_ = false;
     if (target && target->is_by_lap) {
       step_ = "waits for the target on its road";
@@ -55,11 +55,13 @@ Vector2d TargetSearch::Advance(Time now, const RoadMemory& road, const Vector2d&
   return spiral_.Advance(uav, seconds);
 }
 
-bool TargetSearch::IsTooUncertain(Time now, const RoadMemory::Prediction& target,
-                                  const RoadMemory& road) const {
+// A UAV that still has to catch up with the place has not missed the target there.
+bool TargetSearch::HasMissed(Time now, const RoadMemory::Prediction& target, const RoadMemory& road,
+                             const Vector2d& uav) const {
   if (target.is_by_lap && ToSeconds(now - *lost_) > kLapsOnRoad * *road.Lap_s()) return true;
-  return kSigmas * target.sigma_m > kView * options_.search_altitude_m ||
-         (target.position - lost_at_).norm() > options_.search_distance_m;
+  if ((target.position - lost_at_).norm() > options_.search_distance_m) return true;
+  const double view_m = kView * options_.search_altitude_m;
+  return (target.position - uav).norm() < view_m && kSigmas * target.sigma_m > view_m;
 }
 
 bool TargetSearch::IsOver(Time now) const {

@@ -13,8 +13,9 @@
 namespace kestrel {
 
 // Search for a target. One that was never seen is waited for at a place. One that was lost is first
-// expected where its road leads; once that is too uncertain for the camera's view, it is waited for
-// on its lap, or searched for on a spiral around the place; after a while the search is over.
+// expected where its road leads; once the UAV is there and the camera's view is too small for what
+// is uncertain, it is waited for on its lap, or searched for on a spiral around the place; after a
+// while the search is over.
 class TargetSearch {
  public:
   explicit TargetSearch(const GuidanceOptions& options) : options_(options), spiral_(options) {}
@@ -34,7 +35,8 @@ class TargetSearch {
   const char* step() const { return step_; }
 
  private:
-  bool IsTooUncertain(Time now, const RoadMemory::Prediction& target, const RoadMemory& road) const;
+  bool HasMissed(Time now, const RoadMemory::Prediction& target, const RoadMemory& road,
+                 const Eigen::Vector2d& uav) const;
 
   GuidanceOptions options_;
   SearchPath spiral_;

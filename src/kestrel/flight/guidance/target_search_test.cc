@@ -119,6 +119,25 @@ TEST(TargetSearchTest, FliesOnThenSearchesAround) {
       testing::AllOf(HasSubstr("flies on as it drove"), HasSubstr("searches around the place")));
 }
 
+// From low above a small pad the camera sees little: the target is lost before the UAV has caught
+// up.
+TEST(TargetSearchTest, CatchesUpBeforeItSearchesAround) {
+  constexpr double kDriven_s = 2, kUavSpeed_mps = 7, kStep_s = 0.1;
+  GuidanceOptions options;
+  options.search_altitude_m = 3;
+  const RoadMemory road = Driven(Straight, kDriven_s);
+  TargetSearch search(options);
+  search.StartAfterLoss(AtSecond(kDriven_s), road, Straight(kDriven_s));
+  Vector2d uav = Straight(kDriven_s) - Vector2d(9, 0);
+  double nearest_m = 1e9;
+  for (double time_s = kDriven_s; time_s < kDriven_s + 5; time_s += kStep_s) {
+    const Vector2d way = search.Advance(AtSecond(time_s), road, uav, kStep_s) - uav;
+    uav += std::min(1.0, kUavSpeed_mps * kStep_s / std::max(way.norm(), 1e-9)) * way;
+    nearest_m = std::min(nearest_m, (uav - Straight(time_s)).norm());
+  }
+  EXPECT_LT(nearest_m, options.search_altitude_m);
+}
+
 TEST(TargetSearchTest, EndsAfterItsLimitOnlyAfterALoss) {
   TargetSearch search{GuidanceOptions()};
   search.Start({0, 0});
