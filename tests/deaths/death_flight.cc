@@ -48,7 +48,8 @@ class DeathFlight {
   explicit DeathFlight(const Arguments& arguments)
       : arguments_(arguments),
         port_(FreeLoopbackPort()),
-        world_(World(arguments.source), Now(), arguments.seed),
+        start_s_(ToSeconds(Now().time_since_epoch())),
+        world_(World(arguments.source, start_s_), Now(), arguments.seed),
         autopilot_(Options(arguments), fmt::format("udpout://127.0.0.1:{}", port_), &world_,
                    arguments.seed) {
     autopilot_.Start();
@@ -76,8 +77,9 @@ class DeathFlight {
   }
 
  private:
-  static VehicleWorldOptions World(const std::string& source) {
+  static VehicleWorldOptions World(const std::string& source, double start_s) {
     VehicleWorldOptions world = ReadVehicleWorld(source.substr(source.find(':') + 1), {});
+    world.start_s = start_s;
     world.ground.map_px = 64;  // this world is not rendered
     return world;
   }
@@ -98,13 +100,14 @@ class DeathFlight {
   void StartKestrel() {
     const std::string url = fmt::format("udpin://127.0.0.1:{}", port_);
     const std::string seed = fmt::format("fly.sim_seed={}", arguments_.seed);
+    const std::string source = fmt::format("{},start_s={:.6f}", arguments_.source, start_s_);
     const char* const log = std::getenv("DEATH_FLIGHT_LOG");
     kestrel_ = fork();
     if (kestrel_ != 0) return;
     if (freopen(log != nullptr ? log : "/dev/null", "w", stderr) == nullptr) _exit(1);
     std::vector<std::string> words = {
-        "kestrel", "fly",   arguments_.source,         "--autopilot", url, "--guide", "--set",
-        seed,      "--set", "fly.sim_camera.scale=0.4"};
+        "kestrel", "fly",   source, "--autopilot", url,
+        "--guide", "--set", seed,   "--set",       "fly.sim_camera.scale=0.4"};
     words.insert(words.end(), arguments_.more.begin(), arguments_.more.end());
     std::vector<char*> pointers;
     for (std::string& word : words) pointers.push_back(word.data());
@@ -171,6 +174,7 @@ class DeathFlight {
 
   Arguments arguments_;
   int port_;
+  double start_s_;  // of the world, which the camera and the autopilot share
   VehicleWorld world_;
   SimulatedAutopilot autopilot_;
   pid_t kestrel_ = 0;

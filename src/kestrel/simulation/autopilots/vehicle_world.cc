@@ -71,6 +71,7 @@ std::vector<std::string> VehicleWorldOptions::Validate() const {
   RequireIn(drive_altitude_m, 0, 1000, "drive_altitude_m", &violations);
   RequireIn(drive_delay_s, 0, 1000, "drive_delay_s", &violations);
   RequireIn(drive_acceleration, 0.1, 10, "drive_acceleration", &violations);
+  RequireIn(start_s, 0, 1e9, "start_s", &violations);
   std::ranges::copy(LandingSceneOptions::Validate(), std::back_inserter(violations));
   return violations;
 }
@@ -90,7 +91,7 @@ VehicleWorldOptions ReadVehicleWorld(const std::string& scenario,
 
 VehicleWorld::VehicleWorld(const VehicleWorldOptions& options, Time start, std::uint64_t seed)
     : options_(Checked(options)),
-      start_(start),
+      start_(options.start_s > 0 ? Time(DurationFromSeconds(options.start_s)) : start),
       departure_s_(kWaiting),
       scene_(MakeLandingScene(options, kTrackDuration_s, /*channels=*/1, seed)) {
   constexpr std::size_t kVehicleBody = 1;

@@ -30,6 +30,9 @@ struct VehicleWorldOptions : LandingSceneOptions {
   double drive_altitude_m = 0;
   double drive_delay_s = 0;
   double drive_acceleration = 1;  // of the start after waiting
+  // Time 0 of the scene on this computer's clock (Now()), for programs that share a world; 0: when
+  // the program opens it.
+  double start_s = 0;
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
@@ -38,6 +41,8 @@ struct VehicleWorldOptions : LandingSceneOptions {
     visitor("drive_delay_s", self.drive_delay_s, "s", "further wait before the vehicle drives off");
     visitor("drive_acceleration", self.drive_acceleration, "m/s^2",
             "acceleration of the vehicle when it drives off");
+    visitor("start_s", self.start_s, "s",
+            "start on this computer's steady clock, for programs that share a world; 0: now");
     LandingSceneOptions::Visit(self, visitor);
   }
   std::vector<std::string> Validate() const;
@@ -57,8 +62,8 @@ VehicleWorldOptions ReadVehicleWorld(const std::string& scenario,
 // options and the seed determine its scene. Thread-safe.
 class VehicleWorld {
  public:
-  // Time 0 of the scene is at 'start' on the local clock. Throws InputError when the options are
-  // not valid.
+  // Time 0 of the scene is at 'start' on the local clock, unless the options say when. Throws
+  // InputError when the options are not valid.
   VehicleWorld(const VehicleWorldOptions& options, Time start, std::uint64_t seed);
   VehicleWorld(const VehicleWorld&) = delete;  // the scene's motions refer to it
   VehicleWorld& operator=(const VehicleWorld&) = delete;
