@@ -41,7 +41,9 @@ constexpr double kSteadyAcceleration = 1;
 // Assumption: the autopilot knows its own velocity without delay. A command that is given ahead by
 // the delay is therefore too large by the delay times the acceleration.
 Answer AssumedAnswer(double delay_s) { return {0.3, -delay_s, 0, 0, 0}; }
-Answer AnswerSigma() { return {0.3, 0.05, 0.1, 0.3, 0.3}; }
+// It integrates: drag and push that it leaves are small, and a landing is too short to tell larger
+// ones from the catching up before it.
+Answer AnswerSigma() { return {0.3, 0.05, 0.03, 0.1, 0.1}; }
 
 // True when a UAV that is slower than its command by 'slack' is at a limit of its autopilot: this
 // says nothing about its answer. A UAV with a moderate slack that comes no nearer to the command
