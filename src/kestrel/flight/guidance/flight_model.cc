@@ -41,9 +41,8 @@ constexpr double kSteadyAcceleration = 1;
 // Assumption: the autopilot knows its own velocity without delay. A command that is given ahead by
 // the delay is therefore too large by the delay times the acceleration.
 Answer AssumedAnswer(double delay_s) { return {0.3, -delay_s, 0, 0, 0}; }
-// It integrates: drag and push that it leaves are small, and a landing is too short to tell larger
-// ones from the catching up before it.
-Answer AnswerSigma() { return {0.3, 0.05, 0.03, 0.1, 0.1}; }
+// 'push_mps': standard deviation of what it leaves uncompensated; drag leaves as much at 3 m/s.
+Answer AnswerSigma(double push_mps) { return {0.3, 0.05, push_mps / 3, push_mps, push_mps}; }
 
 // True when a UAV that is slower than its command by 'slack' is at a limit of its autopilot: this
 // says nothing about its answer. A UAV with a moderate slack that comes no nearer to the command
@@ -60,6 +59,7 @@ std::vector<std::string> FlightModelOptions::Validate() const {
   std::vector<std::string> violations;
   RequireIn(delay_s, 0, 0.4, "delay_s", &violations);
   RequireIn(memory_s, 1, 100, "memory_s", &violations);
+  RequireIn(push_sigma_mps, 0.01, 10, "push_sigma_mps", &violations);
   return violations;
 }
 
@@ -68,7 +68,7 @@ FlightModel::FlightModel(const FlightModelOptions& options)
       by_lean_(Air(0.1, 0, 0), Air(0.15, 1, 1), kAirNoise),
       delay_s_(options.delay_s),
       answer_(AssumedAnswer(options.delay_s)) {
-  by_delay_.fill(ForgettingRegression<5>(answer_, AnswerSigma(), kNoise_mps));
+  by_delay_.fill(ForgettingRegression<5>(answer_, AnswerSigma(options.push_sigma_mps), kNoise_mps));
 }
 
 void FlightModel::Observe(Time now, const Vector3d& velocity, const Vector3d& up,

@@ -20,12 +20,18 @@ struct FlightModelOptions {
   // The delay that is assumed until the flight has shown a better one.
   double delay_s = 0.12;  // of attitude and thrust after the autopilot's command
   double memory_s = 20;   // older measurements are forgotten
+  // Error of the velocity that wind and drag may leave before the flight has shown it: less for an
+  // autopilot that integrates well. A landing is too short to tell much of it from the catching up
+  // before it.
+  double push_sigma_mps = 0.3;
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("is_used", self.is_used, "", "use the response that is measured in flight");
     visitor("delay_s", self.delay_s, "s", "delay of attitude and thrust until it is measured");
     visitor("memory_s", self.memory_s, "s", "age after which measurements are forgotten");
+    visitor("push_sigma_mps", self.push_sigma_mps, "m/s",
+            "error of the velocity by wind and drag until it is measured, standard deviation");
   }
   std::vector<std::string> Validate() const;
 };

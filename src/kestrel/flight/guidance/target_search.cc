@@ -55,13 +55,14 @@ Vector2d TargetSearch::Advance(Time now, const RoadMemory& road, const Vector2d&
   return spiral_.Advance(uav, seconds);
 }
 
-// A UAV that still has to catch up with the place has not missed the target there.
+// A UAV that still has to catch up with the place has not missed the target there, as long as its
+// way is longer than what is uncertain.
 bool TargetSearch::HasMissed(Time now, const RoadMemory::Prediction& target, const RoadMemory& road,
                              const Vector2d& uav) const {
   if (target.is_by_lap && ToSeconds(now - *lost_) > kLapsOnRoad * *road.Lap_s()) return true;
   if ((target.position - lost_at_).norm() > options_.search_distance_m) return true;
   const double view_m = kView * options_.search_altitude_m;
-  return (target.position - uav).norm() < view_m && kSigmas * target.sigma_m > view_m;
+  return kSigmas * target.sigma_m > view_m + (target.position - uav).norm();
 }
 
 bool TargetSearch::IsOver(Time now) const {

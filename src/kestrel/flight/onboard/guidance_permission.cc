@@ -70,6 +70,9 @@ GuidanceOptions OptionsFor(const Autopilot& autopilot, GuidanceOptions options,
   options.stream_before_start = options.stream_before_start || is_px4;
   // PX4's LAND would brake on a moving deck.
   options.land_in_contact = options.land_in_contact || !is_px4;
+  // PX4's velocity control leaves little to wind and drag.
+  constexpr double kPx4Push_mps = 0.1;
+  if (is_px4) options.model.push_sigma_mps = std::min(options.model.push_sigma_mps, kPx4Push_mps);
   // A value beyond what guidance counts on is as good as the last that it counts on.
   const auto read = [&](std::string_view name, double least, double most, double* value) {
     const auto found = autopilot.parameters().Find(name);
