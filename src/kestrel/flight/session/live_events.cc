@@ -35,12 +35,11 @@ LiveEvents::LiveEvents(const LiveEventsOptions& options, Duration lead)
 }
 
 void LiveEvents::Push(Frame frame) {
-  WaitingFrame arrived{std::move(frame), Time(), false};
+  WaitingFrame arrived{.frame = std::move(frame), .deadline = {}};
   {
     const std::lock_guard lock(mutex_);
-    const Time now = Now();
-    arrived.has_pose = IsPosed(arrived.frame);
-    arrived.ready = arrived.has_pose ? now : DeadlineOf(arrived.frame, now);
+    arrived.deadline = DeadlineOf(arrived.frame, Now());
+    TakePoseInto(&arrived);
     // Those that have waited longer stay. If newer ones replaced them, and poses took longer than
     // so many frames, none would ever get through.
     if (frames_.size() < kWaitingFrames) {
@@ -69,8 +68,7 @@ void LiveEvents::LearnDelay(const PoseSample& pose, Time now) {
 void LiveEvents::Push(const PoseSample& pose) {
   {
     const std::lock_guard lock(mutex_);
-    const Time now = Now();
-    LearnDelay(pose, now);
+    LearnDelay(pose, Now());
     if (pose_count_ == poses_.size()) {
       first_pose_ = (first_pose_ + 1) % poses_.size();
       --pose_count_;
@@ -78,11 +76,7 @@ void LiveEvents::Push(const PoseSample& pose) {
     }
     poses_[(first_pose_ + pose_count_++) % poses_.size()] = pose;
     newest_pose_ = pose.time;
-    for (WaitingFrame& waiting : frames_) {
-      if (waiting.has_pose || !IsPosed(waiting.frame)) continue;
-      waiting.has_pose = true;
-      waiting.ready = std::min(waiting.ready, now);
-    }
+    for (WaitingFrame& waiting : frames_) TakePoseInto(&waiting);
   }
   changed_.notify_one();
 }
@@ -95,15 +89,21 @@ void LiveEvents::Close() {
   changed_.notify_all();
 }
 
-bool LiveEvents::IsPosed(const Frame& frame) const {
-  return newest_pose_ && *newest_pose_ >= frame.time + lead_;
+void LiveEvents::TakePoseInto(WaitingFrame* waiting) const {
+  if (waiting->has_pose || !newest_pose_ || *newest_pose_ < waiting->frame.time + lead_) return;
+  waiting->has_pose = true;
+  waiting->is_missed = is_reader_busy_;
 }
 
-// Drops frames that could have gone while the reader was busy, and have a successor that can go
-// now. Those that become ready together, as their poses came together, stay.
-void LiveEvents::DropStale(Time now) {
-  constexpr Duration kFresh = std::chrono::milliseconds(10);
-  while (frames_.size() > 1 && frames_[0].ready + kFresh < now && frames_[1].ready <= now) {
+bool LiveEvents::IsReady(const WaitingFrame& waiting, Time now) {
+  return waiting.has_pose || waiting.deadline <= now;
+}
+
+// Drops frames that the reader has missed, up to the newest that can go. Those whose poses came
+// together while it waited stay.
+void LiveEvents::DropMissed(Time now) {
+  while (frames_.size() > 1 && (frames_[0].is_missed || !frames_[0].has_pose) &&
+         IsReady(frames_[1], now)) {
     frames_.erase(frames_.begin());
     ++counters_.dropped_frames;
   }
@@ -121,11 +121,13 @@ Event LiveEvents::TakeFrame() {
   if (!frames_.front().has_pose) ++counters_.unposed_frames;
   Event event = std::move(frames_.front().frame);
   frames_.erase(frames_.begin());
+  is_reader_busy_ = true;
   return event;
 }
 
 Event LiveEvents::Next() {
   std::unique_lock lock(mutex_);
+  is_reader_busy_ = false;
   for (;;) {
     if (is_closed_) return EndOfStream{};
     if (pose_count_ > 0) return TakePose();
@@ -134,9 +136,9 @@ Event LiveEvents::Next() {
       continue;
     }
     const Time now = Now();
-    DropStale(now);
-    if (frames_.front().ready <= now) return TakeFrame();
-    changed_.wait_for(lock, frames_.front().ready - now);
+    DropMissed(now);
+    if (IsReady(frames_.front(), now)) return TakeFrame();
+    changed_.wait_for(lock, frames_.front().deadline - now);
   }
 }
 

@@ -54,13 +54,15 @@ class LiveEvents : public EventSource {
  private:
   struct WaitingFrame {
     Frame frame;
-    Time ready;  // time at which it goes: when its pose came, or else its deadline
-    bool has_pose;
+    Time deadline;  // time at which the frame goes without a pose
+    bool has_pose = false;
+    bool is_missed = false;  // it got its pose while the reader was busy with another frame
   };
   Time DeadlineOf(const Frame& frame, Time now) const;
   void LearnDelay(const PoseSample& pose, Time now);
-  bool IsPosed(const Frame& frame) const;
-  void DropStale(Time now);
+  void TakePoseInto(WaitingFrame* waiting) const;
+  static bool IsReady(const WaitingFrame& waiting, Time now);
+  void DropMissed(Time now);
   Event TakePose();
   Event TakeFrame();
 
@@ -76,6 +78,7 @@ class LiveEvents : public EventSource {
   double pose_delay_s_ = 0;          // the largest of the last seconds
   Time delay_learnt_;
   std::vector<WaitingFrame> frames_;  // in order of time
+  bool is_reader_busy_ = true;        // with a frame, or it has not come yet
   Counters counters_;
   bool is_closed_ = false;
 };
