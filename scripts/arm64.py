@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """ARM's code on this machine, under qemu-user: in the system that `packaging/build DIST arm64` has made and built in; DIST is an
-environment variable, bookworm if it is not set."""
+environment variable; if it is not set trixie, which Raspberry Pi OS is."""
 
 import os
 import subprocess
@@ -8,12 +8,12 @@ import sys
 from pathlib import Path
 
 PROJECT = Path(__file__).resolve().parent.parent
-DIST = os.environ.get("DIST", "bookworm")
+DIST = os.environ.get("DIST", "trixie")
 ROOT = PROJECT / f"build/package_root/{DIST}-arm64"
 SOURCE = "/build/kestrel"
 BUILD = f"{SOURCE}/obj-aarch64-linux-gnu"
 EMULATOR = "qemu-aarch64-static"
-NEEDED = ["qemu-user", "libgtest-dev:arm64", "libgmock-dev:arm64", "libbenchmark-dev:arm64"]
+NEEDED = ["libgtest-dev:arm64", "libgmock-dev:arm64", "libbenchmark-dev:arm64"]
 MOUNT = """set -e
 root=$1; cache=$2; shared=$3; shift 3
 mkdir -p "$root/ccache" "$root/build/shared"
