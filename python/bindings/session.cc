@@ -16,7 +16,11 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "enum_casters.h"
+#include "kestrel/app/fly/fly_autopilot.h"
+#include "kestrel/app/fly/fly_session.h"
+#include "kestrel/app/fly/fly_source.h"
 #include "kestrel/asynchronous_sink.h"
+#include "kestrel/comms/dds/dds_domain.h"
 #include "kestrel/flight/session/hunt_files.h"
 #include "kestrel/flight/session/landing_files.h"
 #include "kestrel/hunt_run.h"
@@ -25,8 +29,8 @@
 #include "kestrel/landing_run.h"
 #include "kestrel/live_session.h"
 #include "kestrel/observation_sinks.h"
-#include "kestrel/open_live_source.h"
 #include "kestrel/recorded_session.h"
+#include "kestrel/simulation/autopilots/sitl_result.h"
 #include "option_values.h"
 #include "recordings.h"
 #include "seen.h"
@@ -170,15 +174,33 @@ ConfigurationFile VisionOptions(const py::object& options) {
   return values;
 }
 
+// Returns the options of a flight, by all names of `kestrel config`.
+KestrelOptions FlightOptionsOf(const py::object& options) {
+  const auto path = PathOf(options);
+  const bool is_dict = !path && !options.is_none();
+  return ReadKestrelOptions(path.value_or(""),
+                            is_dict ? Settings(options) : std::vector<std::string>());
+}
+
+// Throws InputError when a simulated camera has no autopilot that says where it is.
+void RequireSimulatedAutopilot(const Choices& choices) {
+  const auto uri = PathOf(choices.source);
+  if (!uri || !uri->starts_with("sim:") || !choices.autopilot.empty()) return;
+  throw InputError(*uri + ": expected an autopilot, as autopilot='sim:ardupilot' or 'sim:px4'");
+}
+
 // A source, the vision and the sinks, run once or again.
 class Session {
  public:
-  explicit Session(Choices choices)
-      : choices_(std::move(choices)), options_(VisionOptions(choices_.options)) {
-    if (!choices_.model) choices_.model = std::make_shared<ObjectModel>(DefaultObjectModel());
-    if (choices_.is_live && PathOf(choices_.options)) {
-      throw InputError("options: expected a dict where live=True");
+  explicit Session(Choices choices) : choices_(std::move(choices)) {
+    if (choices_.is_live) {
+      RequireSimulatedAutopilot(choices_);
+      flight_ = FlightOptionsOf(choices_.options);
+      options_ = {flight_.landing, flight_.hunt};
+    } else {
+      options_ = VisionOptions(choices_.options);
     }
+    if (!choices_.model) choices_.model = std::make_shared<ObjectModel>(DefaultObjectModel());
     if (!choices_.is_live &&
         (!choices_.autopilot.empty() || !choices_.record.empty() || choices_.guides)) {
       throw InputError("autopilot, guide and record: expected live=True, too");
@@ -258,16 +280,11 @@ class Session {
     return text;
   }
 
-  LiveSessionParts Parts(const OpenedLiveSource& opened, ObservationSink* sink) const {
-    LiveSessionParts parts;
-    parts.source = opened.source.get();
-    parts.calibration = opened.calibration;
-    parts.rate_hz = opened.rate_hz;
-    parts.has_poses = opened.has_poses;
-    parts.camera = opened.actuator;
+  LiveSessionParts Parts(FlySource* source, const FlyAutopilot& autopilot,
+                         ObservationSink* sink) const {
+    LiveSessionParts parts = SessionParts(source, autopilot);
     if (choices_.is_hunt) parts.objects = *choices_.model;
     parts.sink = sink;
-    parts.autopilot = choices_.autopilot;
     parts.guides = choices_.guides;
     parts.output = choices_.output;
     parts.record = choices_.record;
@@ -282,18 +299,27 @@ class Session {
             choices_.model};
   }
 
+  std::shared_ptr<Ros2Node> OpenNode() const {
+    const DdsOptions& options = flight_.dds;
+    return std::make_shared<Ros2Node>(DdsDomain(std::nullopt),
+                                      Ros2NodeOptions{options.node, options.is_humble()});
+  }
+
   std::string RunLive() {
-    const LiveSourceChoice choice{ChoiceOf(choices_.source, choices_.camera, format())};
-    std::vector<std::string> settings;
-    if (!choices_.options.is_none()) settings = Settings(choices_.options);
+    const RecordingChoice recording = ChoiceOf(choices_.source, choices_.camera, format());
     const py::gil_scoped_release release;
-    const OpenedLiveSource opened = OpenLiveSource(choice, {});
+    FlySource source(flight_, [this] { return OpenNode(); });
+    source.Open(recording, /*is_looped=*/false);
+    const FlyAutopilot autopilot =
+        MakeFlyAutopilot(choices_.autopilot, flight_.fly, choices_.guides, &source);
     FirstError sink_error;
     ObservationSinks sinks;
     sinks.Add(std::make_unique<AsynchronousSink>(
         AsynchronousSinkOptions{.thread_name = "python"},
-        std::make_unique<CallingWriter>(&choices_, LiveViews(opened), &sink_error)));
-    LiveSession session(Parts(opened, &sinks), settings);
+        std::make_unique<CallingWriter>(&choices_, LiveViews(source.live), &sink_error)));
+    LiveSession session(Parts(&source, autopilot, &sinks),
+                        SessionOptions(flight_, source, autopilot));
+    if (autopilot.simulated) autopilot.simulated->Start();
     std::exception_ptr interruption;
     const FlightEnd end = session.Run([&] {
       try {
@@ -303,14 +329,18 @@ class Session {
       }
       return is_stopped_ || interruption;
     });
+    if (autopilot.simulated) autopilot.simulated->Stop();
     sinks.Finish();
     if (interruption) std::rethrow_exception(interruption);
     sink_error.Rethrow();
-    return kestrel::InWords(end) + "\n" + session.Summary();
+    std::string text = kestrel::InWords(end) + "\n" + session.Summary();
+    if (autopilot.simulated) text += kestrel::InWords(autopilot.simulated->result());
+    return text;
   }
 
   Choices choices_;
   ConfigurationFile options_;
+  KestrelOptions flight_;  // of live sessions
   std::atomic<bool> is_stopped_{false};
 };
 
@@ -362,15 +392,18 @@ void BindSession(py::module_& module) {
           py::arg("replace") = false, py::arg("live") = false, py::arg("autopilot") = "",
           py::arg("guide") = false, py::arg("record") = "", py::arg("on_event") = py::none(),
           "source: a path (recording, bag, video, images), a Recording or SimulatedFlight; with "
-          "live=True also '/dev/video0', 'rtsp://...' or a GStreamer pipeline.\ncamera: path of "
-          "the calibration; None: the source's own.\nsinks: functions that get each "
+          "live=True also '/dev/video0', 'rtsp://...', a GStreamer pipeline, "
+          "'dds:/camera/image_raw' "
+          "of ROS 2 or 'sim:standing', a simulated flight.\ncamera: path of the calibration; None: "
+          "the source's own.\nsinks: functions that get each "
           "Observation.\nhunt: looks for coloured objects ('model') instead of a pad.\noptions: a "
           "dict by the names of `kestrel config`, as {'landing': {'target': {'kind': 'helipad'}}}, "
           "or the path of such a file.\naltitude_m: height of the camera above what it looks for, "
           "where there are no poses.\noutput: folder of the tables, as the commands write them; "
           "replace: those that are there.\nlive: in real time, as it is flown; a sink that is slow "
           "misses frames.\nautopilot, guide, record, on_event: of live sessions, as of `kestrel "
-          "fly`; on_event gets each message as a text.")
+          "fly`, also autopilot='sim:ardupilot' or 'sim:px4', a simulated one; on_event gets each "
+          "message as a text.")
       .def("run", &Session::Run,
            "Runs to the end of the source, until stop() or Ctrl-C. Returns a summary in words. "
            "Raises InputError when the source fails, and what a sink raises: at once over a "

@@ -114,6 +114,17 @@ def test_a_live_session_plays_a_recording(recording):
     assert all(isinstance(event, str) for event in events)
 
 
+def test_a_simulated_flight_lands(tmp_path):
+    """The options are those of `kestrel fly`, in a file as it reads them."""
+    options = tmp_path / "kestrel.yaml"
+    options.write_text("fly: {sim_autopilot: {pilot: {start_altitude_m: 3}}}\n")
+    table = kestrel.ResultTable()
+    end = kestrel.Session("sim:standing", sinks=[table], live=True, autopilot="sim:px4", guide=True,
+                          options=options).run()
+    assert end.startswith("landed")
+    assert sum(row.split(",")[2] == "1" for row in table.csv().splitlines()[1:]) > 20
+
+
 def test_a_flight_goes_on_without_a_sink_that_fails(recording, capfd):
     with pytest.raises(ZeroDivisionError):
         kestrel.Session(recording, sinks=[lambda seen: 1 / 0], live=True).run()
@@ -136,6 +147,9 @@ def test_the_results_are_evaluated(recording, tmp_path):
         ({"source": "flight", "options": {"landin": {}}}, "did you mean 'landing'"),
         ({"source": "flight", "autopilot": "udpin://0.0.0.0:14550"}, "expected live=True"),
         ({"source": "flight", "options": "nowhere.yaml"}, "nowhere.yaml"),
+        ({"source": "sim:standing", "live": True}, "autopilot='sim:ardupilot'"),
+        ({"source": "flight", "live": True, "options": {"fly": {"rate_hz": -1}}}, "fly.rate_hz"),
+        ({"source": "sim:nowhere", "live": True, "autopilot": "sim:px4"}, "nowhere"),
     ],
 )
 def test_a_wrong_argument_is_named(arguments, message):

@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Sessions that guide: what they say of a pad that the camera does not see from the search
-// altitude.
+// altitude, and how often they ask for the autopilot's mode.
+#include <chrono>
+#include <cstdint>
+#include <map>
 #include <string>
+#include <thread>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kestrel/comms/mavlink/connection.h"
+#include "kestrel/comms/mavlink/mavlink_enums.h"
+#include "kestrel/comms/mavlink/socket_address.h"
 #include "test_session.h"
 
 namespace kestrel {
@@ -38,6 +46,64 @@ TEST(GuidedSession, SearchesWhereThePadIsSeen) {
   EXPECT_THAT(small, Not(HasSubstr("limits.floor_m")));
   EXPECT_THAT(EventsWithTagOf(2), Not(HasSubstr("sees the pad")));
   EXPECT_THAT(EventsWithTagOf(0.2), HasSubstr("limits.floor_m 3 is above that"));
+}
+
+// An autopilot that does nothing but live and note the intervals of messages that it is asked for.
+class AskedAutopilot {
+ public:
+  AskedAutopilot()
+      : url_(fmt::format("127.0.0.1:{}", FreeLoopbackPort())),
+        connection_("udpin://" + url_, {.system_id = 1, .component_id = 1, .signing_key = ""}),
+        thread_([this](const std::stop_token& stop) { Run(stop); }) {}
+
+  std::string url() const { return "udpout://" + url_; }
+
+  // Message -> microseconds. Ends the autopilot.
+  const std::map<std::uint32_t, float>& Intervals() {
+    thread_.request_stop();
+    thread_.join();
+    return intervals_us_;
+  }
+
+ private:
+  void Run(const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      connection_.Send(mavlink::Heartbeat{mavlink::kTypeQuadrotor, mavlink::kAutopilotArduPilot,
+                                          mavlink::kModeFlagArmed, 4, 4, 3});
+      connection_.Receive(std::chrono::milliseconds(20), [this](const auto& packet, Time) {
+        const auto command = packet.template As<mavlink::CommandLong>();
+        if (!command || command->command != mavlink::kCommandSetMessageInterval) return;
+        intervals_us_[static_cast<std::uint32_t>(command->param1)] = command->param2;
+      });
+    }
+  }
+
+  std::string url_;
+  Connection connection_;
+  std::map<std::uint32_t, float> intervals_us_;
+  std::jthread thread_;
+};
+
+// Returns the interval of heartbeats that a session asks for; 0: it asks for none.
+float HeartbeatInterval(bool guides) {
+  AskedAutopilot autopilot;
+  DrawnCamera camera(60, PatternImage, 3);
+  Witness witness;
+  LiveSessionParts parts = LandingParts(&camera, &witness);
+  parts.guides = guides;
+  parts.autopilot = autopilot.url();
+  LiveSessionOptions options = SessionOptions();
+  options.flight.guard.enabled = false;
+  LiveSession(parts, options).Run([] { return false; });
+  const auto& intervals = autopilot.Intervals();
+  const auto found = intervals.find(mavlink::Heartbeat::kId);
+  return found == intervals.end() ? 0 : found->second;
+}
+
+// A pilot who takes the UAV back waits no longer than that.
+TEST(GuidedSession, AsksForTheModeTwentyTimesASecond) {
+  EXPECT_EQ(HeartbeatInterval(/*guides=*/true), 50000);
+  EXPECT_EQ(HeartbeatInterval(/*guides=*/false), 0);
 }
 
 }  // namespace

@@ -30,6 +30,10 @@ std::shared_ptr<Ros2Node> DdsArguments::OpenNode(const DdsOptions& options) cons
   return std::make_shared<Ros2Node>(Domain(), Ros2NodeOptions{options.node, options.is_humble()});
 }
 
+DdsSource::OpenNode DdsArguments::NodeOpener(const DdsOptions& options) const {
+  return [this, options] { return OpenNode(options); };
+}
+
 RosFrames OwnFrames(const DdsOptions& options, bool has_world) {
   RosFrames frames;
   frames.camera = options.camera_frame;

@@ -10,6 +10,7 @@
 #include "kestrel/comms/dds/ros2_node.h"
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/flight/ros/dds_options.h"
+#include "kestrel/flight/ros/dds_source.h"
 #include "kestrel/flight/ros/ros_results.h"
 
 namespace kestrel {
@@ -28,6 +29,8 @@ struct DdsArguments {
 
   // Throws InputError when the node cannot be opened.
   std::shared_ptr<Ros2Node> OpenNode(const DdsOptions& options) const;
+  // Returns a function that opens it. These arguments outlive it.
+  DdsSource::OpenNode NodeOpener(const DdsOptions& options) const;
 };
 
 // Returns the names of the frames in results, as the options have them.

@@ -17,9 +17,9 @@
 
 #include "kestrel/app/cli/commands.h"
 #include "kestrel/app/cli/fly_arguments.h"
-#include "kestrel/app/cli/fly_autopilot.h"
-#include "kestrel/app/cli/fly_source.h"
 #include "kestrel/app/cli/interrupt.h"
+#include "kestrel/app/fly/fly_autopilot.h"
+#include "kestrel/app/fly/fly_source.h"
 #include "kestrel/comms/mavlink/link_url.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/camera/calibration_reader.h"
@@ -46,7 +46,7 @@ class DoctorVisit {
   explicit DoctorVisit(const DoctorArguments& arguments)
       : arguments_(arguments),
         options_(arguments.flight.ReadOptions()),
-        source_(arguments_.flight.source, options_) {
+        source_(options_, arguments_.flight.source.dds.NodeOpener(options_.dds)) {
     SetUse();
     OpenSource();
     OpenLink();
@@ -109,7 +109,7 @@ class DoctorVisit {
   void OpenSource() {
     CameraObservations& camera = observations_.camera;
     try {
-      source_.Open(PixelFormat::kGray, arguments_.flight.loop);
+      source_.Open(arguments_.flight.source.Recording(PixelFormat::kGray), arguments_.flight.loop);
     } catch (const ImageSizeError& error) {
       camera.open_error = error.what();
       camera.has_other_size = true;
@@ -125,8 +125,8 @@ class DoctorVisit {
     link.is_asked = true;
     link.is_signed = !options_.fly.link.signing_key.empty();
     try {
-      FlyAutopilot opened =
-          MakeFlyAutopilot(arguments_.flight.autopilot, options_.fly, &source_.simulated);
+      FlyAutopilot opened = MakeFlyAutopilot(arguments_.flight.autopilot, options_.fly,
+                                             arguments_.flight.guide, &source_);
       const LinkUrl url = ParseLinkUrl(opened.url);
       link.scheme = url.scheme;
       link.baud = url.number;

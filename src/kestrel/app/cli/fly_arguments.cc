@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/app/cli/fly_arguments.h"
 
-#include <utility>
-
 #include <fmt/format.h>
 
 #include "kestrel/core/base/error.h"
@@ -25,33 +23,12 @@ void RequireFlyable(const SourceArguments& source) {
   if (source.altitude_m) throw InputError("--altitude: a flight has the autopilot's poses");
 }
 
-// Guidance must stop as soon as the mode changes: one report of the mode per second is too few. A
-// simulated pilot changes the mode at the time of landing, and its PX4 is set up for moving decks.
-void PrepareGuidance(const std::string& autopilot, FlyOptions* options) {
-  constexpr double kMode_hz = 20;
-  double& mode_hz = options->autopilot.mode_rate_hz;
-  if (mode_hz == 0) mode_hz = kMode_hz;
-  PilotOptions& pilot = options->sim_autopilot.model.pilot;
-  if (pilot.guide_after_s < 0) pilot.guide_after_s = std::exchange(pilot.land_after_s, -1);
-  std::string& parameters = options->sim_autopilot.model.parameters;
-  if (autopilot == "sim:px4" && parameters.empty()) parameters = "LNDMC_XY_VEL_MAX=12";
-}
-
 double ParseLinkDelay(const std::string& text) {
   const auto delay_s = ParseNumber<double>(text);
   if (!delay_s || !(*delay_s >= 0)) {
     throw InputError(fmt::format("--link-delay '{}': expected seconds or auto", text));
   }
   return *delay_s;
-}
-
-// A live flight may not have the pose after a frame, as a recording does.
-void PredictPoses(KestrelOptions* options) {
-  constexpr double kLongest_s = 0.2;
-  for (double* const ahead_s :
-       {&options->landing.pose_extrapolation_s, &options->hunt.pose_extrapolation_s}) {
-    if (*ahead_s == 0) *ahead_s = kLongest_s;
-  }
 }
 
 }  // namespace
@@ -116,13 +93,11 @@ KestrelOptions FlyArguments::ReadOptions() const {
   if (!signing_key.empty()) options.fly.link.signing_key = signing_key;
   if (link_delay != "auto") options.fly.flight.link_delay_s = ParseLinkDelay(link_delay);
   if (guide && autopilot.empty()) throw InputError("--guide: expected --autopilot URL");
-  if (guide) PrepareGuidance(autopilot, &options.fly);
   if (no_guard) options.fly.flight.guard.enabled = false;
   if (console && !console->empty()) {
     options.console = WithAddress(options.console, *console, "--console");
     RequireValid(options.console);
   }
-  PredictPoses(&options);
   return options;
 }
 

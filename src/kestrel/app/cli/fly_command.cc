@@ -11,10 +11,11 @@
 #include <fmt/format.h>
 
 #include "kestrel/app/cli/fly_arguments.h"
-#include "kestrel/app/cli/fly_autopilot.h"
-#include "kestrel/app/cli/fly_source.h"
 #include "kestrel/app/cli/interrupt.h"
 #include "kestrel/app/console/flight_console.h"
+#include "kestrel/app/fly/fly_autopilot.h"
+#include "kestrel/app/fly/fly_session.h"
+#include "kestrel/app/fly/fly_source.h"
 #include "kestrel/app/foxglove/flight_live.h"
 #include "kestrel/app/foxglove/mcap_sink.h"
 #include "kestrel/comms/team/team_link.h"
@@ -24,7 +25,6 @@
 #include "kestrel/flight/onboard/flight_keeper.h"
 #include "kestrel/flight/onboard/hunt_vision.h"
 #include "kestrel/flight/onboard/live_session.h"
-#include "kestrel/flight/onboard/live_session_options.h"
 #include "kestrel/flight/ros/ros2_result_connection.h"
 #include "kestrel/flight/ros/ros_sink.h"
 #include "kestrel/flight/ros1/ros1_result_connection.h"
@@ -61,8 +61,9 @@ class Flight {
   explicit Flight(const FlyArguments& arguments)
       : arguments_(arguments),
         options_(arguments.ReadOptions()),
-        source_(arguments_.source, options_) {
-    source_.Open(arguments.hunt ? PixelFormat::kBgr : PixelFormat::kGray, arguments.loop);
+        source_(options_, arguments_.source.dds.NodeOpener(options_.dds)) {
+    const PixelFormat format = arguments.hunt ? PixelFormat::kBgr : PixelFormat::kGray;
+    source_.Open(arguments_.source.Recording(format), arguments.loop);
     RequireAutopilot();
     log_ = sinks_.Add(std::make_unique<FlightLog>());
     OpenConsole();
@@ -70,8 +71,8 @@ class Flight {
     OpenMcap();
     OpenDds();
     OpenRos1();
-    autopilot_ = MakeFlyAutopilot(arguments.autopilot, options_.fly, &source_.simulated);
-    session_.emplace(Parts(), SessionOptions());
+    autopilot_ = MakeFlyAutopilot(arguments.autopilot, options_.fly, arguments.guide, &source_);
+    session_.emplace(Parts(), SessionOptions(options_, source_, autopilot_));
     if (team_) {
       session_->hunt()->ShareMap(DurationFromSeconds(options_.team.team.tell_period_s));
     }
@@ -211,39 +212,15 @@ class Flight {
                   options_.hunt.map, ReadModel(), [this](const std::string& text) { Say(text); });
   }
 
-  LiveSessionOptions SessionOptions() const {
-    const FlyOptions& fly = options_.fly;
-    LiveSessionOptions options{.landing = options_.landing,
-                               .hunt = options_.hunt,
-                               .flight = fly.flight,
-                               .link = fly.link,
-                               .autopilot = source_.simulated.Asking(fly.autopilot),
-                               .recorder = fly.recorder,
-                               .exposure = {}};
-    if (fly.control_exposure) options.exposure = fly.exposure;
-    // A simulated autopilot ends with this process.
-    if (autopilot_.simulated) options.flight.guard.enabled = false;
-    return options;
-  }
-
   LiveSessionParts Parts() {
-    LiveSessionParts parts;
-    parts.source = source_.live.source.get();
-    parts.calibration = source_.live.calibration;
-    parts.rate_hz = source_.live.rate_hz;
-    parts.has_poses = source_.live.has_poses;
-    parts.camera = source_.live.actuator;
+    LiveSessionParts parts = SessionParts(&source_, autopilot_);
     if (arguments_.hunt) parts.objects = ReadModel();
     parts.sink = &sinks_;
-    parts.autopilot = autopilot_.url;
     if (arguments_.profile != "auto") parts.profile = ParseLinkProfile(arguments_.profile);
     parts.guides = arguments_.guide;
     parts.output = arguments_.source.output;
     parts.record = arguments_.record;
     parts.replace = arguments_.source.force;
-    parts.pose = [this](const PoseSample& pose) { source_.simulated.TakePose(pose); };
-    parts.true_pose = [this](const PoseSample& pose) { source_.simulated.TakeTruePose(pose); };
-    parts.truth = [this](const Frame& frame) { return source_.simulated.Truth(frame); };
     return parts;
   }
 

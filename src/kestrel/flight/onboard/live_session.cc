@@ -82,6 +82,21 @@ LiveSessionOptions OptionsOf(const std::vector<std::string>& settings) {
   return fields.options;
 }
 
+// Options that only a flight needs, where they are not set: it may not have the pose after a frame,
+// as a recording does, and guidance must stop as soon as the mode changes, for which the
+// autopilot's one report a second is too few.
+LiveSessionOptions ForFlight(LiveSessionOptions options, bool guides) {
+  constexpr double kLongestPrediction_s = 0.2;
+  constexpr double kMode_hz = 20;
+  for (double* const ahead_s :
+       {&options.landing.pose_extrapolation_s, &options.hunt.pose_extrapolation_s}) {
+    if (*ahead_s == 0) *ahead_s = kLongestPrediction_s;
+  }
+  double& mode_hz = options.autopilot.mode_rate_hz;
+  if (guides && mode_hz == 0) mode_hz = kMode_hz;
+  return options;
+}
+
 }  // namespace
 
 class LiveSession::Impl {
@@ -131,7 +146,7 @@ class LiveSession::Impl {
 
 LiveSession::Impl::Impl(LiveSessionParts parts, LiveSessionOptions options)
     : parts_(std::move(parts)),
-      options_(std::move(options)),
+      options_(ForFlight(std::move(options), parts_.guides)),
       recording_([this](const std::filesystem::path& folder, bool replace) {
         return OpenRecorder(folder, replace);
       }) {
@@ -171,7 +186,8 @@ void LiveSession::Impl::Say(const std::string& text, EventLevel level) {
   if (sink_) sink_->Take(SessionEvent{Now(), level, text});
 }
 
-void LiveSession::Impl::Change(const LiveSessionOptions& options) {
+void LiveSession::Impl::Change(const LiveSessionOptions& changed) {
+  const LiveSessionOptions options = ForFlight(changed, parts_.guides);
   BetweenFrames([&] {
     if (hunt_ != nullptr) hunt_->ChangeOptions(options.hunt);
     if (landing_ != nullptr) landing_->ChangeOptions(options.landing);

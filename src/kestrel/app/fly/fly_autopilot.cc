@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/app/fly/fly_autopilot.h"
+
+#include <cstdint>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kestrel/comms/mavlink/socket_address.h"
+
+namespace kestrel {
+namespace {
+
+constexpr std::string_view kSimulatedArduPilot = "sim:ardupilot";
+constexpr std::string_view kSimulatedPx4 = "sim:px4";
+constexpr char kLoopback[] = "127.0.0.1";
+
+// The pilot changes the mode at the time of landing.
+void PrepareGuidance(std::string_view name, SimulatedAutopilotOptions* options) {
+  PilotOptions& pilot = options->model.pilot;
+  if (pilot.guide_after_s < 0) pilot.guide_after_s = std::exchange(pilot.land_after_s, -1);
+  std::string& parameters = options->model.parameters;
+  if (name == kSimulatedPx4 && parameters.empty()) parameters = "LNDMC_XY_VEL_MAX=12";
+}
+
+}  // namespace
+
+FlyAutopilot MakeFlyAutopilot(const std::string& name, const FlyOptions& options, bool guides,
+                              FlySource* source) {
+  if (name != kSimulatedArduPilot && name != kSimulatedPx4) return {name, nullptr};
+  SimulatedAutopilotOptions simulated = options.sim_autopilot;
+  simulated.firmware = name.substr(std::string_view("sim:").size());
+  simulated.signing_key = options.link.signing_key;
+  if (guides) PrepareGuidance(name, &simulated);
+  const auto seed = static_cast<std::uint64_t>(options.sim_seed);
+  const int port = FreeLoopbackPort();
+  return {fmt::format("udpin://{}:{}", kLoopback, port),
+          std::make_unique<SimulatedAutopilot>(simulated,
+                                               fmt::format("udpout://{}:{}", kLoopback, port),
+                                               source->simulated.World(), seed)};
+}
+
+}  // namespace kestrel
