@@ -182,10 +182,12 @@ KestrelOptions FlightOptionsOf(const py::object& options) {
                             is_dict ? Settings(options) : std::vector<std::string>());
 }
 
-// Throws InputError when a simulated camera has no autopilot that says where it is.
+// Throws InputError when a simulated camera is not live, or has no autopilot that says where it is.
 void RequireSimulatedAutopilot(const Choices& choices) {
   const auto uri = PathOf(choices.source);
-  if (!uri || !uri->starts_with("sim:") || !choices.autopilot.empty()) return;
+  if (!uri || !uri->starts_with("sim:")) return;
+  if (!choices.is_live) throw InputError(*uri + ": expected live=True, too");
+  if (!choices.autopilot.empty()) return;
   throw InputError(*uri + ": expected an autopilot, as autopilot='sim:ardupilot' or 'sim:px4'");
 }
 
@@ -193,8 +195,8 @@ void RequireSimulatedAutopilot(const Choices& choices) {
 class Session {
  public:
   explicit Session(Choices choices) : choices_(std::move(choices)) {
+    RequireSimulatedAutopilot(choices_);
     if (choices_.is_live) {
-      RequireSimulatedAutopilot(choices_);
       flight_ = FlightOptionsOf(choices_.options);
       options_ = {flight_.landing, flight_.hunt};
     } else {

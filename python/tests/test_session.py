@@ -147,6 +147,7 @@ def test_the_results_are_evaluated(recording, tmp_path):
         ({"source": "flight", "options": {"landin": {}}}, "did you mean 'landing'"),
         ({"source": "flight", "autopilot": "udpin://0.0.0.0:14550"}, "expected live=True"),
         ({"source": "flight", "options": "nowhere.yaml"}, "nowhere.yaml"),
+        ({"source": "sim:standing"}, "expected live=True"),
         ({"source": "sim:standing", "live": True}, "autopilot='sim:ardupilot'"),
         ({"source": "flight", "live": True, "options": {"fly": {"rate_hz": -1}}}, "fly.rate_hz"),
         ({"source": "sim:nowhere", "live": True, "autopilot": "sim:px4"}, "nowhere"),

@@ -63,6 +63,7 @@ void PrintResult(const FlightCalibration& result, const FlightCalibrationOptions
 }
 
 void RunCalibrate(const CalibrateArguments& arguments, FlightCalibrationOptions options) {
+  RequireFreeForCalibration(arguments.output, arguments.force);
   const LandingPipelineOptions landing = arguments.options.Read().landing;
   if (arguments.both) options.estimate_mount = options.estimate_clock = true;
   if (arguments.moving) options.knot_spacing_s = kMovingKnotSpacing_s;

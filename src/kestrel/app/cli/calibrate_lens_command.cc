@@ -102,6 +102,7 @@ void WritePlots(const LensCalibration& lens, const OutputFolder& folder) {
 }
 
 void RunLens(const LensArguments& arguments) {
+  RequireFreeForCalibration(arguments.output, arguments.force);
   LensCalibrationOptions options;
   options.detector = arguments.options.Read().landing.detector;
   if (!arguments.model.empty()) options.model = Models().at(arguments.model);

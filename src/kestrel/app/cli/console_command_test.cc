@@ -251,7 +251,7 @@ TEST_F(ConsoleCommandTest, AResultIsShownOverItsRecording) {
       Run("console --address 127.0.0.1:0 " + flight + " " + folder_.Write("one.csv", row));
   EXPECT_EQ(one_row.status, 1);
   EXPECT_THAT(one_row.err, HasSubstr("row 2 is not of the recording's frame at"));
-  ExpectInputError("console " + result, "expected its recording, too");
+  ExpectInputError("console " + result, "is a result: name its recording, too");
   ExpectInputError("console " + flight + " " + result + " " + result, "is a second result");
 }
 

@@ -67,8 +67,8 @@ void SayWhatIsLost(const ConvertArguments& arguments, const RecordingHead& head)
   if (!head.calibration) fmt::print(stderr, "kestrel: no calibration: the source has none\n");
   if (HasTruth(arguments.source)) {
     fmt::print(stderr,
-               "kestrel: the truth of the simulation is left out: only a recording that "
-               "was simulated has it\n");
+               "kestrel: the truth of the simulation is left out: keep the recording to evaluate "
+               "results\n");
   }
   if (is_bag && head.calibration && head.calibration->clock_offset) {
     fmt::print(stderr,
@@ -83,8 +83,8 @@ void SayWhatIsLost(const ConvertArguments& arguments, const RecordingHead& head)
 
 std::unique_ptr<RecordingSink> OpenDestination(const ConvertArguments& arguments,
                                                const RecordingHead& head) {
+  RequireNoSource(arguments.destination, {arguments.source});
   if (arguments.for_foxglove) {
-    RequireNoSource(arguments.destination, {arguments.source});
     return std::make_unique<FoxgloveRecording>(arguments.destination, head, arguments.force);
   }
   return NewRecording(arguments.destination, head,
@@ -111,7 +111,11 @@ void RunConvert(const ConvertArguments& arguments) {
     for (; pose != poses.end() && pose->time <= frame.time; ++pose) recording->AddPose(*pose);
     recording->AddFrame(frame);
   }
-  for (; pose != poses.end() && !WasInterrupted(); ++pose) recording->AddPose(*pose);
+  if (WasInterrupted()) {
+    throw InputError(fmt::format("interrupted after {} frames: {} is not written", frames,
+                                 arguments.destination));
+  }
+  for (; pose != poses.end(); ++pose) recording->AddPose(*pose);
   recording->Close();
   fmt::print(stderr, "{} frames, {} poses\n", frames, pose - poses.begin());
 }

@@ -153,6 +153,8 @@ TEST_F(ConvertCommandTest, FaultsAreNamed) {
   ExpectInputError("convert " + (folder_ / "none") + " " + (folder_ / "new.bag"), "none: no such");
   EXPECT_THAT(Run(convert + (folder_ / "told.bag")).err, HasSubstr("the truth of the simulation"));
   ExpectInputError(convert + (folder_ / "out.avi"), "out.avi: expected a bag");
+  ExpectInputError(convert + flight + " --force", "is the source, expected another name");
+  ExpectInputError("convert " + bag + " " + bag + " --force", "is the source");
   EXPECT_EQ(Run(convert + (folder_ / "new.bag") + " --compression zip").status, 2);
   EXPECT_FALSE(fs::exists(folder_ / "new.bag"));
   Succeed(convert + bag + " --force");

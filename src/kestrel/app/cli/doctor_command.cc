@@ -116,6 +116,17 @@ class DoctorVisit {
       source_.live.calibration = ReadCalibration(arguments_.flight.source.camera);
     } catch (const InputError& error) {
       camera.open_error = error.what();
+      ReadCameraFile();
+    }
+  }
+
+  // The calibration of a camera that cannot be opened.
+  void ReadCameraFile() {
+    const std::string& file = arguments_.flight.source.camera;
+    if (file.empty()) return;
+    try {
+      source_.live.calibration = ReadCalibration(file);
+    } catch (const InputError&) {  // which is why it could not be opened
     }
   }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/app/cli/fly_arguments.h"
 
+#include <string>
+
 #include <fmt/format.h>
 
 #include "kestrel/core/base/error.h"
@@ -12,7 +14,8 @@ namespace {
 
 // Throws InputError for the arguments of `land` that a flight does not support.
 void RequireFlyable(const SourceArguments& source) {
-  if (source.sources.size() > 1) throw InputError("fly takes one SOURCE");
+  if (source.sources.size() > 1)
+    throw InputError("expected one SOURCE, got " + std::to_string(source.sources.size()));
   if (source.still) throw InputError("--still: the frames of a flight follow each other");
   if (!source.annotate.empty()) {
     throw InputError("--annotate: record the flight, then kestrel land DIR --annotate");
@@ -35,6 +38,10 @@ double ParseLinkDelay(const std::string& text) {
 
 void FlyArguments::AddTo(CLI::App* command) {
   source.AddTo(command);
+  command->get_option("SOURCE")->description(
+      "A camera (/dev/video0, rtsp://...), a GStreamer pipeline, a topic of ROS 2 (dds:TOPIC), a "
+      "simulated camera (sim:SCENARIO, as sim:standing or sim:figure8), or a recording, which is "
+      "played in real time");
   source.options.target.AddTo(command);
   command
       ->add_option("--autopilot", autopilot,

@@ -124,10 +124,21 @@ TEST_F(KestrelCommandTest, WrongUsageIsStatusTwo) {
   }
 }
 
-TEST_F(KestrelCommandTest, UnknownCommandIsNamed) {
-  const Outcome outcome = Run("lnd a.png");
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("there is no command 'lnd'"));
+TEST_F(KestrelCommandTest, WrongUsageIsNamed) {
+  for (const auto& [arguments, message] :
+       {std::pair("lnd a.png", "kestrel: there is no command 'lnd'; did you mean 'land'?"),
+        std::pair("simulate landng", "there is no command 'landng'; did you mean 'landing'?"),
+        std::pair("land a.png --outpt x", "there is no option '--outpt'; did you mean '--output'?"),
+        std::pair("land a.png --zzz", "there is no option '--zzz'; kestrel land --help"),
+        std::pair("--output x land a.png", "--output has to stand behind the command"),
+        std::pair("land a.png --altitude 3 --altitude 4", "--altitude is given 2 times"),
+        std::pair("land a.png --output", "--output: expected DIR"),
+        std::pair("simulate landing --seed x", "--seed: got 'x', expected a number"),
+        std::pair("land a.png --output x --annotate=Video",
+                  "--annotate: got 'Video', expected one of video,images")}) {
+    EXPECT_THAT(Run(arguments).err, HasSubstr(message));
+  }
+  ExpectInputError("land a.png --set landing=5", "landing is a group of options");
 }
 
 TEST_F(KestrelCommandTest, ConfigReadsBackToItself) {

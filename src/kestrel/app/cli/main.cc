@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstdlib>
 #include <exception>
-#include <string>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -9,6 +8,7 @@
 
 #include "kestrel/app/cli/commands.h"
 #include "kestrel/app/cli/fly_command.h"
+#include "kestrel/app/cli/usage_error.h"
 #include "kestrel/io/recording/silence_gstreamer.h"
 #include "kestrel/version.h"
 
@@ -26,17 +26,6 @@ void SilenceLibraries() {
 void UnsilenceLibraries() {
   kestrel::UnsilenceGstreamer();
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_INFO);
-}
-
-// Returns the words of the command as given, for example "kestrel simulate landing".
-std::string CommandOf(const CLI::App& app) {
-  std::string words = app.get_name();
-  const CLI::App* command = &app;
-  while (!command->get_subcommands().empty()) {
-    command = command->get_subcommands().front();
-    words += " " + command->get_name();
-  }
-  return words;
 }
 
 }  // namespace
@@ -70,12 +59,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::Success& wanted) {  // help, version
     return app.exit(wanted);
   } catch (const CLI::ParseError& error) {
-    if (argc > 1 && argv[1][0] != '-' && app.get_subcommands().empty()) {
-      fmt::print(stderr, "kestrel: there is no command '{}'; kestrel --help lists them\n", argv[1]);
-      return kWrongUsage;
-    }
-    fmt::print(stderr, "{}: {}; {} --help says more\n", CommandOf(app), error.what(),
-               CommandOf(app));
+    fmt::print(stderr, "{}\n", kestrel::UsageErrorInWords(app, error, {argv + 1, argv + argc}));
     return kWrongUsage;
   } catch (const kestrel::WrongUsage& error) {
     fmt::print(stderr, "kestrel: {}\n", error.what());

@@ -98,7 +98,8 @@ PrintMeasurement Measure(const PrintArguments& arguments,
   if (print) return *print;
   throw InputError(fmt::format(
       "{}: no landing pattern that can be measured: take the photograph from nearer, sharp, with "
-      "all of the ring in view{}",
+      "all of the ring in view{}; a print that is squeezed in one direction or not flat cannot be "
+      "measured either",
       arguments.photo, camera ? "" : ", and give the camera's calibration by --camera"));
 }
 
@@ -192,7 +193,7 @@ void AddPrintCommand(CLI::App* app) {
                                               "Size of the sheets (a0 to a4) that the print is cut "
                                               "into (default: one page as large as the board)")
                                  ->type_name("SIZE")
-                                 ->check(CLI::IsMember(PaperNames()));
+                                 ->transform(CLI::IsMember(PaperNames(), CLI::ignore_case));
   CLI::Option* const output =
       command
           ->add_option(

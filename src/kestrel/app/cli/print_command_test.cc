@@ -94,7 +94,7 @@ TEST_F(PrintCommandTest, WritesWhatItNamesAndReplacesNothing) {
   const Outcome whole = Succeed("print --output " + first);
   EXPECT_THAT(whole.err, HasSubstr("first/landing_pattern.pdf\n"));
   const Outcome tiled = Succeed("print --paper a3 --output " + first);
-  EXPECT_THAT(tiled.err, HasSubstr("16 sheets, in 4 rows of 6 without 8 blank ones"));
+  EXPECT_THAT(tiled.err, HasSubstr("16 sheets of 4 rows by 6; 8 blank ones are left out"));
   EXPECT_TRUE(std::filesystem::exists(first + "/landing_pattern_a3/sheet_4.5.svg"));
   EXPECT_FALSE(std::filesystem::exists(first + "/landing_pattern_a3/sheet_4.6.svg")) << "blank";
   ExpectInputError("print --output " + first, "landing_pattern.pdf: exists already");

@@ -35,6 +35,7 @@ class DetectTimes : public ObservationSink {
   }
 
   std::size_t count() const { return times_ms_.size(); }
+  std::size_t broken() const { return broken_; }
   const std::string& first_fault() const { return first_fault_; }
 
   // A line on the images that cannot be read; empty when there is none.
@@ -62,8 +63,8 @@ class DetectTimes : public ObservationSink {
 };
 
 void PrintSummary(const DetectTimes& times, const Vision& vision) {
-  fmt::print(stderr, "{} frames, {}{}\n{}{}", times.count(), vision.Found(), times.InWords(),
-             times.Faults(), vision.Remarks());
+  fmt::print(stderr, "{} frame{}, {}{}\n{}{}", times.count(), times.count() == 1 ? "" : "s",
+             vision.Found(), times.InWords(), times.Faults(), vision.Remarks());
 }
 
 // Shows the progress and, as soon as there is one, the first warning.
@@ -120,8 +121,14 @@ void AddMcapSink(const SourceArguments& arguments, const OpenedSource& opened,
   sinks->Add(OpenMcapFile(arguments.mcap, arguments.force, opened.calibration.intrinsics, view));
 }
 
-void RunToEnd(const OpenedSource& opened, Vision* vision, ObservationSinks* sinks,
-              const std::function<void(std::size_t done)>& on_frame) {
+void RequireWhole(const OpenedSource& opened, std::size_t frames) {
+  const auto all = opened.source->frame_count();
+  if (!WasInterrupted() || !all || frames == *all) return;
+  throw InputError(fmt::format("interrupted after {} of {} frames", frames, *all));
+}
+
+std::size_t RunToEnd(const OpenedSource& opened, Vision* vision, ObservationSinks* sinks,
+                     const std::function<void(std::size_t done)>& on_frame) {
   CatchInterrupts();
   const DetectTimes* const times = sinks->Add(std::make_unique<DetectTimes>());
   try {
@@ -133,6 +140,7 @@ void RunToEnd(const OpenedSource& opened, Vision* vision, ObservationSinks* sink
   sinks->Finish();
   if (times->count() == 0 && !times->first_fault().empty()) throw InputError(times->first_fault());
   PrintSummary(*times, *vision);
+  return times->count() + times->broken();
 }
 
 }  // namespace kestrel

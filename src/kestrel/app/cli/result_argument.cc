@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "kestrel/core/base/error.h"
+#include "kestrel/io/recording/euroc_recording.h"
 
 namespace kestrel {
 namespace {
@@ -13,6 +14,7 @@ namespace fs = std::filesystem;
 
 std::optional<std::string> ResultTable(const std::string& source, const std::string& table_name) {
   if (fs::path(source).extension() == ".csv") return source;
+  if (FindEurocRoot(source)) return std::nullopt;  // a recording that also has results
   const fs::path table = fs::path(source) / table_name;
   std::error_code ignored;
   return fs::exists(table, ignored) ? std::optional(table.string()) : std::nullopt;
@@ -35,7 +37,7 @@ std::optional<std::string> TakeResult(const std::string& table_name,
     }
   }
   if (result && others.empty()) {
-    throw InputError(*result + ": is a result, expected its recording, too");
+    throw InputError(*result + ": is a result: name its recording, too, before it");
   }
   *sources = others;
   return result;

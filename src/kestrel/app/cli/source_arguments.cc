@@ -32,7 +32,7 @@ void RequireNoSource(const std::string& file, const std::vector<std::string>& so
   std::error_code ignored;
   for (const std::string& source : sources) {
     if (std::filesystem::equivalent(source, file, ignored)) {
-      throw InputError(file + ": is the source, expected another file");
+      throw InputError(file + ": is the source, expected another name");
     }
   }
 }

@@ -8,10 +8,12 @@
 #include <fmt/format.h>
 
 #include "kestrel/comms/mavlink/socket_address.h"
+#include "kestrel/core/base/error.h"
 
 namespace kestrel {
 namespace {
 
+constexpr std::string_view kSimulated = "sim:";
 constexpr std::string_view kSimulatedArduPilot = "sim:ardupilot";
 constexpr std::string_view kSimulatedPx4 = "sim:px4";
 constexpr char kLoopback[] = "127.0.0.1";
@@ -28,9 +30,13 @@ void PrepareGuidance(std::string_view name, SimulatedAutopilotOptions* options) 
 
 FlyAutopilot MakeFlyAutopilot(const std::string& name, const FlyOptions& options, bool guides,
                               FlySource* source) {
-  if (name != kSimulatedArduPilot && name != kSimulatedPx4) return {name, nullptr};
+  if (!name.starts_with(kSimulated)) return {name, nullptr};
+  if (name != kSimulatedArduPilot && name != kSimulatedPx4) {
+    throw InputError(
+        fmt::format("autopilot {}: expected {} or {}", name, kSimulatedArduPilot, kSimulatedPx4));
+  }
   SimulatedAutopilotOptions simulated = options.sim_autopilot;
-  simulated.firmware = name.substr(std::string_view("sim:").size());
+  simulated.firmware = name.substr(kSimulated.size());
   simulated.signing_key = options.link.signing_key;
   if (guides) PrepareGuidance(name, &simulated);
   const auto seed = static_cast<std::uint64_t>(options.sim_seed);

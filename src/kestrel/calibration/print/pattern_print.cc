@@ -294,8 +294,8 @@ std::string SheetsInWords(const TargetPrint& print, const Tiling& tiling) {
   }
   if (sheets == 1) return "1 sheet";
   const int blank = tiling.count() - sheets;
-  return fmt::format("{} sheets, in {} rows of {}{}", sheets, tiling.rows, tiling.columns,
-                     blank > 0 ? fmt::format(" without {} blank ones", blank) : "");
+  return fmt::format("{} sheets of {} rows by {}{}", sheets, tiling.rows, tiling.columns,
+                     blank > 0 ? fmt::format("; {} blank ones are left out", blank) : "");
 }
 
 double RulerLength(double board_size_m) {

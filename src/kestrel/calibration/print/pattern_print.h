@@ -15,7 +15,7 @@ namespace kestrel {
 // blank and no sheet is made of them.
 bool HasPrint(const TargetPrint& print, const Tiling& tiling, int row, int column);
 
-// Returns the number of sheets in words: "24 sheets, in 4 rows of 6", or "1 sheet".
+// Returns the number of sheets in words: "24 sheets of 4 rows by 6", or "1 sheet".
 std::string SheetsInWords(const TargetPrint& print, const Tiling& tiling);
 
 // Returns the length (m) of the ruler that is printed beside the pad.

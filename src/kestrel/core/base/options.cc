@@ -177,6 +177,10 @@ void SetOptionField(const std::string& assignment, const OptionFields& fields) {
   }
   const std::string key = assignment.substr(0, equals);
   const OptionField* field = FindField(key, fields);
+  if (!field && IsGroup(key, fields)) {
+    throw InputError(
+        fmt::format("'{}': {} is a group of options, expected one of them", assignment, key));
+  }
   if (!field) ThrowUnknownKey(key, "'" + assignment + "'", fields);
   AssignText(assignment.substr(equals + 1), "'" + assignment + "'", *field);
 }

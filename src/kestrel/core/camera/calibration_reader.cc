@@ -53,6 +53,7 @@ class Entry {
     if (!node_.IsMap()) Fail("is not a map of keys, expected one");
     for (const char* name : names) {
       const YAML::Node child = node_[name];
+      if (child) RequireOnce(name);
       if (child) return Entry(file_, child, key_.empty() ? name : key_ + "." + name);
     }
     return std::nullopt;
@@ -99,6 +100,12 @@ class Entry {
   }
 
  private:
+  void RequireOnce(const char* name) const {
+    const auto count = std::count_if(node_.begin(), node_.end(), [&](const auto& pair) {
+      return pair.first.IsScalar() && pair.first.Scalar() == name;
+    });
+    if (count > 1) Fail(fmt::format("has '{}' {} times, expected it once", name, count));
+  }
   double NumberOf(const YAML::Node& node) const {
     if (!node.IsScalar()) Fail("holds something else than numbers, expected finite numbers");
     const std::optional<double> number = ParseNumber<double>(node.Scalar());

@@ -289,6 +289,8 @@ TEST(CalibrationReader, BadEurocFilesAreRefusedInWords) {
         "the file has no key 'distortion_coefficients' or 'distortion_coeffs', expected"},
        {"[458.654, 457.296, 367.215, 248.375]", "[458.654, 457.296, 367.215]",
         "lens.yaml:13: 'intrinsics' has 3 numbers, expected 4: fu, fv, cu, cv"},
+       {"resolution: [752, 480]\n", "resolution: [752, 480]\nresolution: [640, 480]\n",
+        "lens.yaml:1: the file has 'resolution' 2 times, expected it once"},
        {"[458.654,", "[.nan,", "'intrinsics' holds '.nan', expected a finite number"},
        {"[458.654,", "[nan,", "'intrinsics' holds 'nan', expected a finite number"},
        {"[458.654,", "[wide,", "'intrinsics' holds 'wide', expected a finite number"},

@@ -27,7 +27,8 @@ LandingRun::LandingRun(const OpenedSource& opened, const LandingPipelineOptions&
     : pipeline_(opened.calibration, options),
       clock_offset_(opened.calibration.clock_offset.value_or(Duration::zero())),
       altitude_m_(altitude_m),
-      has_world_(opened.has_world()) {
+      has_world_(opened.has_world()),
+      is_lens_unknown_(opened.is_lens_unknown) {
   pipeline_.SetAltitude(altitude_m);
 }
 
@@ -60,7 +61,8 @@ std::string LandingRun::Found() const { return fmt::format("pattern found in {}"
 
 std::string LandingRun::Remarks() const {
   const double focal_px = pipeline_.detector().camera().intrinsics().fx_px;
-  std::string remarks = LensWarning(pipeline_.calibration_monitor(), focal_px);
+  std::string remarks;
+  if (!is_lens_unknown_) remarks = LensWarning(pipeline_.calibration_monitor(), focal_px);
   if (!remarks.empty()) remarks += "\n";
   // Only where there are poses for some of the frames; a source without any is not unusual.
   for (const auto& [pose, count] : poses_) {

@@ -38,6 +38,7 @@ class LandingRun : public Vision {
   Duration clock_offset_;
   std::optional<double> altitude_m_;
   bool has_world_;
+  bool is_lens_unknown_;
   std::map<PoseLookup, std::size_t> poses_;
   std::size_t found_ = 0;
 };

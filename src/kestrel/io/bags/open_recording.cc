@@ -51,9 +51,15 @@ CameraCalibration KnownCalibration(const FrameSource& source, const RecordingCho
 
 CameraCalibration FindCalibration(const FrameSource& source, const RecordingChoice& choice) {
   CameraCalibration calibration = KnownCalibration(source, choice);
+  if (choice.fov_deg && (!choice.camera.empty() || source.calibration()) && choice.bag.tell) {
+    choice.bag.tell("--fov is not used: there is a calibration");
+  }
   if (!calibration.body_from_camera) {
     const CameraMount own = source.mount();
     calibration.body_from_camera = own.body_from_camera;
+    if (!choice.camera.empty() && own.body_from_camera && choice.bag.tell) {
+      choice.bag.tell(choice.camera + " has no mount (T_BS): the recording's is used");
+    }
     if (!calibration.clock_offset) calibration.clock_offset = own.clock_offset;
   }
   if (choice.clock_offset) calibration.clock_offset = choice.clock_offset;

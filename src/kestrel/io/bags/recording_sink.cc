@@ -16,9 +16,8 @@
 #include "kestrel/io/bags/frame_tree.h"
 #include "kestrel/io/bags/messages.h"
 #include "kestrel/io/bags/serialization.h"
-#include "kestrel/io/recording/euroc_layout.h"
 #include "kestrel/io/recording/euroc_writer.h"
-#include "kestrel/io/recording/output_folder.h"
+#include "kestrel/io/recording/recording_writer.h"
 
 namespace kestrel {
 namespace {
@@ -135,12 +134,38 @@ class BagSink : public RecordingSink {
   std::uint32_t pose_count_ = 0;
 };
 
+// Makes the empty folder of a recording that is not complete.
+fs::path BeginRecording(const std::string& path, bool replace) {
+  RequireFreeForRecording(PlaceOfRecording(path), replace);
+  fs::path part = PartOfRecording(path);
+  std::error_code error;
+  fs::remove_all(part, error);
+  fs::create_directories(part, error);
+  if (error) throw InputError(part.string() + ": cannot be made: " + error.message());
+  return part;
+}
+
+std::vector<EurocTable> TablesOf(const RecordingHead& head) {
+  std::vector<EurocTable> tables{EurocTable::kImages};
+  if (head.has_poses) tables.push_back(EurocTable::kPoses);
+  return tables;
+}
+
+// An old recording is replaced as a whole, by Close; a sink that is not closed leaves nothing.
 class EurocSink : public RecordingSink {
  public:
   EurocSink(const std::string& path, const RecordingHead& head, bool replace)
-      : folder_(path, replace), writer_(path, Begun(head)) {
+      : place_(PlaceOfRecording(path)),
+        part_(BeginRecording(path, replace)),
+        writer_(part_, TablesOf(head)) {
     if (head.calibration) writer_.WriteCamera(*head.calibration, head.rate_hz);
   }
+  ~EurocSink() override {
+    std::error_code ignored;
+    fs::remove_all(part_, ignored);
+  }
+  EurocSink(const EurocSink&) = delete;
+  EurocSink& operator=(const EurocSink&) = delete;
 
   void AddPose(const PoseSample& pose) override {
     writer_.AddPose(pose);
@@ -151,7 +176,6 @@ class EurocSink : public RecordingSink {
   }
 
   void AddFrame(const Frame& frame) override {
-    folder_.NewFile(RecordedImagePath(frame.time));
     writer_.WriteImage(frame.time, "png", EncodePng(Smallest(frame.image)));
     writer_.ListImage(frame.time, "png");
     writer_.CommitMany();
@@ -159,26 +183,14 @@ class EurocSink : public RecordingSink {
 
   void Close() override {
     writer_.CommitOrThrow();
-    if (!first_pose_) return;
-    const double span_s = ToSeconds(last_pose_ - *first_pose_);
+    const double span_s = first_pose_ ? ToSeconds(last_pose_ - *first_pose_) : 0;
     if (span_s > 0) writer_.WritePoseSensor(static_cast<double>(pose_count_ - 1) / span_s);
+    PublishRecording(part_, place_);
   }
 
  private:
-  // Returns the tables. Those of an older recording are removed, if they may be replaced.
-  std::vector<EurocTable> Begun(const RecordingHead& head) const {
-    std::vector<EurocTable> tables{EurocTable::kImages};
-    std::vector<fs::path> files;
-    if (head.has_poses) tables.push_back(EurocTable::kPoses);
-    for (const EurocTable table : tables) files.push_back(folder_.NewFile(PathOf(table)));
-    if (head.calibration) folder_.NewFile(fs::path("mav0") / euroc::kCamera);
-    if (head.has_poses) folder_.NewFile(fs::path("mav0") / euroc::kPoseSensor);
-    std::error_code ignored;  // the first commit says what cannot be written
-    for (const fs::path& file : files) fs::remove(file, ignored);
-    return tables;
-  }
-
-  OutputFolder folder_;
+  fs::path place_;
+  fs::path part_;
   EurocWriter writer_;
   std::optional<Time> first_pose_;
   Time last_pose_;

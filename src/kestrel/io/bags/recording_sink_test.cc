@@ -92,6 +92,27 @@ TEST(NewRecording, ReplacesNothingUnasked) {
   }
 }
 
+TEST(NewRecording, ReplacesAFolderAsAWhole) {
+  const TestFolder folder;
+  WriteEurocFlight(folder);
+  const std::string old_image = folder.Write("old/mav0/cam0/data/1.png", "old");
+  const std::string old_truth = folder.Write("old/mav0/landing_pattern0/data.csv", "old");
+  const std::string old = folder / "old";
+  EXPECT_THAT(InputErrorOf([&] { NewRecording(old, {}, Compression::kNone, false); }),
+              HasSubstr("exists already; --force replaces it"));
+  NewRecording(old, {}, Compression::kNone, /*replace=*/true);  // not closed
+  EXPECT_EQ(ReadFile(old_truth), "old");
+  EXPECT_FALSE(std::filesystem::exists(old + ".part"));
+  const auto recording = NewRecording(old, {}, Compression::kNone, /*replace=*/true);
+  recording->Close();
+  EXPECT_FALSE(std::filesystem::exists(old_image));
+  EXPECT_FALSE(std::filesystem::exists(old_truth));
+  EXPECT_TRUE(std::filesystem::exists(old + "/mav0/cam0/data.csv"));
+  const std::string precious = folder.Write("other/precious.txt", "precious");
+  EXPECT_THAT(InputErrorOf([&] { NewRecording(folder / "other", {}, Compression::kNone, true); }),
+              HasSubstr("is no recording, and not empty"));
+}
+
 TEST(NewRecording, SaysWhichCompressionsThereAre) {
   const TestFolder folder;
   for (const char* name : {"flight.bag", "flight.db3"}) {

@@ -9,6 +9,19 @@
 
 namespace kestrel {
 
+namespace {
+
+OutputFolder FolderOf(const std::filesystem::path& file, bool force) {
+  return OutputFolder(file.has_parent_path() ? file.parent_path() : ".", force);
+}
+
+}  // namespace
+
+void RequireFreeForCalibration(const std::string& file, bool force) {
+  const std::filesystem::path path(file);
+  if (!file.empty()) FolderOf(path, force).NewFile(path.filename());
+}
+
 void WriteCalibration(const CameraCalibration& calibration, double rate_hz, const std::string& file,
                       bool force) {
   const std::string text = EurocCalibrationText(calibration, rate_hz);
@@ -17,8 +30,7 @@ void WriteCalibration(const CameraCalibration& calibration, double rate_hz, cons
     return;
   }
   const std::filesystem::path path(file);
-  OutputFolder(path.has_parent_path() ? path.parent_path() : ".", force).OpenText(path.filename())
-      << text;
+  FolderOf(path, force).OpenText(path.filename()) << text;
 }
 
 }  // namespace kestrel

@@ -8,6 +8,7 @@
 #include "kestrel/core/base/read_file.h"
 #include "kestrel/io/recording/csv_columns.h"
 #include "kestrel/io/recording/csv_table.h"
+#include "kestrel/io/recording/recording_writer.h"
 
 namespace kestrel {
 namespace {
@@ -43,6 +44,11 @@ std::optional<std::string> FindEurocRoot(const std::string& folder) {
   for (const fs::path& root : {fs::path(folder), fs::path(folder) / "mav0"}) {
     std::error_code ignored;
     if (fs::is_directory(root / "cam0", ignored)) return root.string();
+  }
+  const fs::path camera = PlaceOfRecording(folder);
+  std::error_code ignored;
+  if (camera.filename() == "cam0" && fs::exists(camera / "data.csv", ignored)) {
+    return camera.parent_path().string();
   }
   return std::nullopt;
 }

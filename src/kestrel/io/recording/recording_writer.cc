@@ -47,11 +47,26 @@ void RequireFreeForRecording(const fs::path& output, bool replace) {
   if (!replace) throw InputError(output.string() + ": exists already; --force replaces it");
 }
 
-RecordingWriter::RecordingWriter(const fs::path& output, bool replace, const std::string& scene) {
+fs::path PlaceOfRecording(const fs::path& output) {
   const fs::path path = fs::absolute(output).lexically_normal();
-  output_ = path.has_filename() ? path : path.parent_path();
+  return path.has_filename() ? path : path.parent_path();
+}
+
+fs::path PartOfRecording(const fs::path& output) {
+  return PlaceOfRecording(output).string() + ".part";
+}
+
+void PublishRecording(const fs::path& part, const fs::path& output) {
+  std::error_code error;
+  fs::remove_all(output, error);
+  Require(error, output, "cannot be replaced");
+  fs::rename(part, output, error);
+  Require(error, output, "cannot be written");
+}
+
+RecordingWriter::RecordingWriter(const fs::path& output, bool replace, const std::string& scene)
+    : output_(PlaceOfRecording(output)), part_(PartOfRecording(output)) {
   RequireFreeForRecording(output_, replace);
-  part_ = output_.string() + ".part";
   CreateFolders(part_);
   lock_.emplace(part_.string());
   const fs::path scene_file = part_ / "mav0" / euroc::kScene;
@@ -86,11 +101,7 @@ void RecordingWriter::Publish(const std::vector<Time>& times,
     writer_->CommitMany();
   }
   writer_->CommitOrThrow();
-  std::error_code error;
-  fs::remove_all(output_, error);
-  Require(error, output_, "cannot be replaced");
-  fs::rename(part_, output_, error);
-  Require(error, output_, "cannot be written");
+  PublishRecording(part_, output_);
 }
 
 }  // namespace kestrel
