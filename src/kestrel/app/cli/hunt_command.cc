@@ -85,7 +85,7 @@ void RunHunt(const HuntArguments& arguments) {
   }
   AddMcapSink(arguments.source, opened, HuntView{model}, &sinks);
   sinks.Add(std::move(files));
-  RequireWhole(opened, RunToEnd(opened, &hunt, &sinks));
+  RunToEnd(opened, &hunt, &sinks);
   if (sharing != nullptr) fmt::print(stderr, "{}\n", sharing->Found());
 }
 

@@ -252,8 +252,10 @@ TEST_F(KestrelCommandTest, CtrlCEndsCleanly) {
   const std::string rows = ReadFile(folder_ / "rows");
   EXPECT_TRUE(rows.ends_with('\n'));
   EXPECT_LT(Lines(rows), 3001);
+  const int frames = static_cast<int>(Lines(rows)) - 1;
   EXPECT_THAT(ReadFile(folder_ / "said"),
-              StartsWith(fmt::format("{} frames, pattern found in", Lines(rows) - 1)));
+              AllOf(StartsWith(fmt::format("{} frames, pattern found in", frames)),
+                    HasSubstr(fmt::format("interrupted after {} of 3000 frames", frames))));
 }
 
 TEST_F(KestrelCommandTest, SourceAtFaultIsNamed) {

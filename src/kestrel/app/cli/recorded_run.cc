@@ -67,6 +67,13 @@ void PrintSummary(const DetectTimes& times, const Vision& vision) {
              vision.Found(), times.InWords(), times.Faults(), vision.Remarks());
 }
 
+// A session over a recording that Ctrl-C has ended is not taken for a whole one.
+void SayInterruption(const OpenedSource& opened, std::size_t frames) {
+  const auto all = opened.source->frame_count();
+  if (!WasInterrupted() || !all || frames == *all) return;
+  fmt::print(stderr, "kestrel: interrupted after {} of {} frames\n", frames, *all);
+}
+
 // Shows the progress and, as soon as there is one, the first warning.
 class Progress {
  public:
@@ -121,14 +128,8 @@ void AddMcapSink(const SourceArguments& arguments, const OpenedSource& opened,
   sinks->Add(OpenMcapFile(arguments.mcap, arguments.force, opened.calibration.intrinsics, view));
 }
 
-void RequireWhole(const OpenedSource& opened, std::size_t frames) {
-  const auto all = opened.source->frame_count();
-  if (!WasInterrupted() || !all || frames == *all) return;
-  throw InputError(fmt::format("interrupted after {} of {} frames", frames, *all));
-}
-
-std::size_t RunToEnd(const OpenedSource& opened, Vision* vision, ObservationSinks* sinks,
-                     const std::function<void(std::size_t done)>& on_frame) {
+void RunToEnd(const OpenedSource& opened, Vision* vision, ObservationSinks* sinks,
+              const std::function<void(std::size_t done)>& on_frame) {
   CatchInterrupts();
   const DetectTimes* const times = sinks->Add(std::make_unique<DetectTimes>());
   try {
@@ -140,7 +141,7 @@ std::size_t RunToEnd(const OpenedSource& opened, Vision* vision, ObservationSink
   sinks->Finish();
   if (times->count() == 0 && !times->first_fault().empty()) throw InputError(times->first_fault());
   PrintSummary(*times, *vision);
-  return times->count() + times->broken();
+  SayInterruption(opened, times->count() + times->broken());
 }
 
 }  // namespace kestrel

@@ -31,12 +31,9 @@ void AddMcapSink(const SourceArguments& arguments, const OpenedSource& opened,
 // Runs a session over a recording, to its end or Ctrl-C, and finishes the sinks. Shows its
 // progress, the first warning and the summary on stderr. When it ends with an InputError the
 // summary is shown all the same and the results are kept. 'on_frame': called before each frame with
-// the number of frames done. Returns the number of frames of the session.
-std::size_t RunToEnd(
+// the number of frames done.
+void RunToEnd(
     const OpenedSource& opened, Vision* vision, ObservationSinks* sinks,
     const std::function<void(std::size_t done)>& on_frame = [](std::size_t) {});
-
-// Throws InputError when Ctrl-C has ended a session over a recording after 'frames', not its end.
-void RequireWhole(const OpenedSource& opened, std::size_t frames);
 
 }  // namespace kestrel

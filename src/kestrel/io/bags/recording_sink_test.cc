@@ -104,6 +104,7 @@ TEST(NewRecording, ReplacesAFolderAsAWhole) {
   EXPECT_EQ(ReadFile(old_truth), "old");
   EXPECT_FALSE(std::filesystem::exists(old + ".part"));
   const auto recording = NewRecording(old, {}, Compression::kNone, /*replace=*/true);
+  recording->AddFrame({"2.png", BagTime(2), NoiseImage(32, 24, CV_8UC1)});
   recording->Close();
   EXPECT_FALSE(std::filesystem::exists(old_image));
   EXPECT_FALSE(std::filesystem::exists(old_truth));
