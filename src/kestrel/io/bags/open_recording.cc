@@ -39,9 +39,9 @@ CameraCalibration KnownCalibration(const FrameSource& source, const RecordingCho
   if (const std::optional<CameraCalibration> own = source.calibration()) return *own;
   if (!choice.may_assume_lens && !choice.fov_deg) {
     throw InputError(
-        "no calibration: the source has none, give one by --camera FILE (EuRoC sensor.yaml, "
-        "Kalibr camchain.yaml, ROS camera_info YAML or OpenCV YAML); `kestrel calibrate lens` "
-        "makes one");
+        "no calibration: the source has none, give one (--camera FILE, camera= in Python: EuRoC "
+        "sensor.yaml, Kalibr camchain.yaml, ROS camera_info YAML or OpenCV YAML); `kestrel "
+        "calibrate lens` makes one");
   }
   TellAssumption(choice);
   CameraCalibration assumed;
