@@ -182,20 +182,26 @@ KestrelOptions FlightOptionsOf(const py::object& options) {
                             is_dict ? Settings(options) : std::vector<std::string>());
 }
 
-// Throws InputError when a simulated camera is not live, or has no autopilot that says where it is.
-void RequireSimulatedAutopilot(const Choices& choices) {
+// Throws InputError for choices of a flight without live=True, and for a simulated camera without
+// an autopilot, which says where it is.
+void RequireConsistent(const Choices& choices) {
   const auto uri = PathOf(choices.source);
-  if (!uri || !uri->starts_with("sim:")) return;
-  if (!choices.is_live) throw InputError(*uri + ": expected live=True, too");
-  if (!choices.autopilot.empty()) return;
-  throw InputError(*uri + ": expected an autopilot, as autopilot='sim:ardupilot' or 'sim:px4'");
+  const bool is_simulated = uri && SimulatedSource::IsNamed(*uri);
+  if (is_simulated && !choices.is_live) throw InputError(*uri + ": expected live=True, too");
+  if (is_simulated && choices.autopilot.empty()) {
+    throw InputError(*uri + ": expected an autopilot, as autopilot='sim:ardupilot' or 'sim:px4'");
+  }
+  if (!choices.is_live &&
+      (!choices.autopilot.empty() || !choices.record.empty() || choices.guides)) {
+    throw InputError("autopilot, guide and record: expected live=True, too");
+  }
 }
 
 // A source, the vision and the sinks, run once or again.
 class Session {
  public:
   explicit Session(Choices choices) : choices_(std::move(choices)) {
-    RequireSimulatedAutopilot(choices_);
+    RequireConsistent(choices_);
     if (choices_.is_live) {
       flight_ = FlightOptionsOf(choices_.options);
       options_ = {flight_.landing, flight_.hunt};
@@ -203,10 +209,6 @@ class Session {
       options_ = VisionOptions(choices_.options);
     }
     if (!choices_.model) choices_.model = std::make_shared<ObjectModel>(DefaultObjectModel());
-    if (!choices_.is_live &&
-        (!choices_.autopilot.empty() || !choices_.record.empty() || choices_.guides)) {
-      throw InputError("autopilot, guide and record: expected live=True, too");
-    }
   }
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -301,16 +303,11 @@ class Session {
             choices_.model};
   }
 
-  std::shared_ptr<Ros2Node> OpenNode() const {
-    const DdsOptions& options = flight_.dds;
-    return std::make_shared<Ros2Node>(DdsDomain(std::nullopt),
-                                      Ros2NodeOptions{options.node, options.is_humble()});
-  }
-
   std::string RunLive() {
     const RecordingChoice recording = ChoiceOf(choices_.source, choices_.camera, format());
     const py::gil_scoped_release release;
-    FlySource source(flight_, [this] { return OpenNode(); });
+    FlySource source(flight_,
+                     [this] { return OpenRos2Node(DdsDomain(std::nullopt), flight_.dds); });
     source.Open(recording, /*is_looped=*/false);
     const FlyAutopilot autopilot =
         MakeFlyAutopilot(choices_.autopilot, flight_.fly, choices_.guides, &source);
@@ -395,9 +392,9 @@ void BindSession(py::module_& module) {
           py::arg("guide") = false, py::arg("record") = "", py::arg("on_event") = py::none(),
           "source: a path (recording, bag, video, images), a Recording or SimulatedFlight; with "
           "live=True also '/dev/video0', 'rtsp://...', a GStreamer pipeline, "
-          "'dds:/camera/image_raw' "
-          "of ROS 2 or 'sim:standing', a simulated flight.\ncamera: path of the calibration; None: "
-          "the source's own.\nsinks: functions that get each "
+          "'dds:/camera/image_raw' of ROS 2 or 'sim:standing', a simulated flight.\ncamera: path "
+          "of "
+          "the calibration; None: the source's own.\nsinks: functions that get each "
           "Observation.\nhunt: looks for coloured objects ('model') instead of a pad.\noptions: a "
           "dict by the names of `kestrel config`, as {'landing': {'target': {'kind': 'helipad'}}}, "
           "or the path of such a file.\naltitude_m: height of the camera above what it looks for, "

@@ -27,7 +27,7 @@ int DdsArguments::Domain() const {
 }
 
 std::shared_ptr<Ros2Node> DdsArguments::OpenNode(const DdsOptions& options) const {
-  return std::make_shared<Ros2Node>(Domain(), Ros2NodeOptions{options.node, options.is_humble()});
+  return OpenRos2Node(Domain(), options);
 }
 
 DdsSource::OpenNode DdsArguments::NodeOpener(const DdsOptions& options) const {

@@ -113,7 +113,7 @@ class DoctorVisit {
     } catch (const ImageSizeError& error) {
       camera.open_error = error.what();
       camera.has_other_size = true;
-      source_.live.calibration = ReadCalibration(arguments_.flight.source.camera);
+      ReadCameraFile();
     } catch (const InputError& error) {
       camera.open_error = error.what();
       ReadCameraFile();

@@ -107,7 +107,7 @@ class Flight {
   // A simulated camera renders where the autopilot says that the UAV is: without one, nothing.
   void RequireAutopilot() const {
     const std::string& source = arguments_.source.sources.front();
-    if (!source.starts_with("sim:") || !arguments_.autopilot.empty()) return;
+    if (!SimulatedSource::IsNamed(source) || !arguments_.autopilot.empty()) return;
     throw WrongUsage(source + ": expected --autopilot URL, as sim:ardupilot or sim:px4");
   }
 

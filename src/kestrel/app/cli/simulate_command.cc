@@ -17,7 +17,7 @@
 #include "kestrel/app/cli/simulate_arguments.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/options.h"
-#include "kestrel/io/recording/recording_writer.h"
+#include "kestrel/io/recording/recording_place.h"
 #include "kestrel/simulation/recordings/hunt_simulation.h"
 #include "kestrel/simulation/recordings/landing_simulation.h"
 #include "kestrel/simulation/recordings/recording_plan.h"
@@ -67,7 +67,7 @@ void Run(const Kind<Options>& kind, const SimulateArguments& arguments, int thre
     std::cout << PrintOptions(options);
     return;
   }
-  RequireFreeForRecording(PlaceOfRecording(arguments.output), arguments.force);
+  RequireFreeForRecording(arguments.output, arguments.force);
   RecordingPlan plan = kind.plan(options, arguments.FindCamera(kind.camera), arguments.seed);
   // An evaluation groups its results by the condition.
   if (!arguments.scenario.empty()) plan.scene += "condition: " + arguments.scenario + "\n";

@@ -49,12 +49,9 @@ std::vector<std::string> NamesOfOptions(const CLI::App& command) {
 
 // Returns "; did you mean 'land'?", or nothing when none of 'names' is near.
 std::string Suggestion(const std::string& typed, const std::vector<std::string>& names) {
-  const auto nearest =
-      std::min_element(names.begin(), names.end(), [&](std::string_view a, std::string_view b) {
-        return EditDistance(typed, a) < EditDistance(typed, b);
-      });
-  if (nearest == names.end() || !IsNearName(typed, *nearest)) return "";
-  return fmt::format("; did you mean '{}'?", *nearest);
+  if (names.empty()) return "";
+  const std::string& nearest = NearestName(typed, names);
+  return IsNearName(typed, nearest) ? fmt::format("; did you mean '{}'?", nearest) : "";
 }
 
 // The first word of 'rest' where a command was expected.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <numeric>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -30,6 +31,14 @@ inline int EditDistance(std::string_view a, std::string_view b) {
 inline bool IsNearName(std::string_view typed, std::string_view name) {
   const auto errors = static_cast<std::size_t>(EditDistance(typed, name));
   return errors <= std::max<std::size_t>(1, typed.size() / 3);
+}
+
+// Returns the one of 'names', of which there is one at least, that is nearest to 'typed'.
+inline const std::string& NearestName(std::string_view typed,
+                                      const std::vector<std::string>& names) {
+  return *std::min_element(names.begin(), names.end(), [&](std::string_view a, std::string_view b) {
+    return EditDistance(typed, a) < EditDistance(typed, b);
+  });
 }
 
 }  // namespace kestrel

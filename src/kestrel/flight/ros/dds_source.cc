@@ -33,6 +33,10 @@ RosFrames FramesOf(const DdsCamera& camera) {
 
 }  // namespace
 
+std::shared_ptr<Ros2Node> OpenRos2Node(int domain, const DdsOptions& options) {
+  return std::make_shared<Ros2Node>(domain, Ros2NodeOptions{options.node, options.is_humble()});
+}
+
 DdsSource::DdsSource(const DdsOptions& options, OpenNode open_node,
                      std::function<void(const std::string&)> tell)
     : options_(options), open_node_(std::move(open_node)), tell_(std::move(tell)) {}

@@ -13,6 +13,9 @@
 
 namespace kestrel {
 
+// Opens the node that the options name. Throws InputError when that cannot be.
+std::shared_ptr<Ros2Node> OpenRos2Node(int domain, const DdsOptions& options);
+
 // The scheme "dds:TOPIC" of live sources: images of ROS 2. It keeps the node, for results that go
 // back by the same one. Must outlive the scheme.
 class DdsSource {

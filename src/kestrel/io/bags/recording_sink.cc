@@ -17,7 +17,7 @@
 #include "kestrel/io/bags/messages.h"
 #include "kestrel/io/bags/serialization.h"
 #include "kestrel/io/recording/euroc_writer.h"
-#include "kestrel/io/recording/recording_writer.h"
+#include "kestrel/io/recording/recording_place.h"
 
 namespace kestrel {
 namespace {
@@ -136,7 +136,7 @@ class BagSink : public RecordingSink {
 
 // Makes the empty folder of a recording that is not complete.
 fs::path BeginRecording(const std::string& path, bool replace) {
-  RequireFreeForRecording(PlaceOfRecording(path), replace);
+  RequireFreeForRecording(path, replace);
   fs::path part = PartOfRecording(path);
   std::error_code error;
   fs::remove_all(part, error);

@@ -8,7 +8,7 @@
 #include "kestrel/core/base/read_file.h"
 #include "kestrel/io/recording/csv_columns.h"
 #include "kestrel/io/recording/csv_table.h"
-#include "kestrel/io/recording/recording_writer.h"
+#include "kestrel/io/recording/recording_place.h"
 
 namespace kestrel {
 namespace {

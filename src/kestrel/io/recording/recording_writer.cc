@@ -11,6 +11,7 @@
 #include "kestrel/core/base/write_file.h"
 #include "kestrel/core/codec/png_codec.h"
 #include "kestrel/io/recording/euroc_layout.h"
+#include "kestrel/io/recording/recording_place.h"
 
 namespace kestrel {
 namespace {
@@ -34,35 +35,6 @@ void WriteText(const fs::path& path, const std::string& text) {
 }
 
 }  // namespace
-
-void RequireFreeForRecording(const fs::path& output, bool replace) {
-  if (!fs::exists(output)) return;
-  if (!fs::is_directory(output)) {
-    throw InputError(output.string() + ": is a file, not a folder");
-  }
-  if (fs::is_empty(output)) return;
-  if (!fs::exists(output / "mav0" / "cam0")) {
-    throw InputError(output.string() + ": is no recording, and not empty");
-  }
-  if (!replace) throw InputError(output.string() + ": exists already; --force replaces it");
-}
-
-fs::path PlaceOfRecording(const fs::path& output) {
-  const fs::path path = fs::absolute(output).lexically_normal();
-  return path.has_filename() ? path : path.parent_path();
-}
-
-fs::path PartOfRecording(const fs::path& output) {
-  return PlaceOfRecording(output).string() + ".part";
-}
-
-void PublishRecording(const fs::path& part, const fs::path& output) {
-  std::error_code error;
-  fs::remove_all(output, error);
-  Require(error, output, "cannot be replaced");
-  fs::rename(part, output, error);
-  Require(error, output, "cannot be written");
-}
 
 RecordingWriter::RecordingWriter(const fs::path& output, bool replace, const std::string& scene)
     : output_(PlaceOfRecording(output)), part_(PartOfRecording(output)) {

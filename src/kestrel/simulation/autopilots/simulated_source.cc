@@ -61,6 +61,8 @@ CameraCalibration CalibrationFor(const RecordingChoice& choice, const CameraCali
 
 }  // namespace
 
+bool SimulatedSource::IsNamed(std::string_view uri) { return uri.starts_with(kPrefix); }
+
 SourceScheme SimulatedSource::Scheme() {
   return {std::string(kPrefix), [this](const LiveSourceChoice& choice) { return Open(choice); }};
 }

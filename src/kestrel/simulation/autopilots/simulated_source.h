@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string_view>
 
 #include "kestrel/comms/mavlink/autopilot.h"
 #include "kestrel/core/poses/pose_history.h"
@@ -22,6 +23,9 @@ class SimulatedSource {
   SimulatedSource(const SimulatedCameraOptions& options, const TargetOptions& target,
                   std::uint64_t seed)
       : options_(options), target_(target), seed_(seed) {}
+
+  // Whether a source of this name is one of this scheme.
+  static bool IsNamed(std::string_view uri);
 
   // The source has the simulated camera's calibration, or the one that the user gives; a file
   // without a mount gets the simulated camera's. It throws InputError for a scenario or settings

@@ -75,14 +75,6 @@ TagGrid Turned(const TagGrid& grid) {
   return turned;
 }
 
-const std::string& NearestFamily(std::string_view name) {
-  const std::vector<std::string>& names = TagFamily::Names();
-  return *std::min_element(names.begin(), names.end(),
-                           [&](const std::string& a, const std::string& b) {
-                             return EditDistance(name, a) < EditDistance(name, b);
-                           });
-}
-
 }  // namespace
 
 TagGrid SquareTag(int side, const std::vector<bool>& bits) {
@@ -135,7 +127,7 @@ void TagFamily::ReadAprilTag() {
   const AprilTagFamily* const known = FindAprilTagFamily(name_);
   if (known == nullptr) {
     throw InputError(fmt::format("unknown family of tags '{}', did you mean '{}'?", Shown(name_),
-                                 NearestFamily(name_)));
+                                 NearestName(name_, Names())));
   }
   const std::unique_ptr<apriltag_family_t, void (*)(apriltag_family_t*)> family(known->create(),
                                                                                 known->destroy);

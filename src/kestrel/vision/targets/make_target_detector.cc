@@ -163,13 +163,10 @@ std::optional<int> HeadingSymmetryOf(std::string_view kind) {
 std::vector<std::string> TargetOptions::Validate() const {
   if (const TargetKind* known = FindKind(kind)) return known->validate(*this);
   const std::vector<std::string> names = TargetKinds();
-  const auto nearest =
-      std::min_element(names.begin(), names.end(), [&](std::string_view a, std::string_view b) {
-        return EditDistance(kind, a) < EditDistance(kind, b);
-      });
+  const std::string& nearest = NearestName(kind, names);
   return {
       fmt::format("kind is '{}', expected one of {}{}", kind, fmt::join(names, ", "),
-                  IsNearName(kind, *nearest) ? fmt::format("; did you mean '{}'?", *nearest) : "")};
+                  IsNearName(kind, nearest) ? fmt::format("; did you mean '{}'?", nearest) : "")};
 }
 
 std::unique_ptr<const TargetDetector> MakeTargetDetector(
