@@ -122,7 +122,7 @@ def _times(path):
     """Returns the times of a recording's images; empty where it is not divided: where it is no EuRoC
     folder, or its table is broken, which `kestrel` will tell."""
     try:
-        with open(Path(path) / "mav0/cam0/data.csv", newline="") as file:
+        with open(Path(path) / "mav0/cam0/data.csv", newline="", encoding="utf-8-sig") as file:
             return sorted(int(row[0]) for row in csv.reader(file)
                           if row and not row[0].startswith("#"))
     except (OSError, ValueError):

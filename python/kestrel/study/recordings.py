@@ -67,7 +67,8 @@ def _is_single(path):
     """Returns whether a path is one source that is no recording folder or bag."""
     if path.is_file():
         return path.suffix in _VIDEOS
-    return path.is_dir() and any(entry.suffix.lower() in _IMAGES for entry in path.iterdir())
+    return path.is_dir() and any(entry.suffix.lower() in _IMAGES for entry in path.iterdir()
+                                 if not entry.name.startswith("."))
 
 
 def _root(pattern):

@@ -117,7 +117,7 @@ def _view(path, piece, folder):
     _link(path, view, besides="mav0")
     _link(path / "mav0", view / "mav0", besides="cam0")
     _link(path / "mav0/cam0", camera, besides="data.csv")
-    rows = (path / "mav0/cam0/data.csv").read_text().splitlines(keepends=True)
+    rows = (path / "mav0/cam0/data.csv").read_text(encoding="utf-8-sig").splitlines(keepends=True)
     (camera / "data.csv").write_text("".join(
         row for row in rows if row.startswith("#")
         or piece.lead_in_ns <= int(row.split(",")[0]) < piece.last_ns))

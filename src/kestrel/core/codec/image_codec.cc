@@ -43,14 +43,17 @@ std::string Encode(const std::string& path, const cv::Mat& image) {
 
 }  // namespace
 
-cv::Mat DecodeImage(std::string_view bytes, const std::string& name, std::size_t max_pixels) {
-  const EncodedImage image{bytes, name, max_pixels};
+cv::Mat DecodeImage(std::string_view bytes, const std::string& name, std::size_t max_pixels,
+                    std::size_t page) {
+  const EncodedImage image{bytes, name, max_pixels, page};
   for (const Format& format : kFormats) {
     if (format.is_it(bytes)) return format.decode(image);
   }
   FailToDecode(image,
                "cannot be decoded as an image, expected PNG, JPEG, TIFF, WebP, BMP, PGM or PPM");
 }
+
+std::size_t CountPages(std::string_view bytes) { return IsTiff(bytes) ? CountTiffPages(bytes) : 1; }
 
 cv::Mat ReadImage(const std::string& path) { return DecodeImage(ReadFile(path), path); }
 

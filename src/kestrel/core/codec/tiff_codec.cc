@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 #include <tiffio.h>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -105,6 +106,20 @@ bool IsGray(TIFF* tiff) {
   return kind == PHOTOMETRIC_MINISBLACK || kind == PHOTOMETRIC_MINISWHITE;
 }
 
+// Returns the directories of the pages; the first one where all are thumbnails. Hostile files have
+// directories without end.
+std::vector<tdir_t> PagesOf(TIFF* tiff) {
+  constexpr tdir_t kMost = 10000;
+  std::vector<tdir_t> pages;
+  for (tdir_t i = 0; i < kMost; ++i) {
+    std::uint32_t kind = 0;
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_SUBFILETYPE, &kind);
+    if ((kind & FILETYPE_REDUCEDIMAGE) == 0) pages.push_back(i);
+    if (TIFFReadDirectory(tiff) == 0) break;
+  }
+  return pages.empty() ? std::vector<tdir_t>{0} : pages;
+}
+
 [[noreturn]] void Fail(const EncodedImage& image, const TiffFile& file) {
   std::string fault = file.fault.data();
   std::replace(fault.begin(), fault.end(), '\n', ' ');
@@ -118,10 +133,23 @@ bool IsTiff(std::string_view bytes) {
   return bytes.starts_with("II*\0"sv) || bytes.starts_with("MM\0*"sv);
 }
 
+std::size_t CountTiffPages(std::string_view bytes) {
+  TiffFile file{bytes};
+  constexpr std::size_t kMaxDirectoryBytes = 1 << 20;
+  const TiffPointer tiff = Open(&file, kMaxDirectoryBytes);
+  return tiff ? PagesOf(tiff.get()).size() : 1;
+}
+
 cv::Mat DecodeTiff(const EncodedImage& image) {
   TiffFile file{image.bytes};
   const TiffPointer tiff = Open(&file, image.max_pixels * sizeof(std::uint32_t));
   if (!tiff) Fail(image, file);
+  if (image.page > 0) {
+    const std::vector<tdir_t> pages = PagesOf(tiff.get());
+    if (image.page >= pages.size() || TIFFSetDirectory(tiff.get(), pages[image.page]) == 0) {
+      FailToDecode(image, fmt::format("has no page {}", image.page + 1));
+    }
+  }
   const std::uint16_t bits = NumberOf(tiff.get(), TIFFTAG_BITSPERSAMPLE);
   if (bits > 8) {
     FailToDecode(image, fmt::format("is a {}-bit image, expected 8 bits a channel", bits));

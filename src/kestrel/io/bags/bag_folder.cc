@@ -10,6 +10,7 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/read_file.h"
 #include "kestrel/core/base/shown.h"
+#include "kestrel/io/recording/file_kind.h"
 
 namespace kestrel {
 namespace {
@@ -36,7 +37,7 @@ std::vector<std::string> StorageFilesIn(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    if (IsStorageFile(entry.path())) files.push_back(entry.path());
+    if (IsStorageFile(entry.path()) && !IsHidden(entry.path())) files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
     return std::pair(PartOf(a), a) < std::pair(PartOf(b), b);

@@ -31,12 +31,13 @@ std::optional<int> ConversionCode(int channels, PixelFormat format) {
 
 }  // namespace
 
-cv::Mat ReadImage(const std::string& path, PixelFormat format) {
-  return DecodeImageBytes(ReadFile(path), format, path);
+cv::Mat ReadImage(const std::string& path, PixelFormat format, std::size_t page) {
+  return DecodeImageBytes(ReadFile(path), format, path, page);
 }
 
-cv::Mat DecodeImageBytes(std::string_view bytes, PixelFormat format, const std::string& name) {
-  return ToFormat(DecodeImage(bytes, name), format, name);
+cv::Mat DecodeImageBytes(std::string_view bytes, PixelFormat format, const std::string& name,
+                         std::size_t page) {
+  return ToFormat(DecodeImage(bytes, name, kMaxImagePixels, page), format, name);
 }
 
 cv::Mat ToFormat(const cv::Mat& image, PixelFormat format, const std::string& name) {
