@@ -55,23 +55,56 @@ namespace {
 
 namespace py = pybind11;
 
+// Turns the images that a source leaves out into Python's warnings, which need the interpreter's
+// lock: the source is read without it.
+class LeftOutImages {
+ public:
+  void Follow(FrameSource* source) {
+    source->set_on_broken([this](const BrokenImage& broken) {
+      const std::lock_guard lock(mutex_);
+      faults_.emplace_back(broken.what());
+    });
+  }
+  void Warn() {
+    std::vector<std::string> faults;
+    {
+      const std::lock_guard lock(mutex_);
+      faults.swap(faults_);
+    }
+    for (const std::string& fault : faults) {
+      const std::string text = "an image is left out: " + fault;
+      if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+    }
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::string> faults_;
+};
+
 // Frames of a source, one after the other. Threads that share them wait for each other.
 class Frames {
  public:
-  explicit Frames(std::unique_ptr<FrameSource> source) : source_(std::move(source)) {}
+  explicit Frames(std::unique_ptr<FrameSource> source) : source_(std::move(source)) {
+    left_out_.Follow(source_.get());
+  }
 
   Frame Next() {
     Frame frame;
+    bool has_frame = false;
     {
       const py::gil_scoped_release release;
       const std::lock_guard lock(mutex_);
-      if (source_->Next(&frame)) return frame;
+      has_frame = source_->Next(&frame);
     }
+    left_out_.Warn();
+    if (has_frame) return frame;
     throw py::stop_iteration();
   }
 
  private:
   std::mutex mutex_;
+  LeftOutImages left_out_;
   std::unique_ptr<FrameSource> source_;
 };
 
@@ -81,7 +114,9 @@ class Events {
   explicit Events(OpenedSource opened)
       : opened_(std::move(opened)),
         events_(opened_.source.get(), opened_.source->poses(),
-                opened_.calibration.clock_offset.value_or(Duration::zero())) {}
+                opened_.calibration.clock_offset.value_or(Duration::zero())) {
+    left_out_.Follow(opened_.source.get());
+  }
 
   std::variant<Frame, PoseSample> Next() {
     Event event;
@@ -90,6 +125,7 @@ class Events {
       const std::lock_guard lock(mutex_);
       event = events_.Next();
     }
+    left_out_.Warn();
     if (auto* frame = std::get_if<Frame>(&event)) return std::move(*frame);
     if (auto* pose = std::get_if<PoseSample>(&event)) return *pose;
     throw py::stop_iteration();
@@ -97,6 +133,7 @@ class Events {
 
  private:
   std::mutex mutex_;
+  LeftOutImages left_out_;
   OpenedSource opened_;
   RecordingEvents events_;
 };

@@ -48,7 +48,7 @@ class RenderedFrames : public FrameSource {
   RenderedFrames(std::shared_ptr<const RecordingPlan> plan, std::vector<PoseSample> poses)
       : plan_(std::move(plan)), poses_(std::move(poses)) {}
 
-  bool Next(Frame* frame) override { return Read(next_, frame) && ++next_ > 0; }
+  bool ReadNext(Frame* frame) override { return Read(next_, frame) && ++next_ > 0; }
   bool Read(std::size_t index, Frame* frame) const override {
     if (index >= plan_->times.size()) return false;
     const Time time = plan_->times[index];

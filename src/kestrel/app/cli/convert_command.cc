@@ -91,6 +91,10 @@ std::unique_ptr<RecordingSink> OpenDestination(const ConvertArguments& arguments
                       CompressionOf(arguments.compression, "--compression"), arguments.force);
 }
 
+std::string LeftOutInWords(const FrameSource& source) {
+  return source.left_out() == 0 ? "" : fmt::format(", {} images left out", source.left_out());
+}
+
 void RunConvert(const ConvertArguments& arguments) {
   RequireBagOrFolder(arguments.destination);
   const auto source = OpenFrames(arguments.bag.Recording({arguments.source}, PixelFormat::kBgr));
@@ -117,7 +121,8 @@ void RunConvert(const ConvertArguments& arguments) {
   }
   for (; pose != poses.end(); ++pose) recording->AddPose(*pose);
   recording->Close();
-  fmt::print(stderr, "{} frames, {} poses\n", frames, pose - poses.begin());
+  fmt::print(stderr, "{} frames, {} poses{}\n", frames, pose - poses.begin(),
+             LeftOutInWords(*source));
 }
 
 }  // namespace

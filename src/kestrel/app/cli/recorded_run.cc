@@ -36,7 +36,6 @@ class DetectTimes : public ObservationSink {
 
   std::size_t count() const { return times_ms_.size(); }
   std::size_t broken() const { return broken_; }
-  const std::string& first_fault() const { return first_fault_; }
 
   // A line on the images that cannot be read; empty when there is none.
   std::string Faults() const {
@@ -139,7 +138,6 @@ void RunToEnd(const OpenedSource& opened, Vision* vision, ObservationSinks* sink
     throw;
   }
   sinks->Finish();
-  if (times->count() == 0 && !times->first_fault().empty()) throw InputError(times->first_fault());
   PrintSummary(*times, *vision);
   SayInterruption(opened, times->count() + times->broken());
 }

@@ -22,11 +22,10 @@ struct Cancelled {};
 // Passes all frames to 'add'. Returns their number.
 template <class Add>
 std::size_t AddFrames(const OpenedSource& opened, const GoOn& go_on, const Add& add) {
-  const CameraIntrinsics& camera = opened.calibration.intrinsics;
   std::size_t done = 0;
   for (Frame frame; opened.source->Next(&frame); ++done) {
     if (!go_on(done)) throw Cancelled();
-    CheckImageSize(camera, frame.image.cols, frame.image.rows, frame.name);
+    opened.RequireSize(frame);
     add(frame);
   }
   return done;

@@ -7,23 +7,34 @@
 
 namespace kestrel {
 
+void FrameWinder::Begin() {
+  source_ = open_();
+  source_->set_on_broken([this](const BrokenImage&) { Keep(cv::Mat()); });
+  next_ = 0;
+  kept_.clear();
+}
+
+void FrameWinder::Keep(const cv::Mat& image) {
+  kept_.push_back(image);
+  if (kept_.size() > kMaxKept) kept_.pop_front();
+  ++next_;
+}
+
 cv::Mat FrameWinder::Read(std::size_t index) {
   Frame frame;
   if (source_->Read(index, &frame)) return frame.image;
   if (index + kept_.size() < next_) {
-    source_ = open_();
-    next_ = 0;
-    kept_.clear();
+    Begin();
   }
   while (next_ <= index) {
     if (!source_->Next(&frame)) {
       throw InputError(fmt::format("the source has ended before its frame {}", index));
     }
-    kept_.push_back(frame.image.clone());
-    if (kept_.size() > kMaxKept) kept_.pop_front();
-    ++next_;
+    Keep(frame.image.clone());
   }
-  return kept_[kept_.size() - (next_ - index)];
+  cv::Mat image = kept_[kept_.size() - (next_ - index)];
+  if (image.empty()) throw InputError(fmt::format("the frame {} cannot be read", index));
+  return image;
 }
 
 }  // namespace kestrel

@@ -20,18 +20,24 @@ class FrameWinder {
   using Open = std::function<std::unique_ptr<FrameSource>()>;
 
   // 'open': opens the source at its beginning; it must give the same frames each time.
-  explicit FrameWinder(Open open) : open_(std::move(open)), source_(open_()) {}
+  explicit FrameWinder(Open open) : open_(std::move(open)) { Begin(); }
+  FrameWinder(const FrameWinder&) = delete;
+  FrameWinder& operator=(const FrameWinder&) = delete;
 
-  // Throws InputError when the image cannot be read or the source has fewer frames.
+  // 'index': of an image of the source, those that cannot be read included. Throws InputError when
+  // the image cannot be read or the source has fewer.
   cv::Mat Read(std::size_t index);
 
  private:
   static constexpr std::size_t kMaxKept = 100;
 
+  void Begin();
+  void Keep(const cv::Mat& image);
+
   Open open_;
   std::unique_ptr<FrameSource> source_;
-  std::size_t next_ = 0;      // index of the source's next frame
-  std::deque<cv::Mat> kept_;  // the images before next_
+  std::size_t next_ = 0;      // index of the source's next image
+  std::deque<cv::Mat> kept_;  // the images before next_; empty where they cannot be read
 };
 
 }  // namespace kestrel

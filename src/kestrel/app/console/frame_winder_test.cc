@@ -11,7 +11,7 @@ namespace {
 // 300 images that can only be read in order; the pixels hold the index.
 class ForwardSource : public FrameSource {
  public:
-  bool Next(Frame* frame) override {
+  bool ReadNext(Frame* frame) override {
     if (count_ == 300) return false;
     frame->image = cv::Mat(1, 1, CV_32SC1, cv::Scalar(count_++));
     return true;

@@ -110,6 +110,12 @@ class HuntReplay : public ReplayRun {
     }
     result()->frames.push_back(ReplayFrameOf(view_, seen));
   }
+  void Take(const BrokenFrame& broken) override {
+    HuntObservation nothing;
+    nothing.time = broken.time;
+    if (makes_table_) result()->table += ObjectCsvRows(broken.name, nothing, view_.model);
+    result()->frames.push_back(BrokenReplayFrame(ReplayFrameOf(view_, nothing), broken));
+  }
 
  private:
   void Complete(ReplayResult* result) override {

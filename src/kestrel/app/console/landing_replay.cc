@@ -75,6 +75,12 @@ class LandingReplay : public ReplayRun {
     if (makes_table_) result()->table += LandingCsvRow(observation.frame.name, seen);
     result()->frames.push_back(ReplayFrameOf(view_, seen));
   }
+  void Take(const BrokenFrame& broken) override {
+    if (makes_table_) result()->table += UnreadableLandingCsvRow(broken.name, broken.time);
+    LandingObservation nothing;
+    nothing.time = broken.time;
+    result()->frames.push_back(BrokenReplayFrame(ReplayFrameOf(view_, nothing), broken));
+  }
 
  private:
   void Complete(ReplayResult* result) override {

@@ -151,10 +151,12 @@ void RecordingPlayer::ShowFrame() {
   picture_.shapes = ShapesOf(*first_, second_.get(), index);
   try {
     picture_.image = read_(index);
-  } catch (const InputError& error) {  // the image's file is gone
-    playhead_.Hold();
+  } catch (const InputError& error) {  // it cannot be read, or its file is gone
     feed_->Add(SessionEvent{picture_.captured, EventLevel::kError, error.what()});
-    return;
+    constexpr int kWidth_px = 640, kHeight_px = 480;
+    const cv::Size size =
+        picture_.image.empty() ? cv::Size(kWidth_px, kHeight_px) : picture_.image.size();
+    picture_.image = cv::Mat::zeros(size, CV_8UC1);
   }
   feed_->SetFrame(&picture_);
 }

@@ -33,6 +33,11 @@ ReplayFrame ReplayFrameOf(const HuntView& view, const HuntObservation& observati
   return frame;
 }
 
+ReplayFrame BrokenReplayFrame(ReplayFrame nothing, const BrokenFrame& broken) {
+  nothing.facts = {{"image", "unreadable: " + broken.fault}};
+  return nothing;
+}
+
 std::vector<OverlayShape> ShapesOf(const ReplayResult& first, const ReplayResult* second,
                                    std::size_t frame) {
   std::vector<OverlayShape> shapes = first.frames[frame].shapes;

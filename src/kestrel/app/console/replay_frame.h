@@ -9,6 +9,7 @@
 #include "kestrel/app/console/console_feed.h"
 #include "kestrel/app/console/hunt_view.h"
 #include "kestrel/app/console/landing_view.h"
+#include "kestrel/flight/session/observation.h"
 
 namespace kestrel {
 
@@ -28,6 +29,10 @@ struct ReplayFrame {
 // found, and kFalse when the track rejects the pattern.
 ReplayFrame ReplayFrameOf(const LandingView& view, const LandingObservation& observation);
 ReplayFrame ReplayFrameOf(const HuntView& view, const HuntObservation& observation);
+
+// Returns the frame of an image that cannot be read, which says so; 'nothing' is one in which
+// nothing was found.
+ReplayFrame BrokenReplayFrame(ReplayFrame nothing, const BrokenFrame& broken);
 
 // An object of a hunt's map and the time at which the map gets it.
 struct MapEntry {

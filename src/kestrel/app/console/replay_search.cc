@@ -23,8 +23,10 @@ std::optional<ReplayResult> DetectAgain(const RecordingChoice& choice,
 }  // namespace
 
 ReplayConsole::Recording RecordingOf(const RecordingChoice& choice, const ReplaySearch& search) {
-  const auto open = [choice]() -> ReplayConsole::ReadFrame {
-    const auto winder = std::make_shared<FrameWinder>([choice] { return OpenFrames(choice); });
+  RecordingChoice quiet = choice;  // the run over the recording has told what is left out
+  quiet.bag.tell = {};
+  const auto open = [quiet]() -> ReplayConsole::ReadFrame {
+    const auto winder = std::make_shared<FrameWinder>([quiet] { return OpenFrames(quiet); });
     return [winder](std::size_t index) { return winder->Read(index); };
   };
   const auto detect = [choice, &search](const std::vector<std::string>& settings) {

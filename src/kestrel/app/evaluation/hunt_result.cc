@@ -27,6 +27,10 @@ class EllipseColumns {
         detect_(cells.Column("detect_ms")) {}
 
   bool IsObject(std::size_t row) const { return !cells_.IsEmpty(row, u_); }
+  // An image that could not be read took no time.
+  bool IsUnreadable(std::size_t row) const {
+    return !IsObject(row) && DetectTime(row) == Duration::zero();
+  }
   Duration DetectTime(std::size_t row) const {
     return DurationFromSeconds(1e-3 * cells_.OptionalNumber(row, detect_).value_or(0));
   }
@@ -55,6 +59,7 @@ HuntResult::HuntResult(const std::string& table) : file_(table), text_(ReadFile(
   const std::vector<Time> times = ParseTimes(cells, "timestamp_ns", TimeOrder::kNotDecreasing);
   auto object = rows.objects.begin();
   for (std::size_t row = 0; row < times.size(); ++row) {
+    if (columns.IsUnreadable(row)) continue;
     if (frames_.empty() || times[row] > frames_.back().time) {
       frames_.emplace_back().time = times[row];
       frames_.back().detect_time = columns.DetectTime(row);

@@ -23,8 +23,8 @@ class HuntResult {
   // A model with nothing but the names of the classes in the table.
   const ObjectModel& model() const { return model_; }
 
-  // Returns the next frame. Its time and its pose are given. Throws InputError when the table has
-  // no row for it.
+  // Returns the next frame whose image could be read. Its time and its pose are given. Throws
+  // InputError when the table has no row for it.
   HuntObservation Next(Time time, const std::optional<RigidTransform>& world_from_camera);
   // Throws InputError when the table has rows of further frames.
   void RequireEnd() const;

@@ -16,6 +16,7 @@
 #include "kestrel/core/base/read_file.h"
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/io/recording/csv_table.h"
+#include "kestrel/io/recording/landing_csv.h"
 
 namespace kestrel {
 namespace {
@@ -68,8 +69,10 @@ LandResult::LandResult(const std::string& table) : file_(table), text_(ReadFile(
   // Not in older tables.
   const std::optional<std::size_t> misfit = cells.FindColumn("misfit_px"),
                                    id = cells.FindColumn("target_id");
+  std::size_t next = 0;
   for (DetectionRow& detection : ParseDetectionRows(text_, file_)) {
-    const std::size_t index = rows_.size();
+    const std::size_t index = next++;
+    if (!detection.pattern && cells.Text(index, rejected) == kUnreadable) continue;
     Row& row = rows_.emplace_back();
     row.detect_time = DurationFromSeconds(1e-3 * cells.OptionalNumber(index, time).value_or(0));
     if (misfit) row.misfit_px = cells.OptionalNumber(index, *misfit).value_or(0);

@@ -22,8 +22,8 @@ class LandResult {
   // when they are not valid.
   explicit LandResult(const std::string& table);
 
-  // Returns the next frame. Its time and its pose are given. Throws InputError when the table has
-  // no row for it.
+  // Returns the next frame whose image could be read. Its time and its pose are given. Throws
+  // InputError when the table has no row for it.
   LandingObservation Next(Time time, const std::optional<RigidTransform>& world_from_camera);
   // Throws InputError when the table has rows of further frames.
   void RequireEnd() const;

@@ -35,7 +35,11 @@ void RealtimeReplay::Begin() {
 bool RealtimeReplay::ReadFrame() {
   Frame frame;
   frame_.reset();
+  const std::size_t left_out = source_->left_out();
   if (source_->Next(&frame)) frame_ = std::move(frame);
+  const std::lock_guard lock(mutex_);
+  counters_.refused += source_->left_out() - left_out;
+  counters_.missed = counters_.refused;
   return frame_.has_value();
 }
 

@@ -19,7 +19,7 @@ using ::testing::Not;
 // Images without poses, which the test gives to the run itself.
 class NoFrames : public FrameSource {
  public:
-  bool Next(Frame*) override { return false; }
+  bool ReadNext(Frame*) override { return false; }
   std::optional<std::size_t> frame_count() const override { return 0; }
   double rate_hz() const override { return 10; }
 };

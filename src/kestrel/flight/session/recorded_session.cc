@@ -8,33 +8,20 @@
 
 namespace kestrel {
 
-namespace {
-
-// A broken image is told and left out: one bad file does not end the run.
-Event NextReadable(RecordingEvents* events, ObservationSink* sink) {
-  for (;;) {
-    try {
-      return events->Next();
-    } catch (const BrokenImage& broken) {
-      sink->Take(BrokenFrame{broken.name, broken.time, broken.what()});
-    }
-  }
-}
-
-}  // namespace
-
 bool RunRecording(const OpenedSource& opened, Vision* vision, ObservationSink* sink,
                   const std::function<bool(std::size_t done)>& go_on) {
+  opened.source->set_on_broken([sink](const BrokenImage& broken) {
+    sink->Take(BrokenFrame{broken.name, broken.time, broken.what()});
+  });
   RecordingEvents events(opened.source.get(), opened.source->poses(), vision->pose_lead());
   for (std::size_t done = 0;;) {
-    const Event event = NextReadable(&events, sink);
+    const Event event = events.Next();
     if (std::holds_alternative<EndOfStream>(event)) break;
     if (const auto* pose = std::get_if<PoseSample>(&event)) vision->AddPose(*pose);
     const auto* frame = std::get_if<Frame>(&event);
     if (frame == nullptr) continue;
     if (!go_on(done)) return false;
-    CheckImageSize(opened.calibration.intrinsics, frame->image.cols, frame->image.rows,
-                   frame->name);
+    opened.RequireSize(*frame);
     sink->Take(vision->Process(*frame));
     ++done;
   }

@@ -25,7 +25,7 @@ Time At(double seconds) { return Time(DurationFromSeconds(seconds)); }
 // Frames at 1, 2, 3 s; poses at 0.5, 1.5, 2.5 s.
 class ThreeFrames : public FrameSource {
  public:
-  bool Next(Frame* frame) override {
+  bool ReadNext(Frame* frame) override {
     if (next_ == 3) return false;
     ++next_;
     *frame = {"frame " + std::to_string(next_), At(next_),

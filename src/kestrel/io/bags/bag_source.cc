@@ -45,10 +45,17 @@ void BagSource::Tell(const std::string& text) const {
 void BagSource::ReadCameraInfo() {
   if (!topics_.camera_info) return;
   bag_->Select({*topics_.camera_info});
-  BagMessage message;
-  if (!bag_->Next(&message)) return;
-  camera_info_ = ParseMessage<CameraInfoMessage>(
-      message.data, bag_->topics()[message.topic].wire_format, NameOf(message.topic));
+  std::string fault;
+  for (BagMessage message; bag_->Next(&message);) {
+    try {
+      camera_info_ = ParseMessage<CameraInfoMessage>(
+          message.data, bag_->topics()[message.topic].wire_format, NameOf(message.topic));
+      return;
+    } catch (const InputError& error) {
+      if (fault.empty()) fault = error.what();
+    }
+  }
+  if (!fault.empty()) throw InputError(fault);
 }
 
 std::optional<CameraCalibration> BagSource::calibration() const {
@@ -70,14 +77,20 @@ std::string BagSource::ReadFirstImages() {
   const BagTopic& topic = bag_->topics()[topics_.image];
   std::string camera_frame;
   std::vector<Time> times;
+  std::string fault;
   BagMessage message;
   while (times.size() < kImagesForRate && bag_->Next(&message)) {
-    // Messages of raw and of compressed images both begin with the header.
-    const auto header =
-        ParseMessage<HeaderMessage>(message.data, topic.wire_format, NameOf(message.topic));
-    if (times.empty()) camera_frame = header.frame_id;
-    times.push_back(TimeOf(header, message));
+    try {
+      // Messages of raw and of compressed images both begin with the header.
+      const auto header =
+          ParseMessage<HeaderMessage>(message.data, topic.wire_format, NameOf(message.topic));
+      times.push_back(TimeOf(header, message));
+      if (camera_frame.empty()) camera_frame = header.frame_id;
+    } catch (const InputError& error) {  // Next leaves it out
+      if (fault.empty()) fault = error.what();
+    }
   }
+  if (times.empty() && !fault.empty()) throw InputError(fault);
   if (times.empty()) throw InputError(NameOf(topics_.image) + ": has no images, expected some");
   const auto [first, last] = std::minmax_element(times.begin(), times.end());
   const double span_s = ToSeconds(*last - *first);
@@ -95,58 +108,75 @@ Time BagSource::TimeOf(const HeaderMessage& header, const BagMessage& message) c
   return header.stamp;
 }
 
-template <class Message>
-Frame BagSource::FrameOf(const BagMessage& message) const {
-  const BagTopic& topic = bag_->topics()[message.topic];
-  const auto image = ParseMessage<Message>(message.data, topic.wire_format, NameOf(message.topic));
-  Frame frame;
-  frame.time = TimeOf(image.header, message);
-  frame.name = fmt::format("{}/{}", topic.name.substr(topic.name.starts_with('/')),
-                           ToNanoseconds(frame.time));
-  const std::string name = fmt::format("{}: {}", path_, frame.name);
-  frame.image = DecodeImage(image, format(), name);
-  if (keeps_color()) frame.color = DecodeImage(image, PixelFormat::kBgr, name);
-  return frame;
+std::string BagSource::FrameName(const BagMessage& message, Time time) const {
+  const std::string& topic = bag_->topics()[message.topic].name;
+  return fmt::format("{}/{}", topic.substr(topic.starts_with('/')), ToNanoseconds(time));
 }
 
-bool BagSource::ReadFrame(Frame* frame) {
+// Fills 'frame'; its name and time, too, when the image cannot be decoded.
+template <class Message>
+void BagSource::Decode(const BagMessage& message, Frame* frame) const {
+  const BagTopic& topic = bag_->topics()[message.topic];
+  const auto image = ParseMessage<Message>(message.data, topic.wire_format, NameOf(message.topic));
+  frame->time = TimeOf(image.header, message);
+  frame->name = FrameName(message, frame->time);
+  const std::string name = fmt::format("{}: {}", path_, frame->name);
+  frame->image = DecodeImage(image, format(), name);
+  if (keeps_color()) frame->color = DecodeImage(image, PixelFormat::kBgr, name);
+}
+
+bool BagSource::ReadMessage(ReadFrame* read) {
   BagMessage message;
   if (!bag_->Next(&message)) return false;
-  const bool is_raw = bag_->topics()[message.topic].type == ImageMessage::kType;
-  *frame = is_raw ? FrameOf<ImageMessage>(message) : FrameOf<CompressedImageMessage>(message);
+  // An image whose header cannot be read, or has no stamp, comes right after the one before it.
+  read->frame.time = newest_ + Duration(1);
+  read->frame.name = FrameName(message, read->frame.time);
+  try {
+    if (bag_->topics()[message.topic].type == ImageMessage::kType) {
+      Decode<ImageMessage>(message, &read->frame);
+    } else {
+      Decode<CompressedImageMessage>(message, &read->frame);
+    }
+  } catch (const InputError& error) {
+    read->fault = error.what();
+  }
+  newest_ = std::max(newest_, read->frame.time);
   return true;
 }
 
 void BagSource::TellWhatIsMissing() const {
   if (!bag_->damage().empty()) Tell(bag_->damage());
-  if (left_out_ == 0) return;
+  if (repeated_ == 0) return;
   Tell(fmt::format(
       "{}: {} images with the stamp of another, or late by more than {} images, are left out",
-      NameOf(topics_.image), left_out_, kMaxWaiting));
+      NameOf(topics_.image), repeated_, kMaxWaiting));
 }
 
-bool BagSource::Next(Frame* frame) {
+bool BagSource::ReadNext(Frame* frame) {
   while (!has_ended_ && waiting_.size() < kMaxWaiting) {
-    Frame read;
-    if (!ReadFrame(&read)) {
+    ReadFrame read;
+    if (!ReadMessage(&read)) {
       has_ended_ = true;
       TellWhatIsMissing();
       break;
     }
-    const auto place =
-        std::lower_bound(waiting_.begin(), waiting_.end(), read.time,
-                         [](const Frame& waiting, Time time) { return waiting.time < time; });
-    const bool is_repeated = place != waiting_.end() && place->time == read.time;
-    if (is_repeated || (last_time_ && read.time <= *last_time_)) {
-      ++left_out_;
+    const Time time = read.frame.time;
+    const auto place = std::lower_bound(
+        waiting_.begin(), waiting_.end(), time,
+        [](const ReadFrame& waiting, Time wanted) { return waiting.frame.time < wanted; });
+    const bool is_repeated = place != waiting_.end() && place->frame.time == time;
+    if (is_repeated || (last_time_ && time <= *last_time_)) {
+      ++repeated_;
       continue;
     }
     waiting_.insert(place, std::move(read));
   }
   if (waiting_.empty()) return false;
-  *frame = std::move(waiting_.front());
+  const ReadFrame first = std::move(waiting_.front());
   waiting_.erase(waiting_.begin());
-  last_time_ = frame->time;
+  last_time_ = first.frame.time;
+  if (!first.fault.empty()) throw BrokenImage(first.fault, first.frame.name, first.frame.time);
+  *frame = first.frame;
   return true;
 }
 

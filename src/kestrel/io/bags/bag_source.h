@@ -27,7 +27,6 @@ class BagSource : public FrameSource {
 
   // Frames are sorted where up to 8 images are out of order. Images that are later than that, or
   // have the stamp of another, are left out; this and what was damaged is reported at the end.
-  bool Next(Frame* frame) override;
   std::optional<std::size_t> frame_count() const override;
   double rate_hz() const override { return rate_hz_; }
   // Throws InputError when camera_info does not hold a valid calibration.
@@ -41,10 +40,18 @@ class BagSource : public FrameSource {
   void TellWhatIsMissing() const;
   void ReadCameraInfo();
   std::string ReadFirstImages();
-  bool ReadFrame(Frame* frame);
+  // An image of the bag; one that cannot be read has a fault in its place.
+  struct ReadFrame {
+    Frame frame;
+    std::string fault;
+  };
+
+  bool ReadNext(Frame* frame) override;
+  bool ReadMessage(ReadFrame* read);
   Time TimeOf(const HeaderMessage& header, const BagMessage& message) const;
+  std::string FrameName(const BagMessage& message, Time time) const;
   template <class Message>
-  Frame FrameOf(const BagMessage& message) const;
+  void Decode(const BagMessage& message, Frame* frame) const;
 
   std::string path_;
   BagChoice choice_;
@@ -55,10 +62,11 @@ class BagSource : public FrameSource {
   std::vector<PoseSample> poses_;
   double rate_hz_ = kNominalRateHz;
 
-  std::vector<Frame> waiting_;  // in order of time
+  std::vector<ReadFrame> waiting_;  // in order of time
   bool has_ended_ = false;
+  Time newest_;  // of all that have been read
   std::optional<Time> last_time_;
-  std::size_t left_out_ = 0;
+  std::size_t repeated_ = 0;  // or too late
 };
 
 // Opens a bag, or any source that OpenSource supports. Throws InputError as they do, and when

@@ -394,5 +394,61 @@ TEST(OpenSourceOrBag, TellsThemApart) {
               HasSubstr("expected no other source beside it"));
 }
 
+// An image without pixels, one with too few bytes, one in an unknown encoding, and one without a
+// stamp.
+TEST(BagSource, LeavesOutImagesThatCannotBeRead) {
+  const TestFolder folder;
+  for (const char* name : {"flight.bag", "flight.mcap", "flight.db3"}) {
+    const std::string path = folder / name;
+    TestBag bag(path);
+    const cv::Mat pixels = BagImage(0);
+    ImageMessage none = BagImageMessage(pixels, BagTime(0));
+    none.width = none.height = none.step = 0;
+    bag.Add("/camera/image_raw", none);
+    bag.AddImage(1);
+    ImageMessage brief = BagImageMessage(pixels, BagTime(2));
+    brief.data = brief.data.substr(0, 100);
+    bag.Add("/camera/image_raw", brief);
+    bag.Add("/camera/image_raw", BagImageMessage(pixels, BagTime(3), "yuv999"));
+    bag.Add("/camera/image_raw", BagImageMessage(pixels, Time()), BagTime(3));
+    bag.AddImage(4);
+    bag.Close();
+    BagSource source(path, {});
+    std::vector<std::string> broken;
+    source.set_on_broken([&](const BrokenImage& image) { broken.emplace_back(image.what()); });
+    EXPECT_THAT(ImagesOf(&source), ElementsAre(1, 4)) << name;
+    EXPECT_THAT(broken, ElementsAre(HasSubstr("0x0 pixels"), HasSubstr("100 bytes"),
+                                    HasSubstr("yuv999"), HasSubstr("no stamp")))
+        << name;
+  }
+}
+
+TEST(BagSource, LeavesOutCutFiles) {
+  const TestFolder folder;
+  const std::string path = folder / "flight.bag";
+  const std::string whole = EncodePng(BagImage(1)), cut = whole.substr(0, whole.size() / 2);
+  TestBag bag(path);
+  bag.Add("/camera/image/compressed", BagCompressedMessage(cut, BagTime(0), "png"));
+  bag.Add("/camera/image/compressed", BagCompressedMessage(whole, BagTime(1), "png"));
+  bag.Add("/camera/image/compressed", BagCompressedMessage("", BagTime(2), "png"));
+  bag.Close();
+  BagSource source(path, {});
+  EXPECT_THAT(ImagesOf(&source), ElementsAre(1));
+  EXPECT_EQ(source.left_out(), 2u);
+}
+
+TEST(BagSource, SaysThatAnEmptyClosedBagHasNoImages) {
+  const TestFolder folder;
+  for (const char* name : {"empty.bag", "empty.mcap", "empty.db3"}) {
+    const std::string path = folder / name;
+    TestBag(path).Close();
+    std::vector<std::string> told;
+    const std::string error = InputErrorOf(
+        [&] { BagSource(path, {.tell = [&](const std::string& text) { told.push_back(text); }}); });
+    EXPECT_THAT(error, HasSubstr(path + ": has no images")) << name;
+    EXPECT_THAT(told, IsEmpty()) << name;
+  }
+}
+
 }  // namespace
 }  // namespace kestrel

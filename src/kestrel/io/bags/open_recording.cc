@@ -14,9 +14,11 @@ namespace {
 constexpr double kUsualFov_deg = 75;
 
 // The size of the images is known with the first of them, which the source then has to give again.
-CameraIntrinsics AssumeLens(const RecordingChoice& choice) {
+CameraIntrinsics AssumeLens(RecordingChoice choice, std::string* first_image) {
+  choice.bag.tell = {};  // the user hears of it when the source is read
   Frame first;
   if (!OpenFrames(choice)->Next(&first)) throw InputError("the source has no images");
+  *first_image = first.name;
   const double fov_deg = choice.fov_deg.value_or(kUsualFov_deg);
   return AssumedLens(first.image.cols, first.image.rows, fov_deg);
 }
@@ -34,7 +36,9 @@ void TellAssumption(const RecordingChoice& choice) {
             "--camera");
 }
 
-CameraCalibration KnownCalibration(const FrameSource& source, const RecordingChoice& choice) {
+// 'first_image': see OpenedSource.
+CameraCalibration KnownCalibration(const FrameSource& source, const RecordingChoice& choice,
+                                   std::string* first_image) {
   if (!choice.camera.empty()) return ReadCalibration(choice.camera);
   if (const std::optional<CameraCalibration> own = source.calibration()) return *own;
   if (!choice.may_assume_lens && !choice.fov_deg) {
@@ -45,12 +49,13 @@ CameraCalibration KnownCalibration(const FrameSource& source, const RecordingCho
   }
   TellAssumption(choice);
   CameraCalibration assumed;
-  assumed.intrinsics = AssumeLens(choice);
+  assumed.intrinsics = AssumeLens(choice, first_image);
   return assumed;
 }
 
-CameraCalibration FindCalibration(const FrameSource& source, const RecordingChoice& choice) {
-  CameraCalibration calibration = KnownCalibration(source, choice);
+CameraCalibration FindCalibration(const FrameSource& source, const RecordingChoice& choice,
+                                  std::string* first_image) {
+  CameraCalibration calibration = KnownCalibration(source, choice, first_image);
   if (choice.fov_deg && (!choice.camera.empty() || source.calibration()) && choice.bag.tell) {
     choice.bag.tell("--fov is not used: there is a calibration");
   }
@@ -72,7 +77,24 @@ CameraCalibration FindCalibration(const FrameSource& source, const RecordingChoi
 }  // namespace
 
 std::unique_ptr<FrameSource> OpenFrames(const RecordingChoice& choice) {
-  return OpenSourceOrBag(choice.sources, choice.format, choice.bag);
+  auto source = OpenSourceOrBag(choice.sources, choice.format, choice.bag);
+  if (!choice.bag.tell) return source;
+  source->set_on_broken([tell = choice.bag.tell, told = 0](const BrokenImage& broken) mutable {
+    constexpr int kMostTold = 3;
+    if (told < kMostTold) tell(fmt::format("an image is left out: {}", broken.what()));
+    if (told++ == kMostTold) tell("further images are left out");
+  });
+  return source;
+}
+
+void OpenedSource::RequireSize(const Frame& frame) const {
+  const int width_px = frame.image.cols, height_px = frame.image.rows;
+  const CameraIntrinsics& camera = calibration.intrinsics;
+  if (first_image.empty()) return CheckImageSize(camera, width_px, height_px, frame.name);
+  if (width_px == camera.width_px && height_px == camera.height_px) return;
+  throw ImageSizeError(fmt::format("{}: the image is {}x{} px, expected {}x{} px as {}", frame.name,
+                                   width_px, height_px, camera.width_px, camera.height_px,
+                                   first_image));
 }
 
 std::vector<PoseSample> RequirePoses(const FrameSource& source, const std::string& name) {
@@ -85,7 +107,7 @@ OpenedSource OpenRecording(const RecordingChoice& choice) {
   OpenedSource opened{OpenFrames(choice), {}};
   opened.is_lens_unknown =
       choice.camera.empty() && !choice.fov_deg && !opened.source->calibration();
-  opened.calibration = FindCalibration(*opened.source, choice);
+  opened.calibration = FindCalibration(*opened.source, choice, &opened.first_image);
   if (opened.is_lens_unknown) opened.calibration.body_from_camera.reset();
   return opened;
 }

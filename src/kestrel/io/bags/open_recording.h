@@ -34,11 +34,19 @@ struct OpenedSource {
   // camera.
   bool is_lens_unknown = false;
 
+  // The image whose size an assumed lens has; empty where there is a calibration.
+  std::string first_image = {};
+
+  // Throws ImageSizeError when the image does not have the size of the calibration, or of the first
+  // image.
+  void RequireSize(const Frame& frame) const;
   // True when frames can be placed in the world, by poses and the camera's mount.
   bool has_world() const { return calibration.body_from_camera && !source->poses().empty(); }
 };
 
-// Opens a recording without looking for its calibration. Throws InputError as OpenSourceOrBag does.
+// Opens a recording without looking for its calibration. Tells 'bag.tell' of the first images that
+// cannot be read, unless the source's set_on_broken is changed. Throws InputError as
+// OpenSourceOrBag does.
 std::unique_ptr<FrameSource> OpenFrames(const RecordingChoice& choice);
 
 // Returns the poses of the UAV in a recording. Throws InputError when there are none. 'name': of

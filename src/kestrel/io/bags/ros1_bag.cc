@@ -93,7 +93,10 @@ Ros1Bag::Ros1Bag(const std::string& path) : ChunkedBag(path) {
   if (encryptor && !encryptor->empty()) {
     throw InputError(path + ": is encrypted, expected a bag that is not (rosbag decrypt)");
   }
-  if (ReadIndex(head.fields().Get<std::uint64_t>("index_pos"))) return;
+  const auto index_offset = head.fields().Get<std::uint64_t>("index_pos");
+  // The index of a bag that was closed without a message is empty.
+  if (index_offset == file().size() && head.fields().Get<std::uint32_t>("chunk_count") == 0) return;
+  if (ReadIndex(index_offset)) return;
   topics_of_connections_.clear();
   mutable_topics().clear();
   chunks().clear();

@@ -54,5 +54,11 @@ TEST(CsvTable, EmptyTextIsRefused) {
   EXPECT_THAT(InputErrorOf([] { CsvTable("\n \n", "t.csv"); }), HasSubstr("t.csv: is empty"));
 }
 
+TEST(CsvTable, ByteOrderMarkAndLineEndsOfWindowsDoNotMatter) {
+  const CsvTable table("\xef\xbb\xbf#timestamp [ns],filename\r\n1,a.png\r\n", "t.csv");
+  EXPECT_EQ(table.Integer(0, table.Column("timestamp [ns]")), 1);
+  EXPECT_EQ(table.Text(0, table.Column("filename")), "a.png");
+}
+
 }  // namespace
 }  // namespace kestrel

@@ -15,7 +15,7 @@ Time Ms(int ms) { return Time(std::chrono::milliseconds(ms)); }
 class TimedFrames : public FrameSource {
  public:
   explicit TimedFrames(std::vector<int> times_ms) : times_ms_(std::move(times_ms)) {}
-  bool Next(Frame* frame) override {
+  bool ReadNext(Frame* frame) override {
     if (next_ == times_ms_.size()) return false;
     frame->time = Ms(times_ms_[next_++]);
     return true;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -25,7 +26,7 @@ struct CameraMount {
   std::optional<Duration> clock_offset;  // t_nav = t_image + clock_offset
 };
 
-// An image that cannot be decoded. The source goes on with the next one.
+// An image that cannot be read. The source goes on with the next one.
 class BrokenImage : public InputError {
  public:
   BrokenImage(const std::string& message, std::string frame_name, Time frame_time)
@@ -45,17 +46,24 @@ class FrameSource {
   // The next frames also have their image in colour, for pictures of them; not by default.
   void set_keeps_color(bool keeps_color) { keeps_color_ = keeps_color; }
 
-  // Fills 'frame' with the next image; returns false at the end. Frames are in order of time.
-  // Throws InputError when an image is missing, broken or of an unsupported kind (16 bits), and at
-  // the end of a video that ends too early; BrokenImage where the next call gives the next image.
-  virtual bool Next(Frame* frame) = 0;
+  // Called by Next with each image that cannot be read, in its place among the others.
+  using OnBroken = std::function<void(const BrokenImage&)>;
+  void set_on_broken(OnBroken on_broken) { on_broken_ = std::move(on_broken); }
+
+  // Fills 'frame' with the next image that can be read; returns false at the end. Frames are in
+  // order of time. An image that is missing, broken or of an unsupported kind (16 bits) is left
+  // out. Throws InputError when the source fails as a whole: at its end when no image at all could
+  // be read, and at the end of a video that is cut off.
+  bool Next(Frame* frame);
+  // Number of images that Next has left out.
+  std::size_t left_out() const { return left_out_; }
 
   // Fills 'frame' with the image 'index', from 0; the position of Next does not change. Returns
   // false for sources without random access, such as videos, and when there is no such image.
-  // Throws InputError as Next does.
+  // Throws InputError when the image cannot be read.
   virtual bool Read(std::size_t /*index*/, Frame* /*frame*/) const { return false; }
 
-  // Number of frames, if known; for a video it is what the container says.
+  // Number of images, broken ones included, if known; for a video an estimate.
   virtual std::optional<std::size_t> frame_count() const = 0;
   virtual double rate_hz() const = 0;
 
@@ -70,17 +78,18 @@ class FrameSource {
   virtual std::vector<PoseSample> poses() const { return {}; }
 
  protected:
+  // As Next, but throws BrokenImage for an image that cannot be read.
+  virtual bool ReadNext(Frame* frame) = 0;
+
   PixelFormat format() const { return format_; }
   bool keeps_color() const { return keeps_color_; }
 
  private:
   PixelFormat format_ = PixelFormat::kGray;
   bool keeps_color_ = false;
+  OnBroken on_broken_;
+  std::size_t given_ = 0, left_out_ = 0;
+  std::string first_fault_;
 };
-
-inline CameraMount FrameSource::mount() const {
-  const std::optional<CameraCalibration> own = calibration();
-  return own ? CameraMount{own->body_from_camera, own->clock_offset} : CameraMount();
-}
 
 }  // namespace kestrel

@@ -7,8 +7,12 @@
 #include <string_view>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/base/read_file.h"
 #include "kestrel/core/camera/calibration_reader.h"
+#include "kestrel/core/codec/image_codec.h"
 #include "kestrel/io/recording/file_kind.h"
 #include "kestrel/io/recording/image_file.h"
 
@@ -49,9 +53,12 @@ bool NaturallyLess(const std::string& left, const std::string& right) {
 std::vector<std::string> ImagesBelow(const std::filesystem::path& folder) {
   std::vector<std::string> names;
   try {
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
-      if (entry.is_regular_file() && FileKindOf(entry.path()) == FileKind::kImage) {
-        names.push_back(entry.path().lexically_relative(folder).string());
+    std::filesystem::recursive_directory_iterator entry(folder);
+    for (; entry != std::filesystem::recursive_directory_iterator(); ++entry) {
+      if (IsHidden(entry->path())) {
+        entry.disable_recursion_pending();
+      } else if (entry->is_regular_file() && FileKindOf(entry->path()) == FileKind::kImage) {
+        names.push_back(entry->path().lexically_relative(folder).string());
       }
     }
   } catch (const std::filesystem::filesystem_error& error) {
@@ -59,6 +66,26 @@ std::vector<std::string> ImagesBelow(const std::filesystem::path& folder) {
   }
   std::sort(names.begin(), names.end(), NaturallyLess);
   return names;
+}
+
+// Only a TIFF has pages. A file that cannot be read is one image, whose fault its reading gives.
+std::size_t PagesOf(const std::filesystem::path& path) {
+  if (!MayHavePages(path)) return 1;
+  try {
+    return CountPages(ReadFile(path.string()));
+  } catch (const InputError&) {
+    return 1;
+  }
+}
+
+// Adds the image file at nominal times; each of several pages has a name of its own.
+void AddFile(const std::string& name, const std::string& path,
+             std::vector<ImageSequence::Item>* items) {
+  const std::size_t pages = PagesOf(path);
+  for (std::size_t page = 0; page < pages; ++page) {
+    const std::string item = pages == 1 ? name : fmt::format("{}/{:06}", name, page);
+    items->push_back({item, path, NominalTime(items->size()), page});
+  }
 }
 
 }  // namespace
@@ -69,13 +96,12 @@ ImageSequence::ImageSequence(std::vector<Item> items, std::string calibration_fi
       calibration_file_(std::move(calibration_file)),
       poses_(std::move(poses)) {}
 
-bool ImageSequence::Next(Frame* frame) {
+bool ImageSequence::ReadNext(Frame* frame) {
   if (next_ == items_.size()) return false;
   const Item& item = items_[next_];
   try {
     return Read(next_++, frame);
   } catch (const InputError& error) {
-    if (items_.size() == 1) throw;
     throw BrokenImage(error.what(), item.name, item.time);
   }
 }
@@ -85,8 +111,8 @@ bool ImageSequence::Read(std::size_t index, Frame* frame) const {
   const Item& item = items_[index];
   frame->name = item.name;
   frame->time = item.time;
-  frame->image = ReadImage(item.path, format());
-  if (keeps_color()) frame->color = ReadImage(item.path, PixelFormat::kBgr);
+  frame->image = ReadImage(item.path, format(), item.page);
+  if (keeps_color()) frame->color = ReadImage(item.path, PixelFormat::kBgr, item.page);
   return true;
 }
 
@@ -104,15 +130,14 @@ Time NominalTime(std::size_t index) { return Time(DurationFromSeconds(index / kN
 
 ImageSequence OpenImageFiles(const std::vector<std::string>& paths) {
   std::vector<ImageSequence::Item> items;
-  for (const std::string& path : paths) items.push_back({path, path, NominalTime(items.size())});
+  for (const std::string& path : paths) AddFile(path, path, &items);
   return ImageSequence(std::move(items));
 }
 
 ImageSequence OpenImageFolder(const std::string& folder) {
   std::vector<ImageSequence::Item> items;
   for (const std::string& name : ImagesBelow(folder)) {
-    const std::string path = (std::filesystem::path(folder) / name).string();
-    items.push_back({name, path, NominalTime(items.size())});
+    AddFile(name, (std::filesystem::path(folder) / name).string(), &items);
   }
   if (items.empty()) throw InputError(folder + ": no image in this folder, nor below it");
   return ImageSequence(std::move(items));

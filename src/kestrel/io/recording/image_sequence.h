@@ -15,13 +15,13 @@ class ImageSequence : public FrameSource {
     std::string name;  // as in Frame
     std::string path;
     Time time;
+    std::size_t page = 0;  // of a TIFF
   };
 
   // 'items' are in order of time, at least one. The other two are as FrameSource returns them.
   explicit ImageSequence(std::vector<Item> items, std::string calibration_file = "",
                          std::vector<PoseSample> poses = {});
 
-  bool Next(Frame* frame) override;
   bool Read(std::size_t index, Frame* frame) const override;
   std::optional<std::size_t> frame_count() const override { return items_.size(); }
   double rate_hz() const override;
@@ -31,6 +31,8 @@ class ImageSequence : public FrameSource {
   std::vector<PoseSample> poses() const override { return poses_; }
 
  private:
+  bool ReadNext(Frame* frame) override;
+
   std::vector<Item> items_;
   std::string calibration_file_;
   std::vector<PoseSample> poses_;
@@ -40,7 +42,8 @@ class ImageSequence : public FrameSource {
 // Returns the time of the image 'index' where it has none: kNominalRateHz, from zero.
 Time NominalTime(std::size_t index);
 
-// Opens images in the given order, at nominal times.
+// Opens images in the given order, at nominal times. Each page of a TIFF that has several is an
+// image: "scan.tif/000001".
 ImageSequence OpenImageFiles(const std::vector<std::string>& paths);
 
 // Opens all images in and below 'folder', at nominal times, in natural order of their paths

@@ -60,7 +60,8 @@ std::string LandingCsvRow(const std::string& frame_name, const LandingObservatio
 }
 
 std::string UnreadableLandingCsvRow(const std::string& frame_name, Time time) {
-  return fmt::format("{},{},0{:,>15}unreadable,,,\n", CsvCell(frame_name), ToNanoseconds(time), "");
+  return fmt::format("{},{},0{:,>15}{},,,\n", CsvCell(frame_name), ToNanoseconds(time), "",
+                     kUnreadable);
 }
 
 }  // namespace kestrel

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "kestrel/vision/pipeline/landing_pipeline.h"
 
@@ -13,7 +14,9 @@ std::string LandingCsvHeader();
 // 'only_in_image': positions before the camera are left out, as the lens is not known.
 std::string LandingCsvRow(const std::string& frame_name, const LandingObservation& observation,
                           bool only_in_image = false);
-// The row of a frame whose image cannot be read: rejected_at is "unreadable".
+// Value of rejected_at where the image cannot be read.
+inline constexpr std::string_view kUnreadable = "unreadable";
+// The row of a frame whose image cannot be read.
 std::string UnreadableLandingCsvRow(const std::string& frame_name, Time time);
 
 }  // namespace kestrel

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/io/recording/video_source.h"
 
-#include <algorithm>
-#include <array>
-#include <fstream>
+#include <atomic>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -13,6 +11,7 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/io/recording/gstreamer.h"
 #include "kestrel/io/recording/image_file.h"
+#include "kestrel/io/recording/video_container.h"
 #include "kestrel/io/recording/video_decoder.h"
 
 namespace kestrel {
@@ -20,14 +19,20 @@ namespace {
 
 class VideoSource : public FrameSource {
  public:
-  // 'frame_count': 0 when it is unknown or there is no end.
-  VideoSource(std::unique_ptr<VideoDecoder> decoder, std::string name, std::size_t frame_count)
+  VideoSource(std::unique_ptr<VideoDecoder> decoder, std::string name, VideoContainer container)
       : decoder_(std::move(decoder)),
         name_(std::move(name)),
-        frame_count_(frame_count),
+        container_(std::move(container)),
         rate_hz_(RateOf(decoder_->rate_hz())) {}
 
-  bool Next(Frame* frame) override {
+  std::optional<std::size_t> frame_count() const override {
+    if (decoder_->frame_count() == 0) return std::nullopt;
+    return decoder_->frame_count();
+  }
+  double rate_hz() const override { return rate_hz_; }
+
+ private:
+  bool ReadNext(Frame* frame) override {
     cv::Mat image;
     std::optional<Time> time;
     if (!decoder_->Next(&image, &time)) {
@@ -41,13 +46,6 @@ class VideoSource : public FrameSource {
     ++next_;
     return true;
   }
-  std::optional<std::size_t> frame_count() const override {
-    if (frame_count_ == 0) return std::nullopt;
-    return frame_count_;
-  }
-  double rate_hz() const override { return rate_hz_; }
-
- private:
   static double RateOf(double rate_hz) {
     return rate_hz > 0 && rate_hz < 1e4 ? rate_hz : kNominalRateHz;
   }
@@ -56,9 +54,9 @@ class VideoSource : public FrameSource {
     return time && *time > last_time_ ? *time : last_time_ + DurationFromSeconds(1 / rate_hz_);
   }
   void CheckEnd() const {
-    if (next_ + 2 + frame_count_ / 50 < frame_count_) {
-      throw InputError(fmt::format("{}: the video ends after {} frames, expected {}", name_, next_,
-                                   frame_count_));
+    if (container_.is_cut_off()) {
+      throw InputError(fmt::format("{}: the video is cut off after {} frames: {} of {} bytes",
+                                   name_, next_, container_.file_bytes, container_.expected_bytes));
     }
     if (!decoder_->fault().empty()) {
       throw InputError(fmt::format("{}: after {} frames: {}", name_, next_, decoder_->fault()));
@@ -67,52 +65,35 @@ class VideoSource : public FrameSource {
 
   std::unique_ptr<VideoDecoder> decoder_;
   std::string name_;
-  std::size_t frame_count_;
+  VideoContainer container_;
   double rate_hz_;
   std::size_t next_ = 0;
   Time last_time_;
 };
 
-// The first bytes of a video file.
-class FileHead {
- public:
-  explicit FileHead(const std::string& path) {
-    std::ifstream(path, std::ios::binary).read(bytes_.data(), bytes_.size());
-  }
-
-  // Returns GStreamer's element for the container; empty when another element may be needed.
-  const char* Demuxer() const {
-    if (IsAvi()) return "avidemux";
-    if (HasAt(4, "ftyp")) return "qtdemux";
-    return HasAt(0, "\x1a\x45\xdf\xa3") ? "matroskademux" : "";
-  }
-  // Returns the number of frames in the header of an AVI, else 0. GStreamer counts the frames that
-  // exist, and would not notice that a file is cut off.
-  std::size_t FrameCount() const {
-    if (!IsAvi() || !HasAt(24, "avih")) return 0;
-    std::size_t count = 0;
-    for (std::size_t i = 4; i-- > 0;) {
-      count = count << 8 | static_cast<unsigned char>(bytes_[kAviCount + i]);
-    }
-    constexpr std::size_t kMost = 1'000'000'000;
-    return count < kMost ? count : 0;
-  }
-
- private:
-  static constexpr std::size_t kAviCount = 48;  // position of dwTotalFrames
-
-  bool HasAt(std::size_t place, std::string_view text) const {
-    return std::string_view(bytes_.data(), bytes_.size()).substr(place).starts_with(text);
-  }
-  bool IsAvi() const { return HasAt(0, "RIFF") && HasAt(8, "AVI "); }
-
-  std::array<char, kAviCount + 4> bytes_{};
+// Kinds of the streams in a container. GStreamer's threads set them.
+struct StreamKinds {
+  std::atomic<bool> has_pictures = false;
+  std::atomic<bool> has_sound = false;
 };
+
+using SharedKinds = std::shared_ptr<StreamKinds>;
+
+void NoteStream(GstElement* /*demuxer*/, GstPad* pad, gpointer kinds) {
+  StreamKinds& noted = **static_cast<SharedKinds*>(kinds);
+  const std::string_view name = GST_PAD_NAME(pad);
+  if (name.starts_with("video")) noted.has_pictures = true;
+  if (name.starts_with("audio")) noted.has_sound = true;
+}
+
+void ReleaseKinds(gpointer kinds, GClosure* /*closure*/) {
+  delete static_cast<SharedKinds*>(kinds);
+}
 
 // decodebin does not listen while it starts a demuxer: it would miss the error that there is
 // nothing to decode, and wait. Therefore a known demuxer is put before it.
-GstElementPointer FilePipeline(const std::string& path, const FileHead& head) {
-  const std::string demuxer = head.Demuxer();
+GstElementPointer FilePipeline(const std::string& path, const std::string& demuxer,
+                               const SharedKinds& kinds) {
   const std::string video = demuxer.empty()
                                 ? "decodebin caps=video/x-raw expose-all-streams=false"
                                 : demuxer + " name=container container.video_0 ! decodebin";
@@ -120,6 +101,10 @@ GstElementPointer FilePipeline(const std::string& path, const FileHead& head) {
       ParsePipeline("filesrc name=file ! " + video + " ! videoconvert ! appsink", path);
   const GstElementPointer file(gst_bin_get_by_name(GST_BIN(pipeline.get()), "file"));
   g_object_set(file.get(), "location", path.c_str(), nullptr);
+  if (demuxer.empty()) return pipeline;
+  const GstElementPointer container(gst_bin_get_by_name(GST_BIN(pipeline.get()), "container"));
+  g_signal_connect_data(container.get(), "pad-added", G_CALLBACK(NoteStream),
+                        new SharedKinds(kinds), ReleaseKinds, GConnectFlags());
   return pipeline;
 }
 
@@ -135,10 +120,16 @@ std::unique_ptr<VideoDecoder> Open(GstElementPointer pipeline, const std::string
 }  // namespace
 
 std::unique_ptr<FrameSource> OpenVideoFile(const std::string& path) {
-  const FileHead head(path);
-  auto decoder = Open(FilePipeline(path, head), path + ": cannot be opened as a video");
-  const std::size_t count = std::max(decoder->frame_count(), head.FrameCount());
-  return std::make_unique<VideoSource>(std::move(decoder), path, count);
+  VideoContainer container = ReadVideoContainer(path);
+  const auto kinds = std::make_shared<StreamKinds>();
+  GstElementPointer pipeline = FilePipeline(path, container.demuxer, kinds);
+  try {
+    auto decoder = Open(std::move(pipeline), path + ": cannot be opened as a video");
+    return std::make_unique<VideoSource>(std::move(decoder), path, std::move(container));
+  } catch (const InputError&) {
+    if (!kinds->has_sound || kinds->has_pictures) throw;
+    throw InputError(path + ": has no pictures, only sound");
+  }
 }
 
 std::unique_ptr<FrameSource> OpenCamera(const std::string& camera) {
@@ -147,7 +138,8 @@ std::unique_ptr<FrameSource> OpenCamera(const std::string& camera) {
   const char* fault =
       is_pipeline ? "this GStreamer pipeline does not start" : "no such camera, or in use";
   auto decoder = Open(std::move(pipeline), fmt::format("{}: {}", camera, fault));
-  return std::make_unique<VideoSource>(std::move(decoder), is_pipeline ? "gstreamer" : camera, 0);
+  return std::make_unique<VideoSource>(std::move(decoder), is_pipeline ? "gstreamer" : camera,
+                                       VideoContainer());
 }
 
 }  // namespace kestrel

@@ -13,9 +13,9 @@ inline constexpr std::string_view kVideoDevice = "/dev/video";  // followed by i
 
 // Opens the frames of a video file by GStreamer. A frame's name is the file's name with the frame's
 // number below it: "flight.mp4/000012". Its time is that of the stream if it has one that
-// increases, else the time of the frame before plus one period. The container's number of frames
-// may be an estimate; a video that ends more than 2 frames and 2 % earlier is an error. Throws
-// InputError when the file has no video that can be decoded.
+// increases, else the time of the frame before plus one period. The number of frames is an
+// estimate; the stream's end is the end, but a file that is cut off (VideoContainer) is an error
+// there. Throws InputError when the file has no video that can be decoded.
 std::unique_ptr<FrameSource> OpenVideoFile(const std::string& path);
 
 // The same for a camera, without an end: a device (/dev/video0), an address (rtsp://...) or a

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kestrel/io/recording/gstreamer.h"
 #include "kestrel/io/recording/image_file.h"
 #include "kestrel/io/recording/test_files.h"
 
@@ -75,7 +76,7 @@ TEST(VideoSource, VideoThatEndsEarlyGivesItsFramesAndThenSaysSo) {
     const auto source = OpenVideoFile(file);
     for (Frame frame; source->Next(&frame);) ++frames;
   });
-  EXPECT_THAT(error, HasSubstr(file + ": the video ends after"));
+  EXPECT_THAT(error, HasSubstr(file + ": the video is cut off after"));
   EXPECT_GT(frames, kFrames / 4);
   EXPECT_LT(frames, kFrames);
 }
@@ -111,6 +112,57 @@ TEST(VideoSource, ACameraThatIsNotThereIsNamed) {
               HasSubstr("/dev/video77: no such camera, or in use"));
   EXPECT_THAT(InputErrorOf([] { OpenCamera("nothing ! fakesink"); }),
               HasSubstr("nothing ! fakesink: GStreamer: "));
+}
+
+// Runs a pipeline of GStreamer that writes a file.
+void MakeFile(const std::string& pipeline) {
+  const GstElementPointer running = ParsePipeline(pipeline, "test");
+  gst_element_set_state(running.get(), GST_STATE_PLAYING);
+  const GstBusPointer bus(gst_element_get_bus(running.get()));
+  const GstMessagePointer end(gst_bus_timed_pop_filtered(
+      bus.get(), 20 * GST_SECOND, GstMessageType(GST_MESSAGE_EOS | GST_MESSAGE_ERROR)));
+  ASSERT_TRUE(end && GST_MESSAGE_TYPE(end.get()) == GST_MESSAGE_EOS) << pipeline;
+  gst_element_set_state(running.get(), GST_STATE_NULL);
+}
+
+std::size_t FramesOf(const std::string& file) {
+  const auto source = OpenVideoFile(file);
+  std::size_t frames = 0;
+  for (Frame frame; source->Next(&frame);) ++frames;
+  return frames;
+}
+
+// As a phone in the dusk, and as a segment of a longer recording.
+TEST(VideoSource, RateThatChangesAndTimesThatStartLateAreWhole) {
+  const TestFolder folder;
+  const std::string picture = "videotestsrc num-buffers=24 ! video/x-raw,width=64,height=48,";
+  const std::string late = " ! identity ts-offset=60000000000 ! jpegenc ! ";
+  for (const std::string muxer : {"matroskamux", "qtmux", "avimux"}) {
+    const std::string file = folder / muxer;
+    const std::string sink = muxer + " ! filesink location=" + file;
+    MakeFile(picture + "framerate=15/1 ! jpegenc ! " + sink);
+    EXPECT_EQ(FramesOf(file), 24u) << muxer;
+    MakeFile(picture + "framerate=30/1" + late + sink);
+    EXPECT_EQ(FramesOf(file), 24u) << muxer << ", late";
+    TestFolder::CutOff(file, 0.98);
+    EXPECT_THAT(InputErrorOf([&] { FramesOf(file); }), HasSubstr(file)) << muxer << ", cut";
+  }
+  // The container counts on 30 frames a second; the second half has 15.
+  const std::string file = folder / "changes.mkv";
+  MakeFile("concat name=all ! matroskamux ! filesink location=" + file + " " + picture +
+           "framerate=30/1 ! jpegenc ! image/jpeg,framerate=0/1 ! all. " + picture +
+           "framerate=15/1 ! jpegenc ! image/jpeg,framerate=0/1 ! all.");
+  EXPECT_EQ(FramesOf(file), 48u);
+}
+
+TEST(VideoSource, FileWithSoundOnlySaysSo) {
+  const TestFolder folder;
+  for (const std::string muxer : {"matroskamux", "qtmux", "avimux"}) {
+    const std::string file = folder / muxer;
+    MakeFile("audiotestsrc num-buffers=20 ! audio/x-raw,rate=8000 ! " + muxer +
+             " ! filesink location=" + file);
+    EXPECT_EQ(InputErrorOf([&] { OpenVideoFile(file); }), file + ": has no pictures, only sound");
+  }
 }
 
 }  // namespace
