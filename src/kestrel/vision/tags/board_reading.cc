@@ -73,17 +73,17 @@ bool AllDataIsInView(const TagModel& tag, std::span<const float> gray) {
   return true;
 }
 
-bool ShowsOther(const TagModel& tag, const std::vector<TagGrid>& grids,
+bool ShowsOther(const TagModel& tag, const std::vector<TagGrid>& grids, double cell_px,
                 std::span<const float> gray) {
   const SquareGrays squares = SquareGraysOf(tag, gray);
   if (squares.contrast < kLeastBorderContrast || !AllDataIsInView(tag, gray)) return false;
   const TagGrid* const grid = MostLikeGrid(grids, tag, gray, squares.threshold);
   if (grid == nullptr) return false;
-  const TagAgreement other = CompareCells(*grid, tag.is_data, gray);
+  const TagAgreement other = CompareCells(*grid, tag.is_data, cell_px, gray);
   // The more tags there are, the likelier it is that chance makes one of them.
   const double odds = kExpectedOdds + std::log(static_cast<double>(grids.size()));
   return other.wrong <= tag.most_wrong && other.evidence > odds &&
-         other.evidence > CompareCells(tag, gray).evidence + kOtherOdds;
+         other.evidence > CompareCells(tag, cell_px, gray).evidence + kOtherOdds;
 }
 
 // Returns the tag of this id as it would be printed in the place of 'tag'.
@@ -104,8 +104,8 @@ BoardReading ReadBoard(const cv::Mat& image, const CameraModel& camera, const Bo
     const TagModel& tag = board.tags[index];
     const double cell_px = CellPx(camera, camera_from_board, tag);
     if (cell_px < kLeastCellPx) continue;
-    const TagAgreement agreement =
-        CompareCells(tag, ReadCellsAt(image, camera, camera_from_board, tag, cell_px, samples));
+    const TagAgreement agreement = CompareCells(
+        tag, cell_px, ReadCellsAt(image, camera, camera_from_board, tag, cell_px, samples));
     if (agreement.wrong > tag.most_wrong || agreement.evidence <= 0) continue;
     reading.evidence += agreement.evidence;
     reading.parts.Add({"tag", index, cell_px * tag.grid().border_width});
@@ -143,7 +143,7 @@ bool OtherTags::IsRead(const cv::Mat& image, const CameraModel& camera, const Bo
     if (cell_px < kLeastCellPx) continue;
     const std::span<const float> gray =
         ReadCellsAt(image, camera, camera_from_board, tag, cell_px, samples);
-    if (ShowsOther(tag, grids_[index], gray)) return true;
+    if (ShowsOther(tag, grids_[index], cell_px, gray)) return true;
   }
   return false;
 }

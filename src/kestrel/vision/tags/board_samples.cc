@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "kestrel/core/image/gray_sampling.h"
 
@@ -58,12 +57,45 @@ double CellAgreement(const TagGrid& grid, std::span<const float> gray, std::span
                   PlaceBetween(log[i], black.log / black.count, white.log / white.count, is_white));
 }
 
-// A clear match is one bit; a clear mismatch weighs more, as print and light are seldom that wrong.
-double CellEvidence(double agreement) {
+// A clear match tells 'information'; a clear mismatch weighs more, as print and light are seldom
+// that wrong.
+double CellEvidence(double agreement, double information) {
   constexpr double kMismatch = 3;
   constexpr double kClear = 0.5;
   const double clearness = std::min(1.0, std::abs(agreement) / kClear);
-  return agreement > 0 ? std::numbers::ln2 * clearness : -kMismatch * clearness;
+  return clearness * (agreement > 0 ? information : -kMismatch);
+}
+
+// What the picture of a tag is made of.
+struct VertexCount {
+  int data = 0;     // cells
+  int all = 0;      // vertices where four known cells meet, data among them
+  int corners = 0;  // of them, those that no straight line runs through
+};
+
+VertexCount CountVertices(const TagGrid& grid, const std::vector<bool>& is_data) {
+  VertexCount count;
+  for (std::size_t i = 0; i < is_data.size(); ++i) {
+    count.data += is_data[i] && grid.cells[i] != TagCell::kNone;
+  }
+  for (int row = 1; row < grid.width; ++row) {
+    for (int column = 1; column < grid.width; ++column) {
+      const int last = row * grid.width + column;
+      const std::array<int, 4> around{last - grid.width - 1, last - grid.width, last - 1, last};
+      bool has_data = false, is_known = true;
+      for (const int cell : around) {
+        has_data |= is_data[cell];
+        is_known &= grid.cells[cell] != TagCell::kNone;
+      }
+      if (!has_data || !is_known) continue;
+      const auto [a, b, c, d] = around;
+      const bool straight = (grid.cells[a] == grid.cells[b] && grid.cells[c] == grid.cells[d]) ||
+                            (grid.cells[a] == grid.cells[c] && grid.cells[b] == grid.cells[d]);
+      ++count.all;
+      count.corners += !straight;
+    }
+  }
+  return count;
 }
 
 }  // namespace
@@ -130,27 +162,44 @@ double CellPx(const CameraModel& camera, const RigidTransform& camera_from_board
   return std::max(0.0, slant) * camera.intrinsics().fx_px * tag.printed.cell_m / distance;
 }
 
-TagAgreement CompareCells(const TagModel& tag, std::span<const float> gray) {
-  return CompareCells(tag.grid(), tag.is_data, gray);
+double CellInformation(const TagGrid& grid, const std::vector<bool>& is_data) {
+  // Before any is seen, of five vertices one is thought to be a corner.
+  constexpr double kPriorCorners = 1, kPriorVertices = 5;
+  const VertexCount count = CountVertices(grid, is_data);
+  const double share = (count.corners + kPriorCorners) / (count.all + kPriorVertices);
+  const double by_corners = -share * std::log(share) - (1 - share) * std::log(1 - share);
+  // A figure of straight edges has as many of them as corners, each on a line of the grid.
+  const double by_edges = count.corners * std::log(grid.border_width - 1) / std::max(1, count.data);
+  return std::min(by_corners, by_edges);
 }
 
-TagAgreement CompareCells(const TagGrid& grid, const std::vector<bool>& is_data,
+TagAgreement CompareCells(const TagModel& tag, double cell_px, std::span<const float> gray) {
+  return CompareCells(tag.grid(), tag.is_data, cell_px, gray);
+}
+
+TagAgreement CompareCells(const TagGrid& grid, const std::vector<bool>& is_data, double cell_px,
                           std::span<const float> gray) {
-  constexpr double kBorderWeight = 0.1;    // border cells are alike in all tags and in windows
-  constexpr std::size_t kMostCells = 256;  // no family has more
-  constexpr float kFloor = 4;              // gray values: what darkness and noise leave
+  constexpr double kBorderWeight = 0.1;     // of a mismatch: what surrounds a tag may be anything
+  constexpr double kCorrelationPx = 1.5;    // nearer samples are alike by lens and pixels
+  constexpr std::size_t kMostCells = 1296;  // of a fractal marker, 32 bits a side
+  constexpr float kFloor = 4;               // gray values: what darkness and noise leave
   std::array<float, kMostCells> log;
   for (std::size_t i = 0; i < std::min(gray.size(), kMostCells); ++i) {
     log[i] = std::log(std::max(0.0f, gray[i]) + kFloor);
   }
+  const double apart = std::min(1.0, cell_px / kCorrelationPx);
+  const double information = apart * apart * CellInformation(grid, is_data);
   TagAgreement agreement;
   for (int row = 0; row < grid.width; ++row) {
     for (int column = 0; column < grid.width; ++column) {
       const int i = row * grid.width + column;
       if (grid.cells[i] == TagCell::kNone || gray[i] < 0) continue;
       const double here = CellAgreement(grid, gray, log, column, row);
-      agreement.evidence += (is_data[i] ? 1 : kBorderWeight) * CellEvidence(here);
-      if (!is_data[i]) continue;
+      if (!is_data[i]) {  // alike in all tags and in windows: a match tells nothing
+        agreement.evidence += kBorderWeight * CellEvidence(here, 0);
+        continue;
+      }
+      agreement.evidence += CellEvidence(here, information);
       ++agreement.seen;
       agreement.wrong += here < 0;
     }

@@ -78,12 +78,19 @@ struct TagAgreement {
   int wrong = 0;        // of them, those that look like the other colour
 };
 
-// Compares gray values of all cells of a tag, negative where out of view, with its bits. A cell is
-// held against the white and the black cells around it, so that the edge of a shadow over the tag
-// does not matter.
-TagAgreement CompareCells(const TagModel& tag, std::span<const float> gray);
+// Returns how much a data cell of a tag tells (nats): the length of the shortest description of its
+// picture, by the share of vertices that are corners or by its straight edges, over its data cells.
+// A stripe, a block or a letter tells little, however many cells it has, because windows and prints
+// show them as well; so does a checker. At most log 2, for a picture at random.
+double CellInformation(const TagGrid& grid, const std::vector<bool>& is_data);
+
+// Compares gray values of all cells of a tag, of 'cell_px' each and negative where out of view,
+// with its bits. A cell is held against the white and the black cells around it, so that the edge
+// of a shadow over the tag does not matter. A match counts by CellInformation, less where the cells
+// are so small that lens and pixels make them alike.
+TagAgreement CompareCells(const TagModel& tag, double cell_px, std::span<const float> gray);
 // The same for a tag of these cells. 'is_data': as TagModel's.
-TagAgreement CompareCells(const TagGrid& grid, const std::vector<bool>& is_data,
+TagAgreement CompareCells(const TagGrid& grid, const std::vector<bool>& is_data, double cell_px,
                           std::span<const float> gray);
 
 }  // namespace kestrel

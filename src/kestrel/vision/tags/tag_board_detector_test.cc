@@ -17,8 +17,10 @@
 #include "kestrel/core/base/random.h"
 #include "kestrel/core/camera/paper_camera.h"
 #include "kestrel/core/geometry/angles.h"
+#include "kestrel/vision/tags/plain_tags.h"
 #include "kestrel/vision/tags/test_fractal_marker.h"
 #include "kestrel/vision/tags/test_tag_images.h"
+#include "kestrel/vision/tags/test_tagless_pictures.h"
 
 namespace kestrel {
 namespace {
@@ -372,6 +374,118 @@ TEST(WideLensTest, ATagIsFoundBeyondNinetyDegreesFromTheAxis) {
   const LandingReport report = detector.Detect(image, {}, *detector.MakeWorkspace());
   ASSERT_TRUE(report.detection) << report.reason;
   EXPECT_LT(ErrorOf(*report.detection, pose).place, 0.01);
+}
+
+CameraModel PinholeOf(cv::Size size) {
+  return CameraModel(CameraIntrinsics{.width_px = size.width,
+                                      .height_px = size.height,
+                                      .fx_px = 400,
+                                      .fy_px = 400,
+                                      .cx_px = 0.5 * size.width - 0.5,
+                                      .cy_px = 0.5 * size.height - 0.5,
+                                      .distortion = {}});
+}
+
+// A dark square with a light block of cells in it: columns and rows from and to, of 'width' cells.
+cv::Mat DarkSquareWithBlock(int width, cv::Point from, cv::Point to, double side_px,
+                            std::uint64_t seed) {
+  Random random(seed);
+  TaglessDrawing drawing(&random);
+  drawing.Place(1, side_px, side_px, [&] {
+    drawing.Box(0, 0, 1, 1, 35);
+    const double cell = 1.0 / width;
+    drawing.Box(cell * from.x, cell * from.y, cell * (to.x + 1), cell * (to.y + 1), 235);
+  });
+  return drawing.Taken();
+}
+
+TEST(TagBoardDetectorPictures, AWindowALetterAndAButtonAreNoTagEvenIfTheyLookLikeAnId) {
+  struct PlainId {
+    const char* family;
+    int id, width;
+    cv::Point from, to;
+  };
+  const CameraModel camera = PinholeOf(kTaglessSize);
+  for (const PlainId& plain : {PlainId{"aruco_original", 0, 7, {1, 1}, {1, 5}},
+                               PlainId{"aruco_original", 1023, 7, {2, 1}, {4, 5}},
+                               PlainId{"aruco_4x4_50", 17, 6, {2, 1}, {3, 2}}}) {
+    const TagBoardDetector detector(camera, {{OneTag(plain.family, plain.id, 0.5)}}, {});
+    const auto workspace = detector.MakeWorkspace();
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+      const cv::Mat image = DarkSquareWithBlock(plain.width, plain.from, plain.to, 120, seed);
+      EXPECT_FALSE(detector.Detect(image, {}, *workspace).detection) << plain.id << " " << seed;
+    }
+  }
+}
+
+TEST(TagBoardDetectorPictures, TagsAreFoundAndPicturesWithoutThemShowNone) {
+  const CameraModel camera = PinholeOf(kTaglessSize);
+  const TagRenderer renderer(camera);
+  Random random(31);
+  std::vector<cv::Mat> without;
+  for (int i = 0; i < 3; ++i) {
+    for (const TaglessKind& kind : kTaglessKinds) without.push_back(kind.draw(&random));
+  }
+  int found = 0, rendered = 0;
+  for (const BoardTag& tag :
+       {OneTag("tag36h11", 7, 0.5), OneTag("tag16h5", 3, 0.5), OneTag("aruco_4x4_50", 3, 0.5),
+        OneTag("aruco_4x4_50", 17, 0.5), OneTag("aruco_original", 100, 0.5),
+        OneTag("aruco_original", 0, 0.5), OneTag("aruco_5x5_250", 7, 0.5)}) {
+    const TagBoardDetector detector(camera, {{tag}}, {});
+    const auto workspace = detector.MakeWorkspace();
+    for (std::size_t i = 0; i < without.size(); ++i) {
+      EXPECT_FALSE(detector.Detect(without[i], {}, *workspace).detection)
+          << tag.family << " " << tag.id << " " << kTaglessKinds[i % kTaglessKinds.size()].name;
+    }
+    for (int i = 0; i < 6; ++i) {
+      TagImageOptions taken;
+      taken.blur_px = random.Uniform(0.3, 1.2);
+      taken.noise = random.Uniform(0.5, 5);
+      const RigidTransform pose = RandomBoardBelow(random.Uniform(1.5, 7), 0.3, 0.2, &random);
+      const cv::Mat image = renderer.Render(TagBoard{{tag}}.Printed(), pose, taken, random.Bits());
+      const bool is_plain = !WarningsOfPlainTags({{tag}}).empty();
+      LandingHint hint;
+      if (is_plain) {  // expected by a track
+        hint.center_in_camera = pose.translation;
+        hint.center_sigma_m = 0.05;
+        hint.rotation_in_camera = pose.rotation;
+      }
+      ++rendered;
+      found += detector.Detect(image, hint, *workspace).detection.has_value();
+    }
+  }
+  EXPECT_GE(found, rendered - 2);
+}
+
+TEST(TagBoardDetectorPictures, ATagThatTouchesTheRimOfTheImageIsFound) {
+  const cv::Size size(320, 240);
+  const CameraModel camera = PinholeOf(size);
+  const TagBoard board{{OneTag("tag36h11", 7, 0.5)}};
+  const TagBoardDetector detector(camera, board, {});
+  const auto workspace = detector.MakeWorkspace();
+  const TagRenderer renderer(camera);
+  const auto is_found = [&](double height, const Eigen::Vector2d& center_px, double heading) {
+    const Eigen::Vector2d place = height / 400 * (center_px - Eigen::Vector2d(159.5, 119.5));
+    const RigidTransform pose = BoardBelow(height, place, heading, Eigen::Vector3d::Zero());
+    const LandingReport report =
+        detector.Detect(renderer.Render(board.Printed(), pose, {}, 5), {}, *workspace);
+    if (!report.detection) return false;
+    EXPECT_LT(ErrorOf(*report.detection, pose).place, 0.01);
+    return true;
+  };
+  for (const double beyond : {-0.5, 0.5, 2.0}) {  // px that the black border goes past the rim
+    const double half = 50;                       // px: 0.5 m at 2 m
+    EXPECT_TRUE(is_found(2, {half - 0.5 - beyond, 120}, 0)) << "left " << beyond;
+    EXPECT_TRUE(is_found(2, {319.5 - half + beyond, 100}, kPi / 2)) << "right " << beyond;
+    EXPECT_TRUE(is_found(2, {150, half - 0.5 - beyond}, kPi)) << "top " << beyond;
+    EXPECT_TRUE(is_found(2, {150, 239.5 - half + beyond}, 0)) << "bottom " << beyond;
+    EXPECT_TRUE(is_found(2, {half - 0.5 - beyond, half - 0.5 - beyond}, 0)) << "two " << beyond;
+    for (const double turn : {0.3, 0.6}) {  // a corner at the rim
+      const double reach = half * (std::cos(turn) + std::sin(turn));
+      EXPECT_TRUE(is_found(2, {reach - 0.5 - beyond, 120}, turn)) << turn << " " << beyond;
+    }
+  }
+  EXPECT_TRUE(is_found(0.84, {159.5, 119.5}, 0)) << "from rim to rim";
 }
 
 TEST_F(TagBoardDetectorTest, UpDecidesBetweenTheTwoPosesOfAFarTag) {

@@ -12,7 +12,14 @@
 namespace kestrel {
 namespace {
 
-constexpr double kSearchOdds = 8;  // against a tag in any quad of an image, natural logarithm
+// Logarithm of the odds against one of 'tags' tags in one of four turns where 'quads' quads of an
+// image were tried. An image has a hundred more that were not traced, as a rule; the pad is not
+// always in view.
+double SearchOdds(std::size_t tags, int quads) {
+  constexpr double kSceneOdds = 2;
+  constexpr int kTurns = 4, kOtherQuads = 100;
+  return kSceneOdds + std::log(static_cast<double>(tags) * kTurns * (quads + kOtherQuads));
+}
 
 }  // namespace
 
@@ -81,6 +88,7 @@ void TagSearch::SearchStep(const cv::Rect& part, int step) {
 }
 
 void TagSearch::Try(const TagQuad& quad) {
+  ++tried_;
   log_.Reach(LandingStage::kRing, "no quadrangle has the cells of a tag of the board");
   const std::optional<TagMatch> match =
       MatchTag(image_, models_.camera, tags_.board, quad, &buffers_.samples);
@@ -89,8 +97,8 @@ void TagSearch::Try(const TagQuad& quad) {
   // A pose by one tag of several is not good enough to find the edges of the others.
   std::optional<AlignedBoard> by_tag;
   if (tags_.board.tags.size() > 1) by_tag = Align(match->camera_from_board, match->tag);
-  Take(by_tag ? by_tag->camera_from_board : match->camera_from_board, kSearchOdds,
-       DetectionMethod::kTags);
+  Take(by_tag ? by_tag->camera_from_board : match->camera_from_board,
+       SearchOdds(tags_.board.tags.size(), tried_), DetectionMethod::kTags);
 }
 
 void TagSearch::Take(const RigidTransform& pose, double prior, DetectionMethod method) {

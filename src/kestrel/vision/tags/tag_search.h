@@ -47,6 +47,7 @@ class TagSearch final : public BoardSearch {
 
   const TagSearchModels& tags_;
   TagQuadBuffers& quads_;
+  int tried_ = 0;           // number of quads
   bool is_linear_ = false;  // the gray values are searched, not their logarithms
 };
 
