@@ -23,6 +23,14 @@ Eigen::Matrix3d AxesAcross(const Eigen::Vector3d& ray) {
   return axes;
 }
 
+// Makes the row above an image bright, so that what is dark in its first row has a border there.
+void BrightenAbove(BitImage* bright) {
+  std::uint64_t* const row = bright->row(-1);
+  const int last = bright->words_per_row() - 1;
+  std::fill_n(row, last, ~std::uint64_t{0});
+  row[last] = (std::uint64_t{1} << (bright->width() % 64)) - 1;
+}
+
 }  // namespace
 
 bool PlaneBorders::Covers(int pass, double least_px, double most_px) const {
@@ -63,6 +71,7 @@ std::span<const Border> PlaneBorders::Trace(const cv::Rect& part, int pass_index
   const int contrast =
       std::clamp(buffers->threshold.ContrastQuantile(0.7), kLeastContrast, kMostContrast);
   buffers->threshold.Binarize(at_level, contrast, &buffers->binary);
+  if (pass.at_rim) BrightenAbove(&buffers->binary.bright);
   BorderLimits limits;
   limits.min_extent = pass.least_extent;
   limits.min_count = 4 * static_cast<std::size_t>(limits.min_extent);

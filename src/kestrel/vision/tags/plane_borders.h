@@ -23,7 +23,8 @@ struct BorderPass {
   int tile_level;   // tiles of 2^tile_level pixels make the threshold's box
   int min_px;       // least and largest extent of a figure, full resolution
   int max_px;
-  int least_extent;  // of a traced border, pixels of the level
+  int least_extent;     // of a traced border, pixels of the level
+  bool at_rim = false;  // also figures that the rim of the image bounds above
 };
 
 // Memory of one thread's borders.
@@ -76,11 +77,6 @@ class PlaneBorders {
 
   // Pixels of the image per pixel of a pass.
   double Scale(int pass) const { return 1 << passes_[pass].image_level; }
-
-  // Returns the size of the searched part in pixels of a pass.
-  cv::Size LevelSize(int pass, const BorderBuffers& buffers) const {
-    return buffers.pyramid.ImageAt(passes_[pass].image_level).size();
-  }
 
  private:
   void BuildPyramid(const cv::Mat& grays, BorderBuffers* buffers) const;

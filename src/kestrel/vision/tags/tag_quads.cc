@@ -11,10 +11,30 @@ namespace kestrel {
 namespace {
 
 constexpr PlaneBorders::Passes kQuadPasses{{
-    {.image_level = 3, .tile_level = 5, .min_px = 96, .max_px = 1 << 13, .least_extent = 12},
-    {.image_level = 2, .tile_level = 4, .min_px = 44, .max_px = 400, .least_extent = 11},
-    {.image_level = 1, .tile_level = 3, .min_px = 22, .max_px = 200, .least_extent = 11},
-    {.image_level = 0, .tile_level = 2, .min_px = 7, .max_px = 90, .least_extent = 7},
+    {.image_level = 3,
+     .tile_level = 5,
+     .min_px = 96,
+     .max_px = 1 << 13,
+     .least_extent = 12,
+     .at_rim = true},
+    {.image_level = 2,
+     .tile_level = 4,
+     .min_px = 44,
+     .max_px = 400,
+     .least_extent = 11,
+     .at_rim = true},
+    {.image_level = 1,
+     .tile_level = 3,
+     .min_px = 22,
+     .max_px = 200,
+     .least_extent = 11,
+     .at_rim = true},
+    {.image_level = 0,
+     .tile_level = 2,
+     .min_px = 7,
+     .max_px = 90,
+     .least_extent = 7,
+     .at_rim = true},
 }};
 
 constexpr std::size_t kMostQuads = 160;
@@ -115,16 +135,16 @@ bool Intersect(const PlaneLine& a, const PlaneLine& b, Eigen::Vector2d* point) {
   return true;
 }
 
-// True when a border can be that of a convex quadrangle, by its length and area alone.
-bool MayBeQuad(const Border& border, cv::Size image) {
+// True when a border can be that of a convex quadrangle, by its length and area alone. It may lie
+// on the image's rim: of a tag there that is cut off by less than its dark frame the cells show
+// what it is.
+bool MayBeQuad(const Border& border) {
   const int width = border.max.x - border.min.x;
   const int height = border.max.y - border.min.y;
-  const bool cut_off = border.min.x <= 0 || border.min.y <= 0 || border.max.x >= image.width ||
-                       border.max.y >= image.height;
   // A convex border: 2 (width + height); that of a tag may go around the cells inside, too.
   constexpr double kLongest = 6;
   constexpr double kLeastArea = 0.3;  // of the bounding box
-  return !cut_off && static_cast<double>(border.count) <= kLongest * (width + height) &&
+  return static_cast<double>(border.count) <= kLongest * (width + height) &&
          std::abs(border.signed_area) >= kLeastArea * width * height;
 }
 
@@ -143,11 +163,10 @@ void TagQuadFinder::Find(const cv::Rect& part, int pass, TagQuadBuffers* buffers
   buffers->quads.clear();
   const std::span<const Border> borders = borders_.Trace(part, pass, &buffers->borders);
   buffers->examined = borders.size();
-  const cv::Size size = borders_.LevelSize(pass, buffers->borders);
   for (const Border& border : borders) {
     if (buffers->quads.size() == kMostQuads) return;
     TagQuad quad;
-    if (MayBeQuad(border, size) && FitQuad(border, part, pass, &buffers->borders, &quad)) {
+    if (MayBeQuad(border) && FitQuad(border, part, pass, &buffers->borders, &quad)) {
       buffers->quads.push_back(quad);
     }
   }
