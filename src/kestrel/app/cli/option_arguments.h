@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdio>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "kestrel/app/cli/target_arguments.h"
 #include "kestrel/app/options/kestrel_options.h"
@@ -25,10 +27,15 @@ struct OptionArguments {
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
   }
+  // Returns the options, after saying what of them is not advisable.
   KestrelOptions Read() const {
     std::vector<std::string> all = settings;
     target.AppendTo(&all, "landing.target");
-    return ReadKestrelOptions(config, all);
+    KestrelOptions options = ReadKestrelOptions(config, all);
+    for (const std::string& warning : options.landing.target.Warnings()) {
+      fmt::print(stderr, "kestrel: warning: {}\n", warning);
+    }
+    return options;
   }
 };
 

@@ -11,6 +11,7 @@
 #include "kestrel/core/base/edit_distance.h"
 #include "kestrel/core/base/options.h"
 #include "kestrel/core/base/violations.h"
+#include "kestrel/vision/tags/plain_tags.h"
 #include "kestrel/vision/tags/tag_print.h"
 #include "kestrel/vision/targets/ring_with_tags_detector.h"
 
@@ -31,7 +32,10 @@ struct TargetKind {
   TargetPrint (*print)(const TargetOptions&, const LandingPattern&);
   // Violations of the kind's group of TargetOptions.
   std::vector<std::string> (*validate)(const TargetOptions&);
+  std::vector<std::string> (*warn)(const TargetOptions&);
 };
+
+std::vector<std::string> NoWarnings(const TargetOptions& /*target*/) { return {}; }
 
 std::unique_ptr<const TargetDetector> MakeRingCross(const CameraModel& camera,
                                                     const KindOptions& options) {
@@ -87,6 +91,10 @@ std::vector<std::string> ValidateTags(const TargetOptions& target) {
   AddViolations("tags", target.tags.Validate(), &violations);
   return violations;
 }
+template <TagsOf kTagsOf>
+std::vector<std::string> WarningsOfTags(const TargetOptions& target) {
+  return WarningsOfPlainTags(kTagsOf(target).Board());
+}
 std::vector<std::string> ValidateNested(const TargetOptions& target) {
   if (target.nested.board.empty()) return {"nested.board is empty, expected the file of a board"};
   return ValidateTags<Nested>(target);
@@ -131,14 +139,17 @@ std::vector<std::string> ValidateHelipad(const TargetOptions& target) {
 
 // All kinds of pads, a line each.
 constexpr TargetKind kTargetKinds[] = {
-    {"ring-cross", 4, MakeRingCross, ShapeOfRingCross, PrintOfRingCross, ValidateRingCross},
+    {"ring-cross", 4, MakeRingCross, ShapeOfRingCross, PrintOfRingCross, ValidateRingCross,
+     NoWarnings},
     {"ring-with-tags", 1, MakeRingWithTags, ShapeOfRingWithTags, PrintOfRingWithTags,
-     ValidateNested},
+     ValidateNested, WarningsOfTags<Nested>},
     {"apriltag", 1, MakeTags<Apriltag>, ShapeOfTags<Apriltag>, PrintOfTags<Apriltag>,
-     ValidateTags<Apriltag>},
-    {"aruco", 1, MakeTags<Aruco>, ShapeOfTags<Aruco>, PrintOfTags<Aruco>, ValidateTags<Aruco>},
-    {"nested", 1, MakeTags<Nested>, ShapeOfTags<Nested>, PrintOfTags<Nested>, ValidateNested},
-    {"helipad", 2, MakeHelipad, ShapeOfHelipad, PrintOfHelipad, ValidateHelipad},
+     ValidateTags<Apriltag>, WarningsOfTags<Apriltag>},
+    {"aruco", 1, MakeTags<Aruco>, ShapeOfTags<Aruco>, PrintOfTags<Aruco>, ValidateTags<Aruco>,
+     WarningsOfTags<Aruco>},
+    {"nested", 1, MakeTags<Nested>, ShapeOfTags<Nested>, PrintOfTags<Nested>, ValidateNested,
+     WarningsOfTags<Nested>},
+    {"helipad", 2, MakeHelipad, ShapeOfHelipad, PrintOfHelipad, ValidateHelipad, NoWarnings},
 };
 
 const TargetKind* FindKind(std::string_view name) {
@@ -168,6 +179,8 @@ std::vector<std::string> TargetOptions::Validate() const {
       fmt::format("kind is '{}', expected one of {}{}", kind, fmt::join(names, ", "),
                   IsNearName(kind, nearest) ? fmt::format("; did you mean '{}'?", nearest) : "")};
 }
+
+std::vector<std::string> TargetOptions::Warnings() const { return FindKind(kind)->warn(*this); }
 
 std::unique_ptr<const TargetDetector> MakeTargetDetector(
     const CameraModel& camera, const TargetOptions& target,

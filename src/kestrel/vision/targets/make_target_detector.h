@@ -59,6 +59,9 @@ struct TargetOptions {
     visitor.Group("helipad", self.helipad);
   }
   std::vector<std::string> Validate() const;
+  // Returns what is allowed but not advisable, a line each (WarningsOfPlainTags). The options must
+  // be valid.
+  std::vector<std::string> Warnings() const;
 };
 
 // Returns the names of all kinds.

@@ -67,6 +67,15 @@ TEST_F(MakeTargetDetectorTest, BoardsOfTagsAreKinds) {
   EXPECT_TRUE(target.Validate().empty());
 }
 
+TEST(TargetOptions, AnIdThatIsAsPlainAsAWindowIsWarnedOf) {
+  TargetOptions target;
+  EXPECT_TRUE(target.Warnings().empty());
+  SetOption("kind=aruco", &target);
+  EXPECT_TRUE(target.Warnings().empty());
+  SetOption("id=17", &target);
+  EXPECT_THAT(target.Warnings(), ElementsAre(HasSubstr("aruco_4x4_50 id 17 is as plain")));
+}
+
 TEST(TargetOptions, AnIdIsOfTheKindsThatAreOneTag) {
   TargetOptions target;
   SetOption("id=9", &target);
