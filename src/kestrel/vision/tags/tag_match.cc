@@ -22,22 +22,6 @@ struct TurnedMatch {
   double contrast = 0;
 };
 
-// Index, in the grid of a quad, of a tag's cell when the tag's first corner is the quad's corner
-// 'turn', clockwise.
-int TurnedIndex(int column, int row, int turn, int width) {
-  const int last = width - 1;
-  switch (turn) {
-    case 0:
-      return row * width + column;
-    case 1:
-      return column * width + last - row;
-    case 2:
-      return (last - row) * width + last - column;
-    default:
-      return (last - column) * width + row;
-  }
-}
-
 TurnedMatch Compare(const TagModel& tag, int turn, std::span<const float> gray) {
   const TagGrid& grid = tag.grid();
   double sum[2] = {0, 0};
@@ -73,9 +57,23 @@ TurnedMatch Compare(const TagModel& tag, int turn, std::span<const float> gray) 
   return {seen > 0 ? static_cast<double>(fewest) / seen : 1, white - black};
 }
 
-// Samples the cells of a grid that a quad is the square of. The homography meets the quad's corners
-// exactly; a pose does not, for a small quad or a lens that is not quite as described.
-std::span<const float> ReadGrid(const cv::Mat& image, const CameraModel& camera,
+}  // namespace
+
+int TurnedIndex(int column, int row, int turn, int width) {
+  const int last = width - 1;
+  switch (turn) {
+    case 0:
+      return row * width + column;
+    case 1:
+      return column * width + last - row;
+    case 2:
+      return (last - row) * width + last - column;
+    default:
+      return (last - column) * width + row;
+  }
+}
+
+std::span<const float> ReadQuad(const cv::Mat& image, const CameraModel& camera,
                                 const Eigen::Matrix3d& homography, double side_px,
                                 const TagGrid& grid, BoardSamples* samples) {
   samples->Clear();
@@ -89,8 +87,6 @@ std::span<const float> ReadGrid(const cv::Mat& image, const CameraModel& camera,
   samples->Project(camera);
   return samples->ReadCells(image, grid.width, side_px / grid.border_width);
 }
-
-}  // namespace
 
 std::optional<TagMatch> MatchTag(const cv::Mat& image, const CameraModel& camera,
                                  const BoardModel& board, const TagQuad& quad,
@@ -106,7 +102,7 @@ std::optional<TagMatch> MatchTag(const cv::Mat& image, const CameraModel& camera
     if (tag.dark_inside != quad.dark_inside) continue;
     const TagGrid& grid = tag.grid();
     if (read == nullptr || read->width != grid.width || read->border_width != grid.border_width) {
-      gray = ReadGrid(image, camera, *homography, quad.side_px, grid, samples);
+      gray = ReadQuad(image, camera, *homography, quad.side_px, grid, samples);
       read = &grid;
     }
     for (int turn = 0; turn < 4; ++turn) {
