@@ -19,6 +19,7 @@
 #include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/core/camera/paper_camera.h"
 #include "kestrel/vision/helipad/helipad_detector.h"
+#include "kestrel/vision/helipad/test_ground_textures.h"
 #include "kestrel/vision/helipad/test_helipad_images.h"
 #include "kestrel/vision/helipad/test_helipad_lookalikes.h"
 #include "report_main.h"
@@ -153,6 +154,7 @@ struct Settings {
   int frames = 10;
   std::string condition;  // all when it is empty
   int lookalikes = 0;
+  int textures = 0;
   std::uint64_t seed = 1;
   HelipadDetectorOptions detector;
 };
@@ -235,6 +237,39 @@ void PrintLookalikes(const HelipadDetector& detector, const PadRenderer& rendere
              white ? "black" : "white", boards * kLookalikesPerBoard, count);
 }
 
+// False detections without a hint on images without a pad, by what they show, for pads with each
+// frame in each colour.
+void PrintTextures(const CameraModel& camera, const Settings& settings, Calibration* calibration) {
+  fmt::print("| what is seen | pad | images | false | largest quality |\n|---|---|---|---|---|\n");
+  const cv::Size size(camera.width_px(), camera.height_px());
+  const std::size_t images = settings.textures / GroundTextures::kKinds.size();
+  for (const std::string frame : {"none", "circle", "square"}) {
+    for (const bool white : {true, false}) {
+      HelipadDetectorOptions options = settings.detector;
+      options.frame = frame;
+      options.white = white;
+      const HelipadDetector detector(camera, options);
+      for (std::size_t kind = 0; kind < GroundTextures::kKinds.size(); ++kind) {
+        std::vector<double> qualities(images);
+        ForEachIndex(images, [&](std::size_t i) {
+          GroundTextures textures(size, settings.seed + 1000 * kind + i);
+          const auto workspace = detector.MakeWorkspace();
+          const LandingReport report = detector.Detect(textures.Draw(kind), {}, *workspace);
+          if (report.detection) qualities[i] = report.detection->quality;
+        });
+        const auto accepted =
+            std::count_if(qualities.begin(), qualities.end(), [](double q) { return q > 0; });
+        for (const double quality : qualities) {
+          if (quality > 0) calibration->Add(quality, false);
+        }
+        fmt::print("| {} | {}, frame {} | {} | {} | {:.4f} |\n", GroundTextures::kKinds[kind],
+                   white ? "white" : "black", frame, images, accepted,
+                   *std::max_element(qualities.begin(), qualities.end()));
+      }
+    }
+  }
+}
+
 int Run(const Settings& settings) {
   cv::setNumThreads(1);
   const CameraModel camera(PaperCamera());
@@ -252,6 +287,7 @@ int Run(const Settings& settings) {
     PrintLookalikes(detector, renderer, white, settings.lookalikes / 2, settings.seed + white,
                     &calibration);
   }
+  if (settings.textures > 0) PrintTextures(camera, settings, &calibration);
   calibration.Print();
   return 0;
 }
@@ -265,6 +301,8 @@ int main(int argc, char** argv) {
   app.add_option("--frames", settings.frames, "frames per range of altitudes and condition");
   app.add_option("--condition", settings.condition, "the only one that is rendered");
   app.add_option("--lookalikes", settings.lookalikes, "number of figures that resemble an H");
+  app.add_option("--textures", settings.textures, "number of images without a pad");
+  app.add_option("--frame", settings.detector.frame, "of the rendered pad: circle, square or none");
   app.add_option("--min-quality", settings.detector.min_quality, "of an accepted detection");
   app.add_option("--seed", settings.seed, "of the rendered frames");
   CLI11_PARSE(app, argc, argv);

@@ -15,6 +15,7 @@
 #include "kestrel/core/base/random.h"
 #include "kestrel/core/camera/paper_camera.h"
 #include "kestrel/core/geometry/angles.h"
+#include "kestrel/vision/helipad/test_ground_textures.h"
 #include "kestrel/vision/helipad/test_helipad_images.h"
 #include "kestrel/vision/helipad/test_helipad_lookalikes.h"
 
@@ -220,6 +221,24 @@ TEST_F(HelipadDetectorTest, NoLookalikeIsAccepted) {
       const RigidTransform pose = RandomPadBelow(altitude, &random);
       const LandingReport report = Detect(renderer_.Render(board.print, pose, taken_, i));
       EXPECT_FALSE(report.detection) << "board " << i << ", white " << white;
+    }
+  }
+}
+
+// A frame around the H is evidence; what has none is nearer to the scratches of a ground.
+TEST_F(HelipadDetectorTest, NoTextureIsTakenForAnHWithoutAFrame) {
+  constexpr int kImages = 8;  // of each kind
+  for (const bool white : {true, false}) {
+    HelipadDetectorOptions options;
+    options.frame = "none";
+    options.white = white;
+    Use(options);
+    for (std::size_t kind = 0; kind < GroundTextures::kKinds.size(); ++kind) {
+      for (int i = 0; i < kImages; ++i) {
+        GroundTextures textures({camera_.width_px(), camera_.height_px()}, 100 * kind + i);
+        EXPECT_FALSE(Detect(textures.Draw(kind)).detection)
+            << GroundTextures::kKinds[kind] << " " << i << ", white " << white;
+      }
     }
   }
 }

@@ -227,6 +227,12 @@ HelipadModel::HelipadModel(const Helipad& helipad)
       letter_moments(MomentsOf(CornersOf(helipad))),
       frame_moments(MomentsOfFrame(helipad)) {
   for (const HelipadSample& sample : samples) places.push_back(sample.place);
+  const auto of_letter = std::count_if(samples.begin(), samples.end(), [](const HelipadSample& s) {
+    return s.part != HelipadPart::kFrame;
+  });
+  // Half a stroke beside the H on each side belongs to it.
+  sample_area = (helipad.height_m / helipad.stroke_m + 1) *
+                (helipad.width_m / helipad.stroke_m + 1) / static_cast<double>(of_letter);
   edges.tags.push_back(ModelOfH(helipad));
   if (helipad.frame != "none") edges.tags.push_back(ModelOfFrame(helipad));
   for (const TagModel& part : edges.tags) edges.most_edges += part.edges.size();
@@ -250,10 +256,9 @@ HelipadModel::Contrast HelipadModel::ContrastAt(std::span<const float> gray, std
   return {sum / static_cast<float>(count), largest};
 }
 
-HelipadAgreement HelipadModel::Compare(std::span<const float> gray) const {
+HelipadAgreement HelipadModel::Compare(std::span<const float> gray, double stroke_px) const {
   constexpr double kLeastContrast = 0.02;
-  constexpr double kLeast = 0.45;                // of the usual contrast, of a sample that agrees
-  constexpr double kMatch = 0.5, kMismatch = 3;  // neighbouring samples are not independent
+  constexpr double kLeast = 0.45;  // of the usual contrast, of a sample that agrees
   HelipadAgreement agreement;
   std::array<float, kMostHelipadSamples> means, largest;
   std::size_t count = 0;
@@ -265,14 +270,12 @@ HelipadAgreement HelipadModel::Compare(std::span<const float> gray) const {
   if (count == 0) return agreement;
   const double usual = MedianInPlace(std::span(means.data(), count));
   if (usual < kLeastContrast) return agreement;
+  agreement.evidence = EvidenceOf(gray, stroke_px);
   std::array<int, kHelipadParts> seen{}, right{};
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (std::isnan(largest[i])) continue;
     // In one light with it: where the edge of a shadow runs, the others say little.
-    const double share = largest[i] / usual;
-    const bool agrees = share > kLeast;
-    const double clearness = std::min(1.0, std::abs(share - kLeast) / kLeast);
-    agreement.evidence += (agrees ? kMatch : -kMismatch) * clearness;
+    const bool agrees = largest[i] / usual > kLeast;
     const auto part = static_cast<std::size_t>(samples[i].part);
     ++seen[part];
     right[part] += agrees;
@@ -285,6 +288,19 @@ HelipadAgreement HelipadModel::Compare(std::span<const float> gray) const {
         std::min(agreement.worst_share, static_cast<double>(right[part]) / seen[part]);
   }
   return agreement;
+}
+
+double HelipadModel::EvidenceOf(std::span<const float> gray, double stroke_px) const {
+  constexpr double kBlurArea_px2 = 7.2;       // 4 pi sigma^2 of a usual lens with its pixels
+  constexpr double kLeastUnexplained = 1e-4;  // gray values are whole numbers
+  constexpr double kPoseParameters = 6;
+  const double likeness = LikenessOf(gray);
+  if (likeness <= 0) return 0;
+  const auto seen = std::count_if(gray.begin(), gray.end(), [](float g) { return g >= 0; });
+  const double share = std::min(1.0, sample_area * stroke_px * stroke_px / kBlurArea_px2);
+  const double independent = std::max(1.0, share * static_cast<double>(seen));
+  const double unexplained = std::max(kLeastUnexplained, 1 - likeness * likeness);
+  return -0.5 * (independent * std::log(unexplained) + kPoseParameters * std::log(independent));
 }
 
 double HelipadModel::LikenessOf(std::span<const float> gray) const {

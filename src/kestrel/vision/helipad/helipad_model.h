@@ -52,7 +52,12 @@ FigureMoments MomentsOf(std::span<const Eigen::Vector2d> corners);
 
 // Agreement of the gray values of the samples with the H.
 struct HelipadAgreement {
-  double evidence = 0;     // natural logarithm of how much likelier the H is than chance
+  // Natural logarithm of how much likelier an H of one ink on one ground is than any gray values:
+  // -n/2 log(1 - r^2) - k/2 log n. r: LikenessOf, so that 1 - r^2 is the share of the contrasts'
+  // squares that the H does not explain, noise and unequal ink among it. n: the number of
+  // independent samples, one for each area that the blur makes alike. k = 6: the pose was fitted to
+  // the same gray values (Schwarz, Estimating the dimension of a model, 1978).
+  double evidence = 0;
   double worst_share = 1;  // of the samples of a part, those that agree, in the worst part
   int parts = 0;           // number of parts in view
 };
@@ -64,7 +69,8 @@ struct HelipadModel {
 
   // Compares gray values of all samples, negative where out of view, with the H. A sample is held
   // against those of the other colour beside it, so that the edge of a shadow does not matter.
-  HelipadAgreement Compare(std::span<const float> gray) const;
+  // 'stroke_px': width of a stroke in the image.
+  HelipadAgreement Compare(std::span<const float> gray, double stroke_px) const;
 
   // Returns how much gray values of all samples, negative where out of view, look like the H: the
   // mean contrast of a sample over its root mean square, 1 where all have the same.
@@ -74,6 +80,7 @@ struct HelipadModel {
   BoardModel edges;   // its first tag is the H, its second one the frame where there is one
   std::vector<HelipadSample> samples;
   std::vector<Eigen::Vector2d> places;  // of the samples
+  double sample_area = 0;               // on the H, for each of its samples, squares of a stroke
   FigureMoments letter_moments;         // of the H
   FigureMoments frame_moments;          // of all within the frame's outer edge; no area without one
 
@@ -84,6 +91,7 @@ struct HelipadModel {
     float mean, largest;
   };
   Contrast ContrastAt(std::span<const float> gray, std::size_t i) const;
+  double EvidenceOf(std::span<const float> gray, double stroke_px) const;
 
   LogGrays log_;
 };

@@ -14,8 +14,12 @@
 namespace kestrel {
 namespace {
 
-constexpr double kSearchPrior = 12;   // odds against an H at any border, natural logarithm
-constexpr double kFollowedPrior = 6;  // against it near the expected place
+// Natural logarithms of the odds against an H in any pose that a search tries: some 20,000 (10), in
+// images that are made of lines rather than of independent points and seldom show a pad (26, the
+// least that kept it out of textures, and half of what the faintest pads have above it).
+constexpr double kSearchPrior = 36;
+// The same near the expected place: some 400 poses (6), and a pad is likely to be there.
+constexpr double kFollowedPrior = 24;
 constexpr double kLeastStrokePx = 1.3;
 constexpr double kLeastRight = 0.8;      // of the samples of a part
 constexpr double kLeastExplained = 0.7;  // of the edges of the H
@@ -134,7 +138,7 @@ double HelipadSearch::QualityOf(const AlignedBoard& aligned, double prior) {
   if (aligned.rms_px > std::max(kMostMisfitPx, kMostMisfitStrokes * stroke_px)) return 0;
   if (aligned.edges < kLeastExplained * EdgesInView(pose)) return 0;
   SampleAt(pose, helipad_.pad.places);
-  const HelipadAgreement agreement = helipad_.pad.Compare(buffers_.samples.Read(image_));
+  const HelipadAgreement agreement = helipad_.pad.Compare(buffers_.samples.Read(image_), stroke_px);
   // A leg with what is beside it, at least.
   constexpr int kFewestParts = 3;
   if (agreement.parts < kFewestParts || agreement.worst_share < kLeastRight) return 0;
