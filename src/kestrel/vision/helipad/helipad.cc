@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/core/base/require_metres.h"
 #include "kestrel/core/base/violations.h"
 
 namespace kestrel {
@@ -56,8 +57,15 @@ PrintShape FrameOf(const Helipad& helipad, double gray) {
 
 std::vector<std::string> Helipad::Validate() const {
   std::vector<std::string> violations;
-  RequireIn(height_m, 0.01, 100, "height_m", &violations);
-  RequireIn(board_size_m, 0.01, 200, "board_size_m", &violations);
+  constexpr double kLargestFrame = 100;  // m: real helipads have large circles around an H
+  RequireMetres(height_m, "height_m", &violations);
+  RequireMetres(width_m, "width_m", &violations);
+  RequireMetres(stroke_m, "stroke_m", &violations);
+  RequireMetres(board_size_m, "board_size_m", &violations, kLargestFrame);
+  if (frame == "circle" || frame == "square") {
+    RequireMetres(frame_size_m, "frame_size_m", &violations, kLargestFrame);
+    RequireMetres(frame_width_m, "frame_width_m", &violations);
+  }
   if (!violations.empty()) return violations;
   // The detector needs a gap on all sides of the bar that is not much thinner than a stroke.
   RequireIn(stroke_m, 0.05 * height_m, height_m / 4, "stroke_m", &violations);
@@ -73,12 +81,11 @@ std::vector<std::string> Helipad::Validate() const {
     }
     return violations;
   }
-  RequirePositive(frame_width_m, "frame_width_m", &violations);
   const double least =
       (frame == "circle" ? diagonal : std::max(height_m, width_m)) + 2 * frame_width_m;
   if (!(frame_size_m > least)) {
     violations.push_back(fmt::format(
-        "frame_size_m is {}, expected more than {:.3f} for the H within it", frame_size_m, least));
+        "frame_size_m is {}, expected more than {:.3g} for the H within it", frame_size_m, least));
   }
   if (!(board_size_m >= frame_size_m)) {
     violations.push_back(fmt::format("board_size_m is {}, expected at least frame_size_m, {}",

@@ -9,6 +9,7 @@
 namespace kestrel {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
@@ -38,6 +39,23 @@ TEST(Helipad, LooksTheSameAfterHalfATurn) {
   for (std::size_t i = 0; i < corners.size(); ++i) {
     EXPECT_LT((corners[i] + corners[(i + 6) % 12]).norm(), 1e-12);
   }
+}
+
+TEST(Helipad, MillimetresAreRefused) {
+  for (double Helipad::*length :
+       {&Helipad::height_m, &Helipad::width_m, &Helipad::stroke_m, &Helipad::frame_size_m,
+        &Helipad::frame_width_m, &Helipad::board_size_m}) {
+    Helipad helipad;
+    helipad.*length *= 1000;
+    EXPECT_THAT(helipad.Validate(), ElementsAre(HasSubstr("expected metres: ")));
+  }
+  EXPECT_THAT((Helipad{.height_m = 90}).Validate(),
+              ElementsAre("height_m is 90, expected metres: 0.09?"));
+  EXPECT_THAT(
+      (Helipad{
+           .height_m = 3, .width_m = 1.8, .stroke_m = 0.4, .frame_size_m = 26, .board_size_m = 30})
+          .Validate(),
+      IsEmpty());
 }
 
 TEST(Helipad, EachDimensionIsChecked) {

@@ -8,6 +8,8 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "kestrel/core/base/require_metres.h"
+
 namespace kestrel {
 namespace {
 
@@ -55,20 +57,23 @@ std::vector<std::string> LandingPattern::Validate() const {
                                      const std::string& expected) {
     if (!holds) violations.push_back(fmt::format("{} is {}, expected {}", key, value, expected));
   };
-  require(outer_diameter_m > 0 && std::isfinite(outer_diameter_m), "outer_diameter_m",
-          outer_diameter_m, "a positive length");
-  if (!violations.empty()) return violations;  // all other limits depend on the diameter
+  RequireMetres(outer_diameter_m, "outer_diameter_m", &violations);
+  RequireMetres(ring_width_m, "ring_width_m", &violations);
+  RequireMetres(arm_width_m, "arm_width_m", &violations);
+  RequireMetres(arm_half_length_m, "arm_half_length_m", &violations);
+  RequireMetres(board_size_m, "board_size_m", &violations);
+  if (!violations.empty()) return violations;  // the other limits are of lengths to each other
 
-  require(ring_width_m > 0 && ring_width_m < outer_radius_m(), "ring_width_m", ring_width_m,
-          fmt::format("more than 0 and less than the outer radius, {}", outer_radius_m()));
-  require(arm_width_m > 0 && arm_width_m < inner_radius_m(), "arm_width_m", arm_width_m,
-          fmt::format("more than 0 and less than the inner radius, {}", inner_radius_m()));
+  require(ring_width_m < outer_radius_m(), "ring_width_m", ring_width_m,
+          fmt::format("less than the outer radius, {:g}", outer_radius_m()));
+  require(arm_width_m < inner_radius_m(), "arm_width_m", arm_width_m,
+          fmt::format("less than the inner radius, {:g}", inner_radius_m()));
   require(arm_half_length_m > 0.5 * arm_width_m && arm_half_length_m <= outer_radius_m(),
           "arm_half_length_m", arm_half_length_m,
-          fmt::format("more than half of arm_width_m and at most the outer radius, {}",
+          fmt::format("more than half of arm_width_m and at most the outer radius, {:g}",
                       outer_radius_m()));
-  require(board_size_m >= outer_diameter_m && std::isfinite(board_size_m), "board_size_m",
-          board_size_m, fmt::format("at least the outer diameter, {}", outer_diameter_m));
+  require(board_size_m >= outer_diameter_m, "board_size_m", board_size_m,
+          fmt::format("at least the outer diameter, {}", outer_diameter_m));
   return violations;
 }
 

@@ -36,6 +36,20 @@ TEST(LandingPattern, EveryViolationIsNamed) {
   EXPECT_THAT(pattern.Validate(), ::testing::Contains(HasSubstr("board_size_m is 0.9")));
 }
 
+TEST(LandingPattern, MillimetresAreRefused) {
+  for (double LandingPattern::*length :
+       {&LandingPattern::outer_diameter_m, &LandingPattern::ring_width_m,
+        &LandingPattern::arm_width_m, &LandingPattern::arm_half_length_m,
+        &LandingPattern::board_size_m}) {
+    LandingPattern pattern;
+    pattern.*length *= 1000;
+    EXPECT_THAT(pattern.Validate(), ElementsAre(HasSubstr("expected metres: ")));
+  }
+  LandingPattern pattern;
+  pattern.ring_width_m = 160;
+  EXPECT_THAT(pattern.Validate(), ElementsAre("ring_width_m is 160, expected metres: 0.16?"));
+}
+
 TEST(LandingPattern, NaNIsNoLength) {
   for (double LandingPattern::*length :
        {&LandingPattern::outer_diameter_m, &LandingPattern::ring_width_m,

@@ -9,6 +9,7 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/read_file.h"
+#include "kestrel/core/base/require_metres.h"
 #include "kestrel/core/base/yaml_reader.h"
 #include "kestrel/vision/objects/embedded_data.h"
 
@@ -121,9 +122,12 @@ std::vector<std::string> ObjectModel::Validate() const {
       if (!holds) violations.push_back(fmt::format("class {} ({}): {}", i + 1, c.name, rule));
     };
     require(c.color < colors.colors.size(), "its color must be one of the colors");
-    require(c.size_m > 0 && std::isfinite(c.size_m), "size_m must be positive");
-    require(c.shape != ObjectShape::kBar || (c.width_m > 0 && c.width_m < c.size_m),
-            "width_m must be positive and less than size_m");
+    const std::string name = fmt::format("class {} ({}): ", i + 1, c.name);
+    RequireMetres(c.size_m, name + "size_m", &violations);
+    if (c.shape == ObjectShape::kBar) RequireMetres(c.width_m, name + "width_m", &violations);
+    if (c.max_height_m > 0) RequireMetres(c.max_height_m, name + "max_height_m", &violations);
+    require(c.shape != ObjectShape::kBar || c.width_m < c.size_m,
+            "width_m must be less than size_m");
     require(c.height_m >= 0 && c.height_m <= c.max_height_m && std::isfinite(c.max_height_m),
             "height_m must not be negative, nor more than max_height_m");
   }

@@ -42,6 +42,11 @@ TEST(ParseObjectModel, ReadsWhatPrintObjectModelWrites) {
             model.colors.colors[2].components[0].mean.hue_deg);
 }
 
+TEST(ParseObjectModel, ASizeInMillimetresIsRefused) {
+  EXPECT_THAT(ErrorOf(Replaced(kModel, "size_m: 0.2", "size_m: 200")),
+              HasSubstr("class 1 (red): size_m is 200, expected metres: 0.2?"));
+}
+
 TEST(ParseObjectModel, CorrelationOfHueAndSaturationIsKept) {
   const std::string yaml =
       Replaced(kModel, "sigma: [8, 0.1, 0.2]", "sigma: [8, 0.1, 0.2], correlation: -0.625");
