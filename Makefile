@@ -19,7 +19,7 @@ export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
 export CCACHE_BASEDIR ?= $(CURDIR)
 export CCACHE_SLOPPINESS ?= locale
 
-.PHONY: demo console test dds ros python wheel interop browser bench accuracy figures check-figures format check asan tsan fuzz install command tests build configure configure-tests \
+.PHONY: demo console test dds ros python test-python python-module wheel interop browser bench accuracy figures check-figures format check asan tsan fuzz install command tests build configure configure-tests \
   package repository package-test
 
 demo: command  ## a simulated landing, or with DATA=<folder> [CAMERA=<file>] your own images
@@ -46,11 +46,17 @@ ros:  ## the node of ROS 1 and its tests, and bags of ROS 1 against its rosbag
 	cmake --build --preset release --target kestrel kestrel_node kestrel_ros_test kestrel_ros_node_test
 	ctest --preset release -R "^ros(_node)?/" --no-tests=error --verbose
 
-python:  ## `import kestrel` and its tests
-	scripts/install-deps --test --python
+python: python-module  ## `import kestrel`, and what `kestrel study` needs
+	@echo 'Try it: PYTHONPATH=$(BIN)/python /usr/bin/python3 -c "import kestrel; print(kestrel.simulate(\"calm\"))"'
+
+test-python: python-module  ## the tests of `import kestrel` and of studies
+	scripts/install-deps --test
+	ctest --preset release -R ^python/ --no-tests=error
+
+python-module:
+	scripts/install-deps --python
 	cmake --preset release -DKESTREL_BUILD_PYTHON=ON
 	cmake --build --preset release --target kestrel _kestrel
-	ctest --preset release -R ^python/ --no-tests=error
 
 wheel:  ## a wheel of `import kestrel` with the libraries that it needs, to out/wheel
 	scripts/install-deps --python

@@ -28,6 +28,12 @@ def recording(tmp_path_factory):
     return folder
 
 
+def test_the_first_program_of_the_page_finds_its_tag(capsys):
+    page = (EXAMPLES.parents[1] / "docs/python.md").read_text()
+    exec(page.split("```python\n")[1].split("```")[0], {})
+    assert "found at" in capsys.readouterr().out
+
+
 def test_detect_image(recording):
     cam0 = recording / "mav0/cam0"
     image = min((cam0 / "data").iterdir())
