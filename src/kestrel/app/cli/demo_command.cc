@@ -2,13 +2,13 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "kestrel/app/cli/commands.h"
 #include "kestrel/app/cli/interrupt.h"
@@ -57,6 +57,24 @@ std::string InCentimetres(const std::string& metres) {
   return fmt::format("{:.1f} cm", 100 * std::strtod(metres.c_str(), nullptr));
 }
 
+// What the plots of a chapter show, by the names of their files.
+const std::map<std::string, std::string>& PlotCaptions() {
+  static const std::map<std::string, std::string> captions = {
+      {"position", "Place of the pad in the world: true, detected, and the track that follows it."},
+      {"plane", "Path of the pad from above: the track should lie on the true one."},
+      {"error", "Errors over time: small ones near the pad, larger ones from high above."},
+      {"rate", "Share of the images in which the pad was found, by altitude."},
+      {"nees", "Whether the stated errors are honest: the average should lie within the bounds."},
+      {"velocity", "Velocity of the pad: the estimate should lie on the true one."},
+      {"prediction", "Error of the place where the pad is expected to be in a moment."},
+      {"map",
+       "The field from above. A circle with a cross is an object in the map; a circle alone "
+       "was passed, and is not in the map."},
+      {"touchdown", "Paths of the UAV and of the car, from above and from the side."},
+  };
+  return captions;
+}
+
 // The demo: flights over a driving car and over coloured objects, and a landing on the car.
 class Demo {
  public:
@@ -68,8 +86,13 @@ class Demo {
     Hunt();
     Land();
     const std::string page = files_.NewFile("index.html").string();
-    files_.OpenText("index.html") << ToHtml("Kestrel: what it sees", verdict_, chapters_);
-    fmt::print("\n{}\nVideos, plots and figures: {}\n", fmt::join(verdict_, "\n"), page);
+    const std::vector<std::string>& landing = chapters_.back().videos;
+    files_.OpenText("index.html") << ToHtml("Kestrel: a landing on a moving car, by what it sees",
+                                            landing.empty() ? "" : landing.front(), verdict_,
+                                            chapters_);
+    fmt::print("\n");
+    for (const PageVerdict& line : verdict_) fmt::print("{}\n", line.found);
+    fmt::print("Videos, plots and figures: {}\n", page);
   }
 
  private:
@@ -81,13 +104,15 @@ class Demo {
     RunCommand("land " + Quoted("flight") + " --annotate --predict 0.5,1.0" + forced_ +
                " --output " + Quoted("found"));
     const Report report = Evaluated(EvaluateLanding, "flight", "found");
-    verdict_.push_back(fmt::format("Landing pattern: found in {} of {} images, {} false",
-                                   CellOf(report, "images", "found"),
-                                   CellOf(report, "images", "with a quarter of it in view"),
-                                   CellOf(report, "images", "false")));
+    verdict_.push_back({fmt::format("Landing pattern: found in {} of {} images, {} false",
+                                    CellOf(report, "images", "found"),
+                                    CellOf(report, "images", "with a quarter of it in view"),
+                                    CellOf(report, "images", "false")),
+                        "Good: more than 95 %. Needed: two images a second, and none false."});
     verdict_.push_back(
-        fmt::format("Its place in the world: {} off (root mean square, from 14 m down)",
-                    InCentimetres(CellOf(report, "errors", "world RMS, m"))));
+        {fmt::format("Its place in the world: {} off (root mean square, from 14 m down)",
+                     InCentimetres(CellOf(report, "errors", "world RMS, m"))),
+         "Good: below 10 cm. Needed: below 25 cm, or the UAV does not descend."});
     AddChapter("A car on a figure of eight, followed from above",
                "A UAV comes down over a car that drives in curves. The outline is what Kestrel "
                "found; the plots compare it with the truth of the simulation.",
@@ -100,10 +125,14 @@ class Demo {
     RunCommand("hunt " + Quoted("field") + " --annotate --set hunt.readout_s=0.025" + forced_ +
                " --output " + Quoted("objects"));
     const Report report = Evaluated(EvaluateHunt, "field", "objects");
-    verdict_.push_back(fmt::format(
-        "Coloured objects: {} of {} in the map, {} false, {} from their true places (mean)",
-        CellOf(report, "map", "in the map"), CellOf(report, "map", "objects"),
-        CellOf(report, "map", "false"), InCentimetres(CellOf(report, "map", "position mean, m"))));
+    verdict_.push_back(
+        {fmt::format("Coloured objects: {} of {} in the map, {} false, {} from their true "
+                     "places (mean)",
+                     CellOf(report, "map", "in the map"), CellOf(report, "map", "objects"),
+                     CellOf(report, "map", "false"),
+                     InCentimetres(CellOf(report, "map", "position mean, m"))),
+         "Good: all that were passed, none false. Needed: within 10 cm, to pick up "
+         "a disc of 20 cm."});
     AddChapter("Coloured objects, found and mapped",
                "A UAV flies to and fro over a field with coloured discs, cuboids and bars.",
                "objects", report);
@@ -114,7 +143,9 @@ class Demo {
                Quoted("touchdown"));
     std::string summary = ReadFile((folder_ / "touchdown" / "summary.txt").string());
     summary.erase(summary.find_last_not_of('\n') + 1);
-    verdict_.push_back("Landing on the car: " + summary);
+    verdict_.push_back(
+        {"Landing on the car: " + summary,
+         "Good: below 0.1 m from the centre. Needed: 0.5 m, the radius of the ring."});
     AddChapter("A landing on the car, by what Kestrel sees",
                "A simulated UAV in gusty wind has nothing but the track to land by.", "touchdown",
                Report());
@@ -137,17 +168,19 @@ class Demo {
       if (entry.path().stem() == "annotated" && entry.is_regular_file()) {
         chapter.videos.push_back(name);
       } else if (kind == ".png" && name.find("/mav0/") == std::string::npos) {
-        chapter.pictures.push_back(name);
+        const auto caption = PlotCaptions().find(entry.path().stem().string());
+        chapter.pictures.push_back(
+            {name, caption == PlotCaptions().end() ? name : caption->second});
       }
     }
-    std::sort(chapter.pictures.begin(), chapter.pictures.end());
+    std::ranges::sort(chapter.pictures, {}, &PagePicture::file);
     chapters_.push_back(chapter);
   }
 
   fs::path folder_;
   OutputFolder files_;
   std::string forced_;
-  std::vector<std::string> verdict_;
+  std::vector<PageVerdict> verdict_;
   std::vector<PageChapter> chapters_;
 };
 

@@ -7,14 +7,32 @@ namespace kestrel {
 namespace {
 
 constexpr char kStyle[] =
-    "body{max-width:60rem;margin:2rem auto;padding:0 1rem;font:1rem/1.5 system-ui,sans-serif;"
-    "color:#1c2024;background:#fff}"
-    "ul{padding:1rem 1rem 1rem 2rem;border-left:.3rem solid #009e73;background:#f2faf7;"
-    "font-size:1.1rem}"
-    "video,img{width:100%;height:auto;margin:.5rem 0}summary{cursor:pointer;color:#0b57a4}"
+    ":root{color-scheme:light dark;--text:#1c2024;--page:#fff;--line:#ccd;--good:#e8f6f1;"
+    "--quiet:#56606a;--link:#0b57a4}"
+    "@media(prefers-color-scheme:dark){:root{--text:#e6e8ea;--page:#15181b;--line:#3a4148;"
+    "--good:#17302a;--quiet:#a3adb6;--link:#7db7f5}}"
+    "body{max-width:75rem;margin:1rem auto;padding:0 1rem;font:1rem/1.5 system-ui,sans-serif;"
+    "color:var(--text);background:var(--page)}"
+    "h1{font-size:1.5rem;margin:.5rem 0}a,summary{color:var(--link)}"
+    ".first{display:grid;grid-template-columns:3fr 2fr;gap:1.5rem;align-items:start}"
+    "@media(max-width:50rem){.first{grid-template-columns:1fr}}"
+    "dl{margin:0;padding:.5rem 1rem;border-left:.3rem solid #009e73;background:var(--good)}"
+    "dt{font-weight:600;margin-top:.5rem}dd,figcaption{margin:0;color:var(--quiet);font-size:.9rem}"
+    "video,img{width:100%;height:auto}img{background:#fff}figure{margin:1rem 0}"
+    "summary{cursor:pointer;font-size:1.15rem;padding:.6rem 0;border-top:1px solid var(--line)}"
+    "details details summary{font-size:1rem;border:0}"
+    ".plots{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(30rem,100%),1fr));"
+    "gap:1rem}"
     "table{border-collapse:collapse;font-size:.85rem;margin-bottom:1rem}"
-    "td,th{border:1px solid #ccd;padding:.2rem .5rem;text-align:right}"
+    "td,th{border:1px solid var(--line);padding:.2rem .5rem;text-align:right}"
     ".table{overflow-x:auto}";
+
+constexpr char kLinks[] =
+    "<p>Next: <code>kestrel fly sim:standing --autopilot sim:ardupilot</code> lands by an "
+    "autopilot, <code>kestrel console --demo</code> shows a flight in the browser, "
+    "<code>kestrel print --size 0.16 --output pad.pdf</code> prints a pad. From a camera to a "
+    "first "
+    "landing: docs/first-landing.md.</p>\n";
 
 std::string Escaped(const std::string& text) {
   std::string escaped;
@@ -50,36 +68,55 @@ std::string TableOf(const ReportTable& table) {
   return html + "</table></div>\n";
 }
 
+// The fragment makes browsers show an image of the middle of the flight before it is played.
+std::string Video(const std::string& file) {
+  return fmt::format(
+      "<video controls muted loop playsinline preload=\"metadata\" src=\"{}#t=2\"></video>\n",
+      Escaped(file));
+}
+
+std::string Picture(const PagePicture& picture) {
+  return fmt::format(
+      "<figure><img loading=\"lazy\" alt=\"{1}\" "
+      "src=\"{0}\"><figcaption>{1}</figcaption></figure>\n",
+      Escaped(picture.file), Escaped(picture.caption));
+}
+
+std::string Folded(const std::string& title, const std::string& content) {
+  return fmt::format("<details><summary>{}</summary>\n{}</details>\n", Escaped(title), content);
+}
+
 std::string Chapter(const PageChapter& chapter) {
-  std::string html =
-      fmt::format("<h2>{}</h2>\n<p>{}</p>\n", Escaped(chapter.title), Escaped(chapter.text));
-  for (const std::string& video : chapter.videos) {
-    html += fmt::format("<video controls muted loop src=\"{}\"></video>\n", Escaped(video));
-  }
-  for (const std::string& picture : chapter.pictures) {
-    html += fmt::format("<img loading=\"lazy\" alt=\"{0}\" src=\"{0}\">\n", Escaped(picture));
-  }
+  std::string html = fmt::format("<p>{}</p>\n", Escaped(chapter.text));
+  for (const std::string& video : chapter.videos) html += Video(video);
+  html += "<div class=\"plots\">\n";
+  for (const PagePicture& picture : chapter.pictures) html += Picture(picture);
+  html += "</div>\n";
   std::string tables;
   for (const ReportTable& table : chapter.tables) {
     if (!table.rows.empty()) tables += TableOf(table);
   }
-  if (tables.empty()) return html;
-  return html + "<details><summary>All figures</summary>\n" + tables + "</details>\n";
+  if (!tables.empty()) html += Folded("All figures", tables);
+  return Folded(chapter.title, html);
 }
 
 }  // namespace
 
-std::string ToHtml(const std::string& title, const std::vector<std::string>& verdict,
+std::string ToHtml(const std::string& title, const std::string& video,
+                   const std::vector<PageVerdict>& verdict,
                    const std::vector<PageChapter>& chapters) {
   std::string html = fmt::format(
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width\">\n"
-      "<title>{0}</title>\n<style>{1}</style></head>\n<body><h1>{0}</h1>\n<ul>\n",
-      Escaped(title), kStyle);
-  for (const std::string& line : verdict) html += fmt::format("<li>{}</li>\n", Escaped(line));
-  html += "</ul>\n";
+      "<title>{0}</title>\n<style>{1}</style></head>\n<body><h1>{0}</h1>\n"
+      "<div class=\"first\">\n<div>{2}</div>\n<dl>\n",
+      Escaped(title), kStyle, video.empty() ? "" : Video(video));
+  for (const PageVerdict& line : verdict) {
+    html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", Escaped(line.found), Escaped(line.needed));
+  }
+  html += "</dl></div>\n";
   for (const PageChapter& chapter : chapters) html += Chapter(chapter);
-  return html + "</body></html>\n";
+  return html + kLinks + "</body></html>\n";
 }
 
 }  // namespace kestrel

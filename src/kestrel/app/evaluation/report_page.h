@@ -8,18 +8,30 @@
 
 namespace kestrel {
 
+struct PagePicture {
+  std::string file;
+  std::string caption;
+};
+
 // A chapter of a page for the browser. Files are named as seen from the page.
 struct PageChapter {
   std::string title;
   std::string text;  // a paragraph
   std::vector<std::string> videos;
-  std::vector<std::string> pictures;
+  std::vector<PagePicture> pictures;
   std::vector<ReportTable> tables;
 };
 
-// Returns an HTML page that needs no other file but its videos and pictures: title, verdict (a list
-// of lines), then the chapters with their tables folded away.
-std::string ToHtml(const std::string& title, const std::vector<std::string>& verdict,
+// A line of the verdict, and what it is to be compared with.
+struct PageVerdict {
+  std::string found;
+  std::string needed;
+};
+
+// Returns an HTML page that needs no other file but its videos and pictures: title, the video (if
+// not empty) beside the verdict, the chapters folded away, and links to Kestrel's pages.
+std::string ToHtml(const std::string& title, const std::string& video,
+                   const std::vector<PageVerdict>& verdict,
                    const std::vector<PageChapter>& chapters);
 
 }  // namespace kestrel

@@ -12,17 +12,20 @@ using ::testing::Not;
 
 TEST(ToHtml, HasVerdictVideosPicturesAndTables) {
   const std::string html = ToHtml(
-      "Demo", {"found 3 of 3"},
+      "Demo", "first.mp4", {{"found 3 of 3", "needed: 1"}},
       {{.title = "A < B",
         .text = "Why & where.",
         .videos = {"a/b.mp4"},
-        .pictures = {"c.png"},
+        .pictures = {{"c.png", "The \"path\""}},
         .tables = {{"t", "Errors", "", {"x"}, {{"1.5"}}}, {"empty", "Nothing", "", {"y"}, {}}}}});
-  EXPECT_THAT(html, HasSubstr("<li>found 3 of 3</li>"));
-  EXPECT_THAT(html, HasSubstr("<h2>A &lt; B</h2>"));
+  EXPECT_THAT(html, HasSubstr("<dt>found 3 of 3</dt><dd>needed: 1</dd>"));
+  EXPECT_THAT(html, HasSubstr("<details><summary>A &lt; B</summary>"));
   EXPECT_THAT(html, HasSubstr("Why &amp; where."));
-  EXPECT_THAT(html, HasSubstr("src=\"a/b.mp4\""));
-  EXPECT_THAT(html, HasSubstr("<img loading=\"lazy\" alt=\"c.png\" src=\"c.png\">"));
+  EXPECT_THAT(html, HasSubstr("src=\"a/b.mp4#t=2\""));
+  EXPECT_THAT(html, HasSubstr("<figcaption>The &quot;path&quot;</figcaption>"));
+  EXPECT_LT(html.find("first.mp4"), html.find("<dt>")) << "the video is beside the verdict";
+  EXPECT_LT(html.find("<dt>"), html.find("a/b.mp4")) << "chapters follow";
+  EXPECT_THAT(html, HasSubstr("prefers-color-scheme:dark"));
   EXPECT_THAT(html, HasSubstr("<td>1.5</td>"));
   EXPECT_THAT(html, Not(HasSubstr("Nothing")));
 }
