@@ -88,7 +88,7 @@ void FlyArguments::AddTo(CLI::App* command) {
       ->type_name("FILE")
       ->needs(hunt_flag);
   guide_flag->excludes(hunt_flag);
-  hunt_flag->excludes("--target")->excludes("--target-id");
+  hunt_flag->excludes("--target")->excludes("--target-id")->excludes("--target-size");
   team.AddTo(command)->needs(hunt_flag);
   command->add_flag("--loop", loop, "Play a recording in a loop");
 }

@@ -18,16 +18,21 @@
 #include "kestrel/core/camera/calibration_reader.h"
 #include "kestrel/io/recording/image_file.h"
 #include "kestrel/io/recording/output_folder.h"
+#include "kestrel/vision/targets/make_target_detector.h"
 
 namespace kestrel {
 namespace {
 
 constexpr char kPdf[] = ".pdf", kSvg[] = ".svg";
+// Sizes of the pads of --starter: one sheet, for the bench and the last metres; and one for
+// flights.
+constexpr double kNear_m = 0.16, kFar_m = 0.5;
 
 struct PrintArguments {
   OptionArguments options;
   std::string paper;
   std::string output = ".";
+  bool starter = false;
   bool force = false;
   std::string photo;  // checked instead of printing
   std::string camera;
@@ -64,23 +69,30 @@ void PrintWhole(const TargetPrint& print, const std::string& name, const std::st
   if (kind != kPdf) add(kSvg, PrintPatternSvg);
 }
 
-// Writes the SVGs, of one page each, to a folder.
-void PrintTiled(const TargetPrint& print, const Tiling& tiling, const std::string& name,
-                const std::string& kind, const PrintFiles& files) {
+// Writes the SVGs, of one page each: to a folder where there are several.
+void PrintTiled(const TiledPrint& pad, const std::string& name, const std::string& kind,
+                const PrintFiles& files) {
+  const TargetPrint& print = pad.print;
+  const Tiling& tiling = pad.tiling;
   if (kind != kSvg) {
-    const std::string path = files.Add(
-        name + kPdf, [&](const std::string& file) { PrintTilesPdf(print, tiling, file); });
+    const std::string path =
+        files.Add(name + kPdf, [&](const std::string& file) { PrintTilesPdf({pad}, file); });
     fmt::print(stderr, "{}: {}\n", path, SheetsInWords(print, tiling));
   }
   if (kind == kPdf) return;
-  const std::string overview = files.Add(name + "/overview" + kSvg, [&](const std::string& file) {
-    PrintOverviewSvg(print, tiling, file);
-  });
+  if (tiling.count() == 1) {
+    const std::string path =
+        files.Add(name + kSvg, [&](const std::string& file) { PrintTileSvg(pad, 0, 0, file); });
+    fmt::print(stderr, "{}\n", path);
+    return;
+  }
+  const std::string overview = files.Add(
+      name + "/overview" + kSvg, [&](const std::string& file) { PrintOverviewSvg(pad, file); });
   for (int row = 0; row < tiling.rows; ++row) {
     for (int column = 0; column < tiling.columns; ++column) {
       if (!HasPrint(print, tiling, row, column)) continue;
       files.Add(fmt::format("{}/sheet_{}.{}{}", name, row + 1, column + 1, kSvg),
-                [&](const std::string& file) { PrintTileSvg(print, tiling, row, column, file); });
+                [&](const std::string& file) { PrintTileSvg(pad, row, column, file); });
     }
   }
   fmt::print(stderr, "{}, and its sheets beside it\n", overview);
@@ -111,7 +123,8 @@ std::optional<PrintScale> ScaleOf(const PrintArguments& arguments, const Landing
 }
 
 void CheckPhoto(const PrintArguments& arguments) {
-  const LandingPatternDetectorOptions detector = arguments.options.Read().landing.detector;
+  const LandingPipelineOptions landing = arguments.options.Read().landing;
+  const LandingPatternDetectorOptions detector = RingOfTarget(landing.target, landing.detector);
   const PrintMeasurement print = Measure(arguments, detector);
   const std::optional<PrintScale> scale = ScaleOf(arguments, detector.pattern, print);
   fmt::print("{}: the ring is {:.0f} px wide, {:.2f} mm a pixel\n", arguments.photo, print.ring_px,
@@ -127,13 +140,60 @@ void CheckPhoto(const PrintArguments& arguments) {
   RequireAsConfigured(arguments.photo, dimensions);
 }
 
+TargetPrint ConfiguredPrint(const OptionArguments& options) {
+  const LandingPipelineOptions landing = options.Read().landing;
+  return PrintOfTarget(landing.target, landing.detector.pattern);
+}
+
+// Returns how the other commands are told of a pad that was scaled; empty for one that was not.
+std::string FlyWith(const TargetArguments& target) {
+  if (!target.size_m) return "";
+  std::string words = "Fly with it: kestrel fly ...";
+  if (!target.kind.empty()) words += " --target " + target.kind;
+  if (target.id) words += fmt::format(" --target-id {}", *target.id);
+  return words + fmt::format(" --target-size {}", *target.size_m);
+}
+
+// One sheet where the print fits, otherwise as many as the board needs.
+Tiling SheetsFor(const TargetPrint& print, const std::string& paper) {
+  const Eigen::Vector2d size = *PaperSize(paper);
+  const std::optional<Tiling> sheet = OneSheet(print.board_size_m, InkSize(print), size);
+  return sheet ? *sheet : TileBoard(print.board_size_m, size);
+}
+
+// Returns the name of the smallest paper, one sheet of which the print fits; empty beyond all.
+std::string SmallestPaper(const TargetPrint& print) {
+  std::string smallest;
+  for (const std::string& name : PaperNames()) {  // largest first
+    if (OneSheet(print.board_size_m, InkSize(print), *PaperSize(name))) smallest = name;
+  }
+  return smallest;
+}
+
+void PrintStarter(const PrintArguments& arguments, const std::string& name,
+                  const PrintFiles& files) {
+  const std::string paper = arguments.paper.empty() ? "a4" : arguments.paper;
+  std::vector<TiledPrint> pads;
+  for (const double size_m : {kNear_m, kFar_m}) {
+    OptionArguments options = arguments.options;
+    options.target.size_m = size_m;
+    const TargetPrint print = ConfiguredPrint(options);
+    pads.push_back({print, SheetsFor(print, paper), FlyWith(options.target)});
+  }
+  const std::string path =
+      files.Add(name + kPdf, [&](const std::string& file) { PrintTilesPdf(pads, file); });
+  fmt::print(stderr, "{}: a near and a far pad on {}\n", path, paper);
+  for (const TiledPrint& pad : pads) {
+    fmt::print(stderr, "{}. {}\n", SheetsInWords(pad.print, pad.tiling), pad.note);
+  }
+}
+
 void RunPrint(const PrintArguments& arguments) {
   if (!arguments.photo.empty()) {
     CheckPhoto(arguments);
     return;
   }
-  const LandingPipelineOptions landing = arguments.options.Read().landing;
-  const TargetPrint print = PrintOfTarget(landing.target, landing.detector.pattern);
+  const TargetPrint print = ConfiguredPrint(arguments.options);
   const std::filesystem::path output(arguments.output);
   const std::string kind = output.extension().string();
   const bool is_file = kind == kPdf || kind == kSvg;
@@ -143,14 +203,23 @@ void RunPrint(const PrintArguments& arguments) {
         ": expected a name that ends in .pdf or .svg, or a folder's without an ending");
   }
   const PrintFiles files(is_file ? output.parent_path() / "." : output, arguments.force);
-  if (arguments.paper.empty()) {
-    const std::string name = is_file ? output.stem().string() : "landing_pattern";
-    PrintWhole(print, name, is_file ? kind : "", files);
+  if (arguments.starter) {
+    if (kind == kSvg) throw InputError(arguments.output + ": --starter is a PDF");
+    PrintStarter(arguments, is_file ? output.stem().string() : "landing_starter", files);
     return;
   }
-  const Tiling tiling = TileBoard(print.board_size_m, *PaperSize(arguments.paper));
-  const std::string name = is_file ? output.stem().string() : "landing_pattern_" + arguments.paper;
-  PrintTiled(print, tiling, name, is_file ? kind : "", files);
+  const std::string note = FlyWith(arguments.options.target);
+  const std::string paper =
+      arguments.paper.empty() && !note.empty() ? SmallestPaper(print) : arguments.paper;
+  if (paper.empty()) {
+    const std::string name = is_file ? output.stem().string() : "landing_pattern";
+    PrintWhole(print, name, is_file ? kind : "", files);
+  } else {
+    const std::string name = is_file ? output.stem().string() : "landing_pattern_" + paper;
+    PrintTiled({print, SheetsFor(print, paper), note}, name, is_file ? kind : "", files);
+    fmt::print(stderr, "Print it on {} at 100 %.\n", paper);
+  }
+  if (!note.empty()) fmt::print(stderr, "{}\n", note);
 }
 
 CLI::Option* AddCheckOptions(CLI::App* command, PrintArguments* arguments) {
@@ -187,11 +256,12 @@ void AddPrintCommand(CLI::App* app) {
       app->add_subcommand("print", "The configured pad as PDF and SVG, true to scale");
   const auto arguments = std::make_shared<PrintArguments>();
   arguments->options.AddTo(command);
-  arguments->options.target.AddTo(command);
+  arguments->options.target.AddTo(command, "--size,--target-size");
   CLI::Option* const paper = command
                                  ->add_option("--paper", arguments->paper,
                                               "Size of the sheets (a0 to a4) that the print is cut "
-                                              "into (default: one page as large as the board)")
+                                              "into (default: one page as large as the board; "
+                                              "with --size the smallest sheet that it fits on)")
                                  ->type_name("SIZE")
                                  ->transform(CLI::IsMember(PaperNames(), CLI::ignore_case));
   CLI::Option* const output =
@@ -200,8 +270,12 @@ void AddPrintCommand(CLI::App* app) {
               "--output", arguments->output,
               "Folder for both formats (default: this one), or a file that ends in .pdf or .svg")
           ->type_name("FILE|DIR");
+  CLI::Option* const starter = command->add_flag(
+      "--starter", arguments->starter,
+      "A near pad (0.16 m) and a far one (0.5 m) as one PDF, on --paper (default: a4)");
+  starter->excludes("--size");
   command->add_flag("--force", arguments->force, "Replace files that exist");
-  AddCheckOptions(command, arguments.get())->excludes(paper)->excludes(output);
+  AddCheckOptions(command, arguments.get())->excludes(paper)->excludes(output)->excludes(starter);
   command->callback([arguments] { RunPrint(*arguments); });
 }
 

@@ -64,6 +64,46 @@ TEST_F(PrintCommandTest, EveryPadIsPrinted) {
                    "did you mean 'helipad'?");
 }
 
+// A sheet of A4, dark around it as on a floor, from 1 m above.
+TEST_F(PrintCommandTest, APadOfAnySizeFitsOneSheetAndIsDetected) {
+  folder_.Write("board.yaml", "tags:\n  - {family: tag36h11, id: 3, size_m: 0.6}\n");
+  const std::string board = " --set landing.target.nested.board=" + folder_ / "board.yaml";
+  for (const std::string kind : {"ring-cross", "apriltag", "aruco", "nested", "helipad"}) {
+    const std::string pdf = folder_ / (kind + ".pdf");
+    const Outcome printed =
+        Succeed("print --target " + kind + board + " --size 0.16 --output " + pdf);
+    EXPECT_THAT(printed.err, HasSubstr("1 sheet\nPrint it on a4")) << kind;
+    EXPECT_THAT(printed.err, HasSubstr("--target " + kind + " --target-size 0.16")) << kind;
+    const std::string image = folder_ / kind;
+    const std::string render =
+        fmt::format("pdftoppm -r 40 -gray -singlefile '{}' '{}'", pdf, image);
+    ASSERT_EQ(std::system(render.c_str()), 0) << render;
+    const cv::Mat sheet = ReadImage(image + ".pgm");
+    EXPECT_NEAR(sheet.cols, 0.210 / 0.0254 * 40, 1.5) << kind;
+    cv::Mat floor(960, 1280, CV_8UC1, 90);
+    sheet.copyTo(floor(cv::Rect(400, 200, sheet.cols, sheet.rows)));
+    const std::string photo = WriteTestImage(folder_, kind + ".png", floor);
+    const std::string land = "land " + photo + " --camera " + WriteCamera() + board;
+    EXPECT_THAT(Run(land + " --target " + kind + " --target-size 0.16").err,
+                HasSubstr("found in 1"))
+        << kind;
+  }
+}
+
+TEST_F(PrintCommandTest, ASizeThatNoSheetHoldsIsOnePage) {
+  const std::string pdf = folder_ / "large.pdf";
+  EXPECT_THAT(Succeed("print --size 1.2 --output " + pdf).err, Not(HasSubstr("sheet")));
+  ExpectInputError("print --size 160 --output " + folder_ / "x.pdf", "metres: 0.16?");
+  ExpectInputError("print --size -1 --output " + folder_ / "x.pdf", "size_m is -1");
+}
+
+TEST_F(PrintCommandTest, AStarterIsANearAndAFarPad) {
+  const Outcome printed = Succeed("print --starter --output " + folder_ / "starter.pdf");
+  EXPECT_THAT(printed.err, HasSubstr("1 sheet. Fly with it: kestrel fly ... --target-size 0.16"));
+  EXPECT_THAT(printed.err, HasSubstr("--target-size 0.5"));
+  EXPECT_EQ(Run("print --starter --size 0.3").status, 2);
+}
+
 TEST_F(PrintCommandTest, WhatIsPrintedIsDetectedAndRight) {
   ASSERT_EQ(std::system("command -v pdftoppm >/dev/null"), 0)
       << "pdftoppm is not there: scripts/install-deps";

@@ -9,13 +9,15 @@
 
 namespace kestrel {
 
-// The options --target and --target-id of several subcommands. Must live until the command line is
-// parsed.
+// The options --target, --target-id and --target-size of several subcommands. Must live until the
+// command line is parsed.
 struct TargetArguments {
   std::string kind;  // empty: as configured
   std::optional<int> id;
+  std::optional<double> size_m;
 
-  void AddTo(CLI::App* command);
+  // 'size_name': of the option for the size.
+  void AddTo(CLI::App* command, const std::string& size_name = "--target-size");
 
   // Adds settings, as of --set, over those that are there. 'section': the key of the target.
   void AppendTo(std::vector<std::string>* settings, const std::string& section) const;

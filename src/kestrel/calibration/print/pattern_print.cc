@@ -11,6 +11,7 @@
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "kestrel/calibration/print/canvas.h"
 #include "kestrel/core/base/error.h"
@@ -143,7 +144,23 @@ void DrawCutMarks(const Tiling& tiling, Canvas* canvas) {
   }
 }
 
-void DrawTile(const TargetPrint& print, const Tiling& tiling, int row, int column, Canvas* canvas) {
+// Returns the lines of text below a tile: its place, or what is on the one sheet.
+std::vector<std::string> LinesOf(const TiledPrint& pad, int row, int column) {
+  const Tiling& tiling = pad.tiling;
+  if (tiling.count() > 1) {
+    return {fmt::format(
+        "Sheet {}.{}: row {} of {}, column {} of {}. Print at 100 %, cut at the marks, glue edge "
+        "to edge.",
+        row + 1, column + 1, row + 1, tiling.rows, column + 1, tiling.columns)};
+  }
+  return {"Kestrel landing pad. " + pad.note,
+          fmt::format("{}", fmt::join(pad.print.dimensions, "; ")),
+          "Print at 100 % on matt paper, glue on a flat, stiff board that is white around it."};
+}
+
+void DrawTile(const TiledPrint& pad, int row, int column, Canvas* canvas) {
+  const TargetPrint& print = pad.print;
+  const Tiling& tiling = pad.tiling;
   canvas->Within(tiling.tile_on_sheet, 0, 1, [&] {
     canvas->Rectangle({0, 0}, tiling.tile);
     cairo_clip(canvas->cairo());
@@ -153,10 +170,12 @@ void DrawTile(const TargetPrint& print, const Tiling& tiling, int row, int colum
   DrawCutMarks(tiling, canvas);
   const double left = std::max(tiling.tile_on_sheet.x(), 0.01);
   const double bottom = tiling.sheet.y();
-  canvas->Text({left + 0.002, bottom - 0.0095}, 0.75 * kTextHeight_m,
-               fmt::format("Sheet {}.{}: row {} of {}, column {} of {}. Print at 100 %, cut at the "
-                           "marks, glue edge to edge.",
-                           row + 1, column + 1, row + 1, tiling.rows, column + 1, tiling.columns));
+  const std::vector<std::string> lines = LinesOf(pad, row, column);
+  const double height = 0.75 * kTextHeight_m;
+  DrawLines(
+      lines,
+      {left + 0.002, bottom - 0.0095 - 1.4 * height * (static_cast<double>(lines.size()) - 1)},
+      height, 0, canvas);
   const double ruler = RulerLength(print.board_size_m);
   constexpr double kRoom_m = 0.02;  // for the ruler's label
   if (tiling.sheet.x() >= 2 * 0.01 + ruler + kRoom_m) {
@@ -223,7 +242,9 @@ void DrawGrid(const TargetPrint& print, const Tiling& tiling, double line, Canva
   }
 }
 
-void DrawOverview(const TargetPrint& print, const Tiling& tiling, Canvas* canvas) {
+void DrawOverview(const TiledPrint& pad, Canvas* canvas) {
+  const TargetPrint& print = pad.print;
+  const Tiling& tiling = pad.tiling;
   std::vector<std::string> lines = print.dimensions;
   lines.insert(lines.begin(), "Kestrel landing pattern: " + SheetsInWords(print, tiling));
   lines.insert(
@@ -237,6 +258,7 @@ void DrawOverview(const TargetPrint& print, const Tiling& tiling, Canvas* canvas
   if (print.can_be_checked) {
     lines.emplace_back("5. Photograph it, all of it in view, and run: kestrel print --check PHOTO");
   }
+  if (!pad.note.empty()) lines.push_back(pad.note);
   constexpr double kBorder_m = 0.015;
   const double height = kTextHeight_m * std::min(tiling.sheet.x() / 0.21, 3.0);
   const double text = 1.4 * height * static_cast<double>(lines.size());
@@ -254,7 +276,7 @@ void DrawOverview(const TargetPrint& print, const Tiling& tiling, Canvas* canvas
 Canvas OnePage(Canvas::Format format, const TargetPrint& print, const std::string& file) {
   if (format == Canvas::Format::kPdf && print.board_size_m > kMaxPage_m) {
     throw InputError(
-        fmt::format("a board of {} m is more than a page can have, {} m: tile it (--paper)",
+        fmt::format("a board of {:.4g} m is more than a page can have, {:.4g} m: tile it (--paper)",
                     print.board_size_m, kMaxPage_m));
   }
   return Canvas(format, file, Vector2d::Constant(print.board_size_m));
@@ -322,26 +344,33 @@ void PrintPatternSvg(const TargetPrint& print, const std::string& file) {
   canvas.Finish();
 }
 
-void PrintTilesPdf(const TargetPrint& print, const Tiling& tiling, const std::string& file) {
-  Canvas canvas(Canvas::Format::kPdf, file, tiling.sheet);
-  DrawOverview(print, tiling, &canvas);
-  for (int row = 0; row < tiling.rows; ++row) {
-    for (int column = 0; column < tiling.columns; ++column) {
-      if (!HasPrint(print, tiling, row, column)) continue;
-      canvas.NextPage();
-      DrawTile(print, tiling, row, column, &canvas);
+void PrintTilesPdf(const std::vector<TiledPrint>& pads, const std::string& file) {
+  Canvas canvas(Canvas::Format::kPdf, file, pads.front().tiling.sheet);
+  bool is_first = true;
+  const auto add_page = [&](const auto& draw) {
+    if (!is_first) canvas.NextPage();
+    is_first = false;
+    draw();
+  };
+  for (const TiledPrint& pad : pads) {
+    const Tiling& tiling = pad.tiling;
+    if (tiling.count() > 1) add_page([&] { DrawOverview(pad, &canvas); });
+    for (int row = 0; row < tiling.rows; ++row) {
+      for (int column = 0; column < tiling.columns; ++column) {
+        if (!HasPrint(pad.print, tiling, row, column)) continue;
+        add_page([&] { DrawTile(pad, row, column, &canvas); });
+      }
     }
   }
   canvas.Finish();
 }
 
-void PrintOverviewSvg(const TargetPrint& print, const Tiling& tiling, const std::string& file) {
-  PrintSvg(tiling, file, [&](Canvas* canvas) { DrawOverview(print, tiling, canvas); });
+void PrintOverviewSvg(const TiledPrint& pad, const std::string& file) {
+  PrintSvg(pad.tiling, file, [&](Canvas* canvas) { DrawOverview(pad, canvas); });
 }
 
-void PrintTileSvg(const TargetPrint& print, const Tiling& tiling, int row, int column,
-                  const std::string& file) {
-  PrintSvg(tiling, file, [&](Canvas* canvas) { DrawTile(print, tiling, row, column, canvas); });
+void PrintTileSvg(const TiledPrint& pad, int row, int column, const std::string& file) {
+  PrintSvg(pad.tiling, file, [&](Canvas* canvas) { DrawTile(pad, row, column, canvas); });
 }
 
 }  // namespace kestrel

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "kestrel/calibration/print/tiling.h"
 #include "kestrel/vision/target/target_print.h"
@@ -26,12 +27,19 @@ double RulerLength(double board_size_m);
 void PrintPatternPdf(const TargetPrint& print, const std::string& file);
 void PrintPatternSvg(const TargetPrint& print, const std::string& file);
 
+// A pad and the sheets that it is cut into. 'note': a line beside it, such as how to fly with it.
+struct TiledPrint {
+  TargetPrint print;
+  Tiling tiling;
+  std::string note{};
+};
+
 // Write first an overview with the dimensions and instructions, then one page per tile that has
-// print, row by row, with cut marks, the tile's place and a ruler. An SVG has one page: the
-// overview, or a tile (row and column from 0).
-void PrintTilesPdf(const TargetPrint& print, const Tiling& tiling, const std::string& file);
-void PrintOverviewSvg(const TargetPrint& print, const Tiling& tiling, const std::string& file);
-void PrintTileSvg(const TargetPrint& print, const Tiling& tiling, int row, int column,
-                  const std::string& file);
+// print, row by row, with cut marks, the tile's place and a ruler; a pad on one sheet is that page
+// alone, with its dimensions. Several pads, on the same paper, follow each other. An SVG has one
+// page: the overview, or a tile (row and column from 0).
+void PrintTilesPdf(const std::vector<TiledPrint>& pads, const std::string& file);
+void PrintOverviewSvg(const TiledPrint& pad, const std::string& file);
+void PrintTileSvg(const TiledPrint& pad, int row, int column, const std::string& file);
 
 }  // namespace kestrel

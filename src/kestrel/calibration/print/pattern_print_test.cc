@@ -203,7 +203,7 @@ TEST_F(PatternPrintTest, TilesMeet) {
   cv::dilate(black, thicker, cv::Mat::ones(3, 3, CV_8U));
   for (const char* paper : {"a4", "a2"}) {
     const Tiling tiling = TileBoard(pattern.board_size_m, *PaperSize(paper));
-    PrintTilesPdf(PrintOf(pattern), tiling, folder_ / "tiles.pdf");
+    PrintTilesPdf({{PrintOf(pattern), tiling}}, folder_ / "tiles.pdf");
     const std::string command = fmt::format("pdftoppm -r {} -gray -f 2 '{}' '{}'", scale * kInch_m,
                                             folder_ / "tiles.pdf", folder_ / paper);
     ASSERT_EQ(std::system(command.c_str()), 0);

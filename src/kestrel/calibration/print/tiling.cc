@@ -24,16 +24,24 @@ constexpr double kMargin_m = 0.010;       // left, right and above
 constexpr double kLowerMargin_m = 0.015;  // with a line of text
 constexpr int kMaxSheets = 1000;
 
+// Returns the part of a sheet that a printer reaches, without the lines of text.
+Eigen::Vector2d RoomOn(const Eigen::Vector2d& sheet) {
+  return sheet - Eigen::Vector2d(2 * kMargin_m, kMargin_m + kLowerMargin_m);
+}
+
+Eigen::Vector2d PlaceOnSheet(const Eigen::Vector2d& tile, const Eigen::Vector2d& sheet) {
+  return {0.5 * (sheet.x() - tile.x()), kMargin_m};
+}
+
 Tiling TileOver(double board_size_m, const Eigen::Vector2d& sheet) {
-  const Eigen::Vector2d room = sheet - Eigen::Vector2d(2 * kMargin_m, kMargin_m + kLowerMargin_m);
-  const Eigen::Array2d count = (board_size_m / room.array()).ceil();
+  const Eigen::Array2d count = (board_size_m / RoomOn(sheet).array()).ceil();
   Tiling tiling;
   tiling.sheet = sheet;
   tiling.tile = board_size_m / count;
-  tiling.tile_on_sheet = {0.5 * (sheet.x() - tiling.tile.x()), kMargin_m};
+  tiling.tile_on_sheet = PlaceOnSheet(tiling.tile, sheet);
   if (!(count.prod() <= kMaxSheets)) {
     throw InputError(fmt::format(
-        "a board of {} m takes {} sheets of this paper, expected at most {}: take a larger one",
+        "a board of {:.4g} m takes {} sheets of this paper, expected at most {}: take a larger one",
         board_size_m, count.prod(), kMaxSheets));
   }
   tiling.columns = static_cast<int>(count.x());
@@ -60,6 +68,18 @@ Tiling TileBoard(double board_size_m, const Eigen::Vector2d& paper) {
   const Tiling upright = TileOver(board_size_m, paper);
   const Tiling on_its_side = TileOver(board_size_m, paper.reverse());
   return on_its_side.count() < upright.count() ? on_its_side : upright;
+}
+
+std::optional<Tiling> OneSheet(double board_size_m, double ink_m, const Eigen::Vector2d& paper) {
+  const Eigen::Vector2d room = RoomOn(paper);
+  if (ink_m > room.minCoeff()) return std::nullopt;
+  Tiling sheet;
+  sheet.sheet = paper;
+  sheet.tile = room.cwiseMin(board_size_m);
+  sheet.tile_on_sheet = PlaceOnSheet(sheet.tile, paper);
+  sheet.first_tile = 0.5 * (Eigen::Vector2d::Constant(board_size_m) - sheet.tile);
+  sheet.rows = sheet.columns = 1;
+  return sheet;
 }
 
 }  // namespace kestrel

@@ -33,6 +33,17 @@ TEST(TilingTest, TurnsTheSheetWhereThatSavesSome) {
   }
 }
 
+TEST(TilingTest, OneSheetHoldsTheMiddleOfTheBoard) {
+  const auto sheet = OneSheet(0.24, 0.16, *PaperSize("a4"));
+  ASSERT_TRUE(sheet);
+  EXPECT_EQ(sheet->count(), 1);
+  EXPECT_NEAR(sheet->tile.x(), 0.19, 1e-9) << "the white margin is cut off";
+  EXPECT_NEAR(sheet->tile.y(), 0.24, 1e-9);
+  EXPECT_NEAR(sheet->TileOnBoard(0, 0).x(), 0.025, 1e-9);
+  EXPECT_NEAR(sheet->tile_on_sheet.x(), 0.01, 1e-9);
+  EXPECT_FALSE(OneSheet(0.3, 0.191, *PaperSize("a4")));
+}
+
 TEST(TilingTest, RefusesMoreSheetsThanAnyoneGlues) {
   EXPECT_THROW(TileBoard(50, *PaperSize("a4")), InputError);
   EXPECT_FALSE(PaperSize("a5"));

@@ -77,19 +77,21 @@ std::vector<std::string> Helipad::Validate() const {
   if (frame == "none") {
     if (std::max(height_m, width_m) > board_size_m) {
       violations.push_back(
-          fmt::format("board_size_m is {}, expected room for the H", board_size_m));
+          fmt::format("board_size_m is {:.7g}, expected room for the H", board_size_m));
     }
     return violations;
   }
   const double least =
       (frame == "circle" ? diagonal : std::max(height_m, width_m)) + 2 * frame_width_m;
   if (!(frame_size_m > least)) {
-    violations.push_back(fmt::format(
-        "frame_size_m is {}, expected more than {:.3g} for the H within it", frame_size_m, least));
+    violations.push_back(
+        fmt::format("frame_size_m is {:.7g}, expected more than {:.3g} for the H within it",
+                    frame_size_m, least));
   }
   if (!(board_size_m >= frame_size_m)) {
-    violations.push_back(fmt::format("board_size_m is {}, expected at least frame_size_m, {}",
-                                     board_size_m, frame_size_m));
+    violations.push_back(
+        fmt::format("board_size_m is {:.7g}, expected at least frame_size_m, {:.7g}", board_size_m,
+                    frame_size_m));
   }
   return violations;
 }
@@ -102,6 +104,16 @@ std::vector<Vector2d> CornersOf(const Helipad& helipad) {
   return {{-right, top},  {-inside, top},  {-inside, bar},  {inside, bar},
           {inside, top},  {right, top},    {right, -top},   {inside, -top},
           {inside, -bar}, {-inside, -bar}, {-inside, -top}, {-right, -top}};
+}
+
+Helipad Scaled(const Helipad& helipad, double factor) {
+  Helipad scaled = helipad;
+  for (double Helipad::*const length :
+       {&Helipad::height_m, &Helipad::width_m, &Helipad::stroke_m, &Helipad::frame_size_m,
+        &Helipad::frame_width_m, &Helipad::board_size_m}) {
+    scaled.*length *= factor;
+  }
+  return scaled;
 }
 
 TargetPrint PrintOf(const Helipad& helipad) {

@@ -44,6 +44,9 @@ struct Helipad {
 // Returns the twelve corners of the H, clockwise from the upper left.
 std::vector<Eigen::Vector2d> CornersOf(const Helipad& helipad);
 
+// Returns the helipad with all lengths multiplied by 'factor'.
+Helipad Scaled(const Helipad& helipad, double factor);
+
 TargetPrint PrintOf(const Helipad& helipad);
 
 // Returns the edges: the frame's outer one, where there is a frame, and that of the H.

@@ -55,7 +55,8 @@ std::vector<std::string> LandingPattern::Validate() const {
   std::vector<std::string> violations;
   const auto require = [&violations](bool holds, const char* key, double value,
                                      const std::string& expected) {
-    if (!holds) violations.push_back(fmt::format("{} is {}, expected {}", key, value, expected));
+    if (!holds)
+      violations.push_back(fmt::format("{} is {:.7g}, expected {}", key, value, expected));
   };
   RequireMetres(outer_diameter_m, "outer_diameter_m", &violations);
   RequireMetres(ring_width_m, "ring_width_m", &violations);
@@ -75,6 +76,14 @@ std::vector<std::string> LandingPattern::Validate() const {
   require(board_size_m >= outer_diameter_m, "board_size_m", board_size_m,
           fmt::format("at least the outer diameter, {}", outer_diameter_m));
   return violations;
+}
+
+LandingPattern Scaled(const LandingPattern& pattern, double factor) {
+  return {.outer_diameter_m = factor * pattern.outer_diameter_m,
+          .ring_width_m = factor * pattern.ring_width_m,
+          .arm_width_m = factor * pattern.arm_width_m,
+          .arm_half_length_m = factor * pattern.arm_half_length_m,
+          .board_size_m = factor * pattern.board_size_m};
 }
 
 TargetShape ShapeOf(const LandingPattern& pattern) {

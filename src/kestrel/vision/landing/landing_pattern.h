@@ -40,6 +40,9 @@ struct LandingPattern {
   std::vector<std::string> Validate() const;
 };
 
+// Returns the pattern with all dimensions multiplied by 'factor'.
+LandingPattern Scaled(const LandingPattern& pattern, double factor);
+
 // Returns the pattern as a pad: the edges of ring and cross.
 TargetShape ShapeOf(const LandingPattern& pattern);
 

@@ -196,6 +196,21 @@ std::vector<std::string> TagBoard::Validate() const {
   return violations;
 }
 
+double TagBoard::LargestSize() const {
+  double largest = 0;
+  for (const BoardTag& tag : tags) largest = std::max(largest, tag.size_m);
+  return largest;
+}
+
+TagBoard TagBoard::Scaled(double factor) const {
+  TagBoard scaled = *this;
+  for (BoardTag& tag : scaled.tags) {
+    tag.size_m *= factor;
+    tag.board_from_tag.translation *= factor;
+  }
+  return scaled;
+}
+
 std::vector<PrintedTag> TagBoard::Printed() const {
   std::vector<PrintedTag> printed;
   for (const BoardTag& tag : tags) printed.push_back(Print(tag));

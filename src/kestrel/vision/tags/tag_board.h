@@ -52,6 +52,11 @@ struct TagBoard {
   // that contradict each other where no tag is said to lie over the other.
   std::vector<std::string> Validate() const;
 
+  // Returns the side of the largest tag (m).
+  double LargestSize() const;
+  // Returns the board with all sizes and places multiplied by 'factor'.
+  TagBoard Scaled(double factor) const;
+
   // Returns the tags as they are printed, in their order. The board must be valid.
   std::vector<PrintedTag> Printed() const;
 };

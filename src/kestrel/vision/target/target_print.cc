@@ -54,6 +54,15 @@ double HalfExtent(const TargetPrint& print) {
   return extent;
 }
 
+double InkSize(const TargetPrint& print) {
+  if (print.board_gray < 1) return print.board_size_m;
+  double reach = 0;
+  for (const PrintShape& shape : print.shapes) {
+    if (shape.gray < 1) reach = std::max(reach, Reach(Moved(shape, print.board_heading, {0, 0})));
+  }
+  return 2 * reach;
+}
+
 double ReachOnBoard(const TargetPrint& print, const Eigen::Vector2d& point) {
   return (Eigen::Rotation2Dd(print.board_heading) * point).cwiseAbs().maxCoeff();
 }

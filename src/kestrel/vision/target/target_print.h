@@ -49,6 +49,10 @@ PrintShape Moved(const PrintShape& shape, double heading, const Eigen::Vector2d&
 // square, along the axes of P, that holds it.
 double HalfExtent(const TargetPrint& print);
 
+// Returns the side of the square, along the board's sides, that holds all that is printed on a
+// white board; of another board, its side.
+double InkSize(const TargetPrint& print);
+
 // Returns how far a point of P is from the centre, along the board's sides: at most half the side
 // of the board where the point is on it.
 double ReachOnBoard(const TargetPrint& print, const Eigen::Vector2d& point);

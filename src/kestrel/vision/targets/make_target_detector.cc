@@ -10,6 +10,7 @@
 
 #include "kestrel/core/base/edit_distance.h"
 #include "kestrel/core/base/options.h"
+#include "kestrel/core/base/require_metres.h"
 #include "kestrel/core/base/violations.h"
 #include "kestrel/vision/tags/plain_tags.h"
 #include "kestrel/vision/tags/tag_print.h"
@@ -37,11 +38,20 @@ struct TargetKind {
 
 std::vector<std::string> NoWarnings(const TargetOptions& /*target*/) { return {}; }
 
+bool HasSize(const TargetOptions& target) { return target.size_m != TargetOptions::kOwnSize; }
+
+LandingPattern PatternOf(const TargetOptions& target, const LandingPattern& ring) {
+  return HasSize(target) ? Scaled(ring, target.size_m / ring.outer_diameter_m) : ring;
+}
+
 std::unique_ptr<const TargetDetector> MakeRingCross(const CameraModel& camera,
                                                     const KindOptions& options) {
-  return std::make_unique<LandingPatternDetector>(camera, options.ring);
+  return std::make_unique<LandingPatternDetector>(camera,
+                                                  RingOfTarget(options.target, options.ring));
 }
-TargetShape ShapeOfRingCross(const KindOptions& options) { return ShapeOf(options.ring.pattern); }
+TargetShape ShapeOfRingCross(const KindOptions& options) {
+  return ShapeOf(PatternOf(options.target, options.ring.pattern));
+}
 
 // Adds a violation where an id is set for a kind that has none.
 void AddIdOfNone(const TargetOptions& target, std::vector<std::string>* violations) {
@@ -71,14 +81,20 @@ TagTargetOptions Nested(const TargetOptions& target) {
 using TagsOf = TagTargetOptions (*)(const TargetOptions&);
 
 template <TagsOf kTagsOf>
+TagBoard BoardOf(const TargetOptions& target) {
+  const TagBoard board = kTagsOf(target).Board();
+  return HasSize(target) ? board.Scaled(target.size_m / board.LargestSize()) : board;
+}
+
+template <TagsOf kTagsOf>
 std::unique_ptr<const TargetDetector> MakeTags(const CameraModel& camera,
                                                const KindOptions& options) {
-  return std::make_unique<TagBoardDetector>(camera, kTagsOf(options.target).Board(),
+  return std::make_unique<TagBoardDetector>(camera, BoardOf<kTagsOf>(options.target),
                                             options.target.tags);
 }
 template <TagsOf kTagsOf>
 TargetShape ShapeOfTags(const KindOptions& options) {
-  return ShapeOf(kTagsOf(options.target).Board());
+  return ShapeOf(BoardOf<kTagsOf>(options.target));
 }
 template <TagsOf kTagsOf>
 std::vector<std::string> ValidateTags(const TargetOptions& target) {
@@ -100,36 +116,52 @@ std::vector<std::string> ValidateNested(const TargetOptions& target) {
   return ValidateTags<Nested>(target);
 }
 
-TargetPrint PrintOfRingCross(const TargetOptions& /*target*/, const LandingPattern& ring) {
-  return PrintOf(ring);
+TargetPrint PrintOfRingCross(const TargetOptions& target, const LandingPattern& ring) {
+  return PrintOf(PatternOf(target, ring));
 }
 template <TagsOf kTagsOf>
 TargetPrint PrintOfTags(const TargetOptions& target, const LandingPattern& /*ring*/) {
-  return PrintOf(kTagsOf(target).Board());
+  return PrintOf(BoardOf<kTagsOf>(target));
 }
-// The tags have their places in the ring's frame.
+// The tags have their places in the ring's frame, and are scaled with it.
+TagBoard BoardWithRing(const TargetOptions& target, const LandingPattern& ring) {
+  const TagBoard board = Nested(target).Board();
+  return HasSize(target) ? board.Scaled(target.size_m / ring.outer_diameter_m) : board;
+}
 std::unique_ptr<const TargetDetector> MakeRingWithTags(const CameraModel& camera,
                                                        const KindOptions& options) {
-  return std::make_unique<RingWithTagsDetector>(
-      camera, options.ring, Nested(options.target).Board(), options.target.tags);
+  return std::make_unique<RingWithTagsDetector>(camera, RingOfTarget(options.target, options.ring),
+                                                BoardWithRing(options.target, options.ring.pattern),
+                                                options.target.tags);
 }
 TargetShape ShapeOfRingWithTags(const KindOptions& options) {
-  return ShapeOf(options.ring.pattern, Nested(options.target).Board());
+  return ShapeOf(PatternOf(options.target, options.ring.pattern),
+                 BoardWithRing(options.target, options.ring.pattern));
 }
 TargetPrint PrintOfRingWithTags(const TargetOptions& target, const LandingPattern& ring) {
-  TargetPrint print = PrintOf(ring);
-  PrintOver(PrintOf(Nested(target).Board()), &print);
+  TargetPrint print = PrintOf(PatternOf(target, ring));
+  PrintOver(PrintOf(BoardWithRing(target, ring)), &print);
   print.can_be_checked = false;
   return print;
 }
 
+HelipadDetectorOptions HelipadOf(const TargetOptions& target) {
+  HelipadDetectorOptions options = target.helipad;
+  if (!HasSize(target)) return options;
+  const double size_m = options.frame == "none" ? options.height_m : options.frame_size_m;
+  static_cast<Helipad&>(options) = Scaled(options, target.size_m / size_m);
+  return options;
+}
+
 std::unique_ptr<const TargetDetector> MakeHelipad(const CameraModel& camera,
                                                   const KindOptions& options) {
-  return std::make_unique<HelipadDetector>(camera, options.target.helipad);
+  return std::make_unique<HelipadDetector>(camera, HelipadOf(options.target));
 }
-TargetShape ShapeOfHelipad(const KindOptions& options) { return ShapeOf(options.target.helipad); }
+TargetShape ShapeOfHelipad(const KindOptions& options) {
+  return ShapeOf(HelipadOf(options.target));
+}
 TargetPrint PrintOfHelipad(const TargetOptions& target, const LandingPattern& /*ring*/) {
-  return PrintOf(target.helipad);
+  return PrintOf(HelipadOf(target));
 }
 std::vector<std::string> ValidateHelipad(const TargetOptions& target) {
   std::vector<std::string> violations = target.helipad.Validate();
@@ -172,7 +204,11 @@ std::optional<int> HeadingSymmetryOf(std::string_view kind) {
 }
 
 std::vector<std::string> TargetOptions::Validate() const {
-  if (const TargetKind* known = FindKind(kind)) return known->validate(*this);
+  if (const TargetKind* known = FindKind(kind)) {
+    std::vector<std::string> violations = known->validate(*this);
+    if (HasSize(*this)) RequireMetres(size_m, "size_m", &violations);
+    return violations;
+  }
   const std::vector<std::string> names = TargetKinds();
   const std::string& nearest = NearestName(kind, names);
   return {
@@ -181,6 +217,13 @@ std::vector<std::string> TargetOptions::Validate() const {
 }
 
 std::vector<std::string> TargetOptions::Warnings() const { return FindKind(kind)->warn(*this); }
+
+LandingPatternDetectorOptions RingOfTarget(const TargetOptions& target,
+                                           const LandingPatternDetectorOptions& ring) {
+  LandingPatternDetectorOptions sized = ring;
+  sized.pattern = PatternOf(target, ring.pattern);
+  return sized;
+}
 
 std::unique_ptr<const TargetDetector> MakeTargetDetector(
     const CameraModel& camera, const TargetOptions& target,

@@ -35,9 +35,14 @@ struct NestedTargetOptions {
 // The target. The options of the ring with a cross are LandingPatternDetectorOptions.
 struct TargetOptions {
   static constexpr int kOwnId = -1;
+  static constexpr double kOwnSize = 0;
 
   std::string kind = "ring-cross";
   int id = kOwnId;  // of the pad, over that of the options of a kind that is one tag
+  // m, of the pad, whose dimensions all are scaled to it: the ring's outer diameter, the side of
+  // the tag or of the largest tag of a board, the outer size of a helipad's frame or the height of
+  // its H.
+  double size_m = kOwnSize;
   TagTargetOptions apriltag;
   TagTargetOptions aruco{.family = "aruco_4x4_50", .board = ""};
   NestedTargetOptions nested;
@@ -52,6 +57,10 @@ struct TargetOptions {
         "apriltag, aruco, nested, helipad");
     visitor("id", self.id, "",
             "id of the pad where it is one tag (apriltag, aruco); -1: as the kind's options say");
+    visitor("size_m", self.size_m, "m",
+            "size to which all dimensions of the pad are scaled: outer diameter of the ring, side "
+            "of the (largest) tag, size of the helipad's frame, or of its H without one; 0: the "
+            "dimensions are those of the kind's options");
     visitor.Group("apriltag", self.apriltag);
     visitor.Group("aruco", self.aruco);
     visitor.Group("nested", self.nested);
@@ -70,6 +79,10 @@ std::vector<std::string> TargetKinds();
 // Returns under how many headings a pad of this kind looks the same: 1 where it has one heading.
 // Nothing for an unknown kind.
 std::optional<int> HeadingSymmetryOf(std::string_view kind);
+
+// Returns the ring's options, its pattern scaled to the target's size where it has one.
+LandingPatternDetectorOptions RingOfTarget(const TargetOptions& target,
+                                           const LandingPatternDetectorOptions& ring);
 
 // Returns the detector of the target. 'ring': options of the kind "ring-cross". Throws InputError
 // when the options or the camera are not valid.

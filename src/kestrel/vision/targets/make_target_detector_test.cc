@@ -38,6 +38,27 @@ TEST_F(MakeTargetDetectorTest, TheOptionsOfTheRingAreUsed) {
   EXPECT_THROW(MakeTargetDetector(camera_, {}, ring), InputError);
 }
 
+TEST_F(MakeTargetDetectorTest, ASizeScalesPadsOfAllKinds) {
+  for (const char* kind : {"ring-cross", "apriltag", "aruco", "helipad"}) {
+    TargetOptions target;
+    target.kind = kind;
+    const TargetPrint own = PrintOfTarget(target, {});
+    target.size_m = 0.5 * (target.kind == "ring-cross" ? 1.0
+                           : target.kind == "helipad"  ? 1.5
+                                                       : 0.5);
+    const TargetPrint half = PrintOfTarget(target, {});
+    EXPECT_NEAR(half.board_size_m, 0.5 * own.board_size_m, 1e-12) << kind;
+    EXPECT_NEAR(InkSize(half), 0.5 * InkSize(own), 1e-12) << kind;
+    EXPECT_NEAR(MakeTargetDetector(camera_, target, {})->shape().diameter_m,
+                ShapeOfTarget(target, {}).diameter_m, 1e-12)
+        << kind;
+    target.size_m = 160;
+    EXPECT_THAT(target.Validate(), ElementsAre("size_m is 160, expected metres: 0.16?"));
+    target.size_m = -1;
+    EXPECT_THAT(target.Validate(), ElementsAre("size_m is -1, expected more than 0"));
+  }
+}
+
 TEST_F(MakeTargetDetectorTest, AnUnknownKindIsAnErrorThatNamesTheKinds) {
   TargetOptions target;
   SetOption("kind=ring-cros", &target);
