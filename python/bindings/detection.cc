@@ -207,7 +207,7 @@ std::string InWords(const LandingDetection& detection) {
 
 std::string InWords(const LandingReport& report) {
   if (report.detection) return "found " + InWords(*report.detection);
-  return fmt::format("nothing found, {}: {}", ToString(report.reached), report.reason);
+  return fmt::format("not found: {}", MissInWords(report));
 }
 
 void BindDetection(py::module_& module) {

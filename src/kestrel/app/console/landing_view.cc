@@ -109,10 +109,6 @@ std::string InWords(const LandingDetection& found) {
                   : InWords(found.method);
 }
 
-std::string WhyNot(const LandingReport& report) {
-  return fmt::format("{}: {}", ToString(report.reached), report.reason);
-}
-
 std::string MisfitInWords(const LandingDetection& detection) {
   if (detection.misfit_px == 0) return "";
   return fmt::format("{:.2f} px{}", detection.misfit_px,
@@ -213,7 +209,7 @@ ConsoleStatus LandingStatus(const LandingObservation& observation) {
   ConsoleStatus status;
   status.state = ToString(observation.track_state);
   if (!report.detection) {
-    status.reason = "not found: " + WhyNot(report);
+    status.reason = "not found: " + MissInWords(observation);
   } else if (observation.fate == MeasurementFate::kFarFromTrack) {
     status.reason = "found, but far from where the track has it";
   } else if (report.detection->is_misfit()) {
@@ -229,7 +225,7 @@ ConsoleStatus LandingStatus(const LandingObservation& observation) {
 std::vector<ConsoleFact> LandingFacts(const LandingObservation& observation) {
   const auto& detection = observation.report.detection;
   if (!detection)
-    return {{"found", "no, " + WhyNot(observation.report)},
+    return {{"found", "no, " + MissInWords(observation)},
             {"method", ""},
             {"quality", ""},
             {"misfit", ""}};

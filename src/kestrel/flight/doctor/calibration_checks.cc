@@ -136,8 +136,10 @@ Finding CheckCalibrationByPattern(const VisionObservations& vision) {
   if (misfits.size() < kFewest) {
     return NotChecked(check,
                       fmt::format("pattern in view in {} of {} images, with edges to "
-                                  "measure in {}",
-                                  vision.patterns.size(), vision.frames, misfits.size()),
+                                  "measure in {}{}{}",
+                                  vision.patterns.size(), vision.frames, misfits.size(),
+                                  vision.other_tag ? "; " : "",
+                                  vision.other_tag ? InWords(*vision.other_tag) : ""),
                       "hold the camera 1 to 4 m above the pattern");
   }
   std::string measured = fmt::format("in {} images misfit ", misfits.size());

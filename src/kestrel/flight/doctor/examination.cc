@@ -106,6 +106,7 @@ void Examination::Look(const Frame& frame) {
   const Time taken = frame.time + ClockOffsetOf(parts_.calibration);
   latency_s_.push_back(ToSeconds(Now() - taken));
   qualities_.push_back(MeasureImageQuality(frame.image));
+  other_tag_ = seen.other_tag;
   const auto& detection = seen.report.detection;
   if (!detection) return;
   PatternSample sample = PatternSampleOf(*detection);
@@ -198,6 +199,7 @@ void Examination::SummarizeVision(VisionObservations* vision) const {
   vision->frames = static_cast<int>(detect_s_.size());
   vision->dropped_frames = static_cast<int>(events_.counters().dropped_frames);
   vision->patterns = patterns_;
+  vision->other_tag = other_tag_;
   vision->focal = pipeline_->calibration_monitor().Focal();
   vision->focal_contradiction = pipeline_->calibration_monitor().Contradiction();
   if (detect_s_.empty()) return;

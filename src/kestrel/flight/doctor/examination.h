@@ -73,6 +73,7 @@ class Examination {
   // Used by the vision thread.
   std::vector<ImageQuality> qualities_;
   std::vector<PatternSample> patterns_;
+  std::optional<OtherTag> other_tag_;
   std::vector<double> detect_s_;
   std::vector<double> latency_s_;
   // Used by the link's thread.

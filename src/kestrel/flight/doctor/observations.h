@@ -17,6 +17,7 @@
 #include "kestrel/flight/doctor/parameter_values.h"
 #include "kestrel/flight/session/live_source.h"
 #include "kestrel/vision/pipeline/calibration_monitor.h"
+#include "kestrel/vision/pipeline/landing_pipeline.h"
 
 // Input of the checks: what camera, autopilot and computer showed in some seconds. The checks are
 // functions of these alone.
@@ -69,6 +70,7 @@ struct VisionObservations {
   int frames = 0;          // processed
   int dropped_frames = 0;  // while the frame before was still processed
   std::vector<PatternSample> patterns;
+  std::optional<OtherTag> other_tag = {};          // seen where the pattern never was
   std::optional<FocalFactor> focal;                // their estimate of the focal length
   std::optional<FocalFactor> focal_contradiction;  // the same, where it contradicts the calibration
   double detect_s = 0;                             // median and

@@ -177,6 +177,10 @@ void FlightProgram::See() {
     latency_.step(kDetection).Add(snapshot.detect_time);
     frames_ = snapshot.frames;
     detections_ = snapshot.detections;
+    if (snapshot.other_tag) {
+      const std::lock_guard other_lock(other_tag_mutex_);
+      other_tag_ = snapshot.other_tag;
+    }
     track_.Set(snapshot);
     if (parts_.connection != nullptr) parts_.connection->Wake();
     WarnOnce();
@@ -380,6 +384,10 @@ std::string FlightProgram::State() const {
   const CaptureCounters capture = parts_.source->counters();
   std::string state =
       fmt::format("{} frames, {} with the target", frames_.load(), detections_.load());
+  {
+    const std::lock_guard lock(other_tag_mutex_);
+    if (other_tag_ && detections_ == 0) state += fmt::format(" ({})", InWords(*other_tag_));
+  }
   if (capture.missed > 0) state += fmt::format(", {} missed", capture.missed);
   if (parts_.autopilot == nullptr) return state;
   state += fmt::format("; target {}", ToString(phase_.load()));

@@ -111,6 +111,8 @@ class FlightProgram {
   std::function<void(const std::string&)> say_;
   LiveEvents events_;
   LatestValue<TrackSnapshot> track_;
+  mutable std::mutex other_tag_mutex_;
+  std::optional<OtherTag> other_tag_;  // instead of the target, for the state in words
   LatestValue<PoseSample> source_pose_;
   PoseHistory poses_;  // from the link
   LatencyStatistics latency_;

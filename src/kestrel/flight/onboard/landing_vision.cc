@@ -55,6 +55,7 @@ TrackSnapshot LandingVision::Process(const Frame& frame, ObservationSink* sink) 
   snapshot_.detect_time = observation.detect_time;
   ++snapshot_.frames;
   if (observation.report.detection) ++snapshot_.detections;
+  snapshot_.other_tag = observation.other_tag;
   if (exposure_) ControlExposure(frame.image, observation);
   if (detections_) results_.Push({frame.name, observation});
   if (sink != nullptr && sink->IsWanted()) {
@@ -126,7 +127,9 @@ bool LandingVision::WriteResults() {
 }
 
 std::string LandingVision::Found() const {
-  return fmt::format("pattern found in {}", snapshot_.detections);
+  const auto& other = snapshot_.other_tag;
+  return fmt::format("pattern found in {}{}", snapshot_.detections,
+                     other ? fmt::format(" ({})", InWords(*other)) : "");
 }
 
 }  // namespace kestrel

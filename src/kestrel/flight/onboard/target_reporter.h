@@ -13,6 +13,7 @@
 #include "kestrel/core/poses/pose_history.h"
 #include "kestrel/flight/guidance/contact_detector.h"
 #include "kestrel/flight/session/flight_report.h"
+#include "kestrel/vision/pipeline/landing_pipeline.h"
 #include "kestrel/vision/tracking/target_tracker.h"
 
 namespace kestrel {
@@ -26,8 +27,9 @@ struct TrackSnapshot {
   // The target in this frame alone, seen from the UAV's pose at that time.
   std::optional<TargetReport> sighting;
   Duration detect_time{};
-  int frames = 0;      // so far
-  int detections = 0;  // frames that showed the target
+  int frames = 0;                          // so far
+  int detections = 0;                      // frames that showed the target
+  std::optional<OtherTag> other_tag = {};  // as LandingObservation's
 };
 
 struct TargetReporterOptions {

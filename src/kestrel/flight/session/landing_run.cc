@@ -36,6 +36,7 @@ Observation LandingRun::Process(const Frame& frame) {
   LandingObservation seen = pipeline_.Process(frame.image, frame.time);
   ++poses_[seen.pose];
   found_ += seen.report.detection.has_value();
+  other_tag_ = seen.other_tag;
   return {frame, std::move(seen)};
 }
 
@@ -57,7 +58,10 @@ std::string LandingRun::Warning() const {
                      altitude_m_.value_or(0) - excess->difference);
 }
 
-std::string LandingRun::Found() const { return fmt::format("pattern found in {}", found_); }
+std::string LandingRun::Found() const {
+  return fmt::format("pattern found in {}{}", found_,
+                     other_tag_ ? fmt::format(" ({})", InWords(*other_tag_)) : "");
+}
 
 std::string LandingRun::Remarks() const {
   const double focal_px = pipeline_.detector().camera().intrinsics().fx_px;

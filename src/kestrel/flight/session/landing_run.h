@@ -41,6 +41,7 @@ class LandingRun : public Vision {
   bool is_lens_unknown_;
   std::map<PoseLookup, std::size_t> poses_;
   std::size_t found_ = 0;
+  std::optional<OtherTag> other_tag_;
 };
 
 }  // namespace kestrel

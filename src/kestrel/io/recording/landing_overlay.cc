@@ -194,7 +194,7 @@ cv::Mat DrawLandingOverlay(const cv::Mat& image, const CameraModel& camera,
     if (!report.detection->is_misfit())
       canvas.Write("yellow: the pad", kYellow, has_path ? -2 : -1);
   } else {
-    canvas.Write(fmt::format("not found: {}: {}", ToString(report.reached), report.reason), kRed);
+    canvas.Write("not found: " + MissInWords(observation), kRed);
   }
   return canvas.image();
 }

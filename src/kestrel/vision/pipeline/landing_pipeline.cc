@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "kestrel/core/base/options.h"
 #include "kestrel/core/base/violations.h"
 #include "kestrel/vision/pipeline/calibration_monitor.h"
@@ -36,6 +38,17 @@ std::vector<std::string> LandingPipelineOptions::Validate() const {
 
 const char* ToString(PositionMethod method) {
   return method == PositionMethod::kSize ? "size" : "altitude";
+}
+
+std::string InWords(const OtherTag& other) {
+  return fmt::format("no {0} {1}; {0} {2} was seen in {3} frame{4}", other.family, other.wanted_id,
+                     other.id, other.frames, other.frames == 1 ? "" : "s");
+}
+
+std::string MissInWords(const LandingObservation& observation) {
+  if (observation.other_tag) return InWords(*observation.other_tag);
+  return std::string(
+      MissInWords(observation.report, observation.track_state == TrackState::kTracking));
 }
 
 class LandingPipeline::Impl {
@@ -74,7 +87,16 @@ class LandingPipeline::Impl {
     std::optional<std::int32_t> id;
   };
 
+  // The search for tags of the wrong id, and the memory of it.
+  struct Others {
+    OtherTagFinder finder;
+    OtherTagBuffers buffers;
+    std::optional<OtherTag> seen;
+  };
+  static std::optional<Others> OthersOf(const CameraModel& camera, const TargetOptions& target);
+
   void Detect(const cv::Mat& image, LandingObservation* observation);
+  void LookForOthers(const cv::Mat& image, LandingObservation* observation);
   ToldView WhatIsTold(const LandingObservation& observation) const;
   double AltitudeExcess() const;
   void AddErrorOfFocalLength(LandingDetection* detection) const;
@@ -90,6 +112,7 @@ class LandingPipeline::Impl {
   bool is_detector_own_;  // it does not come from the options
   std::unique_ptr<const TargetDetector> detector_;
   std::unique_ptr<TargetWorkspace> workspace_;
+  std::optional<Others> others_;  // nothing once the target was found
   CameraPoses poses_;
   double pose_time_sigma_s_ = 0;
   std::optional<double> altitude_m_;
@@ -115,15 +138,41 @@ LandingPipeline::Impl::Impl(const CameraCalibration& calibration,
       poses_(calibration, options.pose_capacity, DurationFromSeconds(options.pose_gap_s),
              Duration::zero(),
              {DurationFromSeconds(options.pose_extrapolation_s), options.unmodelled}),
-      tracker_(options.tracker) {}
+      tracker_(options.tracker) {
+  if (!is_detector_own_) others_ = OthersOf(detector_->camera(), options.target);
+}
 
 void LandingPipeline::Impl::ChangeOptions(const LandingPipelineOptions& options) {
   RequireValid(options);
   if (!is_detector_own_) {
     detector_ = MakeTargetDetector(detector_->camera(), options.target, options.detector);
     workspace_ = detector_->MakeWorkspace();
+    others_ = OthersOf(detector_->camera(), options.target);
   }
   options_ = options;
+}
+
+std::optional<LandingPipeline::Impl::Others> LandingPipeline::Impl::OthersOf(
+    const CameraModel& camera, const TargetOptions& target) {
+  std::optional<OtherTagFinder> finder = MakeOtherTagFinder(camera, target);
+  if (!finder) return std::nullopt;
+  OtherTagBuffers buffers = finder->MakeBuffers();
+  return Others{std::move(*finder), std::move(buffers), std::nullopt};
+}
+
+// A search that ran out of time leaves none for others.
+void LandingPipeline::Impl::LookForOthers(const cv::Mat& image, LandingObservation* observation) {
+  if (observation->report.detection) others_.reset();
+  if (!others_) return;
+  if (observation->report.next_step == 0) {
+    const OtherTagFinder& finder = others_->finder;
+    if (const auto id = finder.Find(image, &others_->buffers)) {
+      const std::size_t before =
+          others_->seen && others_->seen->id == *id ? others_->seen->frames : 0;
+      others_->seen = OtherTag{finder.family(), finder.id(), *id, before + 1};
+    }
+  }
+  observation->other_tag = others_->seen;
 }
 
 LandingObservation LandingPipeline::Impl::Process(const cv::Mat& image, Time time) {
@@ -135,6 +184,7 @@ LandingObservation LandingPipeline::Impl::Process(const cv::Mat& image, Time tim
   }
   observation.pose = poses_.Check(time);
   Detect(image, &observation);
+  LookForOthers(image, &observation);
   LocateInWorld(&observation);
   if (options_.still) return observation;
   Track(&observation);

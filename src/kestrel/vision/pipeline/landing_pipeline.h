@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -96,10 +98,22 @@ struct LandingPipelineOptions {
 enum class PositionMethod { kSize, kAltitude };
 const char* ToString(PositionMethod method);  // "size", "altitude"
 
+// Another tag of the target's family than the one that is looked for.
+struct OtherTag {
+  std::string_view family;  // static text
+  int wanted_id;
+  int id;
+  std::size_t frames;  // in which it was read, until now
+};
+// "no tag36h11 8; tag36h11 7 was seen in 25 frames"
+std::string InWords(const OtherTag& other);
+
 // The result of one frame.
 struct LandingObservation {
   Time time;             // of the frame, on the images' clock
   LandingReport report;  // the detection in the camera frame, or the reason of a miss
+  // With a miss, as long as the target was never found: another tag that was read.
+  std::optional<OtherTag> other_tag = {};
   std::optional<RigidTransform> world_from_camera;  // when there is a pose for this time
   PoseLookup pose = PoseLookup::kEmpty;             // whether there is a pose, or why not
   PoseUncertainty pose_uncertainty;                 // of a predicted pose
@@ -115,6 +129,10 @@ struct LandingObservation {
   std::optional<TargetEstimate> target;
   Duration detect_time{};  // of TargetDetector::Detect alone
 };
+
+// Returns in words why the target was not found in a frame: that another tag was, or else as
+// MissInWords(LandingReport).
+std::string MissInWords(const LandingObservation& observation);
 
 // Locates the pad of an image in the world and predicts it: pose history, mount and clock offset,
 // detector, and tracker, whose prediction is the next frame's hint. For use by one thread at a

@@ -17,6 +17,7 @@
 #include "kestrel/vision/pipeline/calibration_monitor.h"
 #include "kestrel/vision/pipeline/test_pattern.h"
 #include "kestrel/vision/pipeline/told_contradictions.h"
+#include "kestrel/vision/tags/test_tag_images.h"
 
 namespace kestrel {
 namespace {
@@ -65,6 +66,27 @@ TEST_F(LandingPipelineTest, WithoutPoseItKnowsThePositionInTheCameraOnly) {
   EXPECT_FALSE(observation.center_in_world);
   EXPECT_FALSE(observation.yaw_in_world);
   EXPECT_GT(observation.detect_time.count(), 0);
+}
+
+TEST_F(LandingPipelineTest, AnotherTagOfTheFamilyIsNamed) {
+  SetOption("target.kind=apriltag", &options_);
+  SetOption("target.id=8", &options_);
+  LandingPipeline pipeline(calibration_, options_);
+  const auto image_of = [this](int id) {
+    BoardTag tag;
+    tag.id = id;
+    return TagRenderer(CameraModel(calibration_.intrinsics))
+        .Render(TagBoard{{tag}}.Printed(), BoardBelow(2, {0.1, 0}, 0.4, {0.05, 0, 0}), {}, 1);
+  };
+  const cv::Mat seven = image_of(7);
+  EXPECT_EQ(MissInWords(pipeline.Process(seven, kTime)),
+            "no tag36h11 8; tag36h11 7 was seen in 1 frame");
+  EXPECT_EQ(MissInWords(pipeline.Process(seven, kTime + std::chrono::milliseconds(40))),
+            "no tag36h11 8; tag36h11 7 was seen in 2 frames");
+  // From the first detection on it is clear which pad is meant.
+  EXPECT_TRUE(
+      pipeline.Process(image_of(8), kTime + std::chrono::milliseconds(80)).report.detection);
+  EXPECT_FALSE(pipeline.Process(seven, kTime + std::chrono::milliseconds(120)).other_tag);
 }
 
 TEST_F(LandingPipelineTest, LocatesInTheWorldBySize) {

@@ -45,4 +45,12 @@ const char* ToString(LandingStage stage) {
   return "";
 }
 
+std::string_view MissInWords(const LandingReport& report, bool is_expected) {
+  // An image without contrast, or one that is none of this camera, is no view of the ground at all.
+  const bool is_view = report.reached > LandingStage::kBinarize;
+  const bool is_like_pad = report.reached >= LandingStage::kLocate || report.is_another_pad;
+  if (is_view && !is_like_pad && !is_expected) return "not in view";
+  return report.reason;
+}
+
 }  // namespace kestrel

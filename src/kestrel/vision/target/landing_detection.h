@@ -129,10 +129,16 @@ struct LandingReport {
   std::optional<LandingDetection> detection;
   LandingStage reached = LandingStage::kBinarize;  // kFound, or where the best candidate fell
   std::string_view reason;                         // why it failed, static text; empty when found
+  bool is_another_pad = false;  // a pad of this kind is in view, but it is not this one
   std::array<std::int32_t, kLandingStageCount> candidates{};  // number that entered each stage
   std::array<std::int64_t, kLandingStageCount> stage_ns{};    // time spent in each stage
   // Step at which the search ran out of time, for the hint of the next frame; 0 when it did not.
   int next_step = 0;
 };
+
+// Returns in words why there is no detection, in those of the kind of pad: "not in view" unless a
+// candidate looked like the pad, or there is another pad. 'is_expected': the pad was there just
+// before, so that the stage where the best candidate fell is worth saying anyway.
+std::string_view MissInWords(const LandingReport& report, bool is_expected = false);
 
 }  // namespace kestrel

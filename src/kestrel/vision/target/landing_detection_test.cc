@@ -33,5 +33,23 @@ TEST(SeenParts, KeepsAsManyAsThereIsRoomFor) {
   EXPECT_EQ(parts.all().back().tag, SeenParts::kMost - 1);
 }
 
+TEST(MissInWords, OnlyWhatLooksLikeThePadIsInView) {
+  LandingReport report;
+  report.reason = "its own reason";
+  for (const LandingStage stage :
+       {LandingStage::kAreas, LandingStage::kRing, LandingStage::kCross, LandingStage::kMatch}) {
+    report.reached = stage;
+    EXPECT_EQ(MissInWords(report), "not in view") << ToString(stage);
+    EXPECT_EQ(MissInWords(report, /*is_expected=*/true), "its own reason") << ToString(stage);
+  }
+  report.is_another_pad = true;
+  EXPECT_EQ(MissInWords(report), "its own reason");
+  report.is_another_pad = false;
+  for (const LandingStage stage : {LandingStage::kBinarize, LandingStage::kLocate}) {
+    report.reached = stage;
+    EXPECT_EQ(MissInWords(report), "its own reason") << ToString(stage);
+  }
+}
+
 }  // namespace
 }  // namespace kestrel

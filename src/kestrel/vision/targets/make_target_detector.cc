@@ -34,6 +34,8 @@ struct TargetKind {
   // Violations of the kind's group of TargetOptions.
   std::vector<std::string> (*validate)(const TargetOptions&);
   std::vector<std::string> (*warn)(const TargetOptions&);
+  // The tags of a kind that has some; null where there are none.
+  TagTargetOptions (*tags)(const TargetOptions&);
 };
 
 std::vector<std::string> NoWarnings(const TargetOptions& /*target*/) { return {}; }
@@ -172,16 +174,17 @@ std::vector<std::string> ValidateHelipad(const TargetOptions& target) {
 // All kinds of pads, a line each.
 constexpr TargetKind kTargetKinds[] = {
     {"ring-cross", 4, MakeRingCross, ShapeOfRingCross, PrintOfRingCross, ValidateRingCross,
-     NoWarnings},
+     NoWarnings, nullptr},
     {"ring-with-tags", 1, MakeRingWithTags, ShapeOfRingWithTags, PrintOfRingWithTags,
-     ValidateNested, WarningsOfTags<Nested>},
+     ValidateNested, WarningsOfTags<Nested>, Nested},
     {"apriltag", 1, MakeTags<Apriltag>, ShapeOfTags<Apriltag>, PrintOfTags<Apriltag>,
-     ValidateTags<Apriltag>, WarningsOfTags<Apriltag>},
+     ValidateTags<Apriltag>, WarningsOfTags<Apriltag>, Apriltag},
     {"aruco", 1, MakeTags<Aruco>, ShapeOfTags<Aruco>, PrintOfTags<Aruco>, ValidateTags<Aruco>,
-     WarningsOfTags<Aruco>},
+     WarningsOfTags<Aruco>, Aruco},
     {"nested", 1, MakeTags<Nested>, ShapeOfTags<Nested>, PrintOfTags<Nested>, ValidateNested,
-     WarningsOfTags<Nested>},
-    {"helipad", 2, MakeHelipad, ShapeOfHelipad, PrintOfHelipad, ValidateHelipad, NoWarnings},
+     WarningsOfTags<Nested>, Nested},
+    {"helipad", 2, MakeHelipad, ShapeOfHelipad, PrintOfHelipad, ValidateHelipad, NoWarnings,
+     nullptr},
 };
 
 const TargetKind* FindKind(std::string_view name) {
@@ -230,6 +233,14 @@ std::unique_ptr<const TargetDetector> MakeTargetDetector(
     const LandingPatternDetectorOptions& ring) {
   RequireValid(target);
   return FindKind(target.kind)->make(camera, {target, ring});
+}
+
+std::optional<OtherTagFinder> MakeOtherTagFinder(const CameraModel& camera,
+                                                 const TargetOptions& target) {
+  RequireValid(target);
+  const TagsOf tags = FindKind(target.kind)->tags;
+  if (tags == nullptr) return std::nullopt;
+  return OtherTagFinder(camera, tags(target).Board());
 }
 
 TargetShape ShapeOfTarget(const TargetOptions& target, const LandingPatternDetectorOptions& ring) {

@@ -14,6 +14,7 @@
 #include "kestrel/vision/tags/tag_board_detector.h"
 #include "kestrel/vision/target/target_detector.h"
 #include "kestrel/vision/target/target_print.h"
+#include "kestrel/vision/targets/other_tag_finder.h"
 
 namespace kestrel {
 
@@ -89,6 +90,11 @@ LandingPatternDetectorOptions RingOfTarget(const TargetOptions& target,
 std::unique_ptr<const TargetDetector> MakeTargetDetector(const CameraModel& camera,
                                                          const TargetOptions& target,
                                                          const LandingPatternDetectorOptions& ring);
+
+// Returns what finds the other tags of the target's family; nothing for a target without tags.
+// Throws InputError when the options are not valid.
+std::optional<OtherTagFinder> MakeOtherTagFinder(const CameraModel& camera,
+                                                 const TargetOptions& target);
 
 // Returns the shape of that detector's pad. Throws InputError when the options of the target are
 // not valid.

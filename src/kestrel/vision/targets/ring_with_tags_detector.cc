@@ -127,6 +127,7 @@ void RingWithTagsDetector::Impl::Identify(const cv::Mat& image, BoardSamples* sa
   if (IsAnotherPad(image, ring_pose, heading, samples)) {
     report->detection.reset();
     report->reached = LandingStage::kMatch;
+    report->is_another_pad = true;
     report->reason = "the ring is another pad's: it has another tag of the family";
     return;
   }

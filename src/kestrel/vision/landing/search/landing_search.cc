@@ -43,7 +43,7 @@ LandingSearch::LandingSearch(const LandingModels& models, const cv::Mat& image,
 }
 
 LandingReport LandingSearch::Run() {
-  report_.reason = "no outline that could be a ring";
+  report_.reason = "not in view";
   TestPrediction();
   if (!choice_.IsSure()) TakeSteps();
   report_.detection = choice_.Detection();

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "kestrel/core/camera/camera_model.h"
+#include "kestrel/vision/tags/board_samples.h"
+#include "kestrel/vision/tags/tag_board.h"
+#include "kestrel/vision/tags/tag_quads.h"
+
+namespace kestrel {
+
+// Memory of one thread's search for other tags.
+struct OtherTagBuffers {
+  TagQuadBuffers quads;
+  BoardSamples samples;
+};
+
+// Finds a tag of the family of a board's first tag whose id is not on the board: another pad is in
+// view than the one that is looked for. Reports only what is read without a single wrong cell.
+class OtherTagFinder {
+ public:
+  // 'board' must be valid. One whose first tag is of no family has no other tags.
+  OtherTagFinder(const CameraModel& camera, const TagBoard& board);
+
+  // For example "tag36h11"; static text.
+  std::string_view family() const { return family_; }
+  // Id of the tag that is looked for.
+  int id() const { return id_; }
+
+  OtherTagBuffers MakeBuffers() const;
+
+  // Returns the id of another tag in the image, nothing when none is read. 'image': CV_8UC1 of the
+  // camera's size. Does not allocate once the buffers have warmed up.
+  std::optional<int> Find(const cv::Mat& image, OtherTagBuffers* buffers) const;
+
+ private:
+  struct Code {
+    std::uint64_t bits;  // of the data cells, row by row; true is white
+    int id;
+  };
+
+  std::uint64_t BitsOf(const TagGrid& grid) const;
+  std::optional<int> Read(const cv::Mat& image, const TagQuad& quad, BoardSamples* samples) const;
+  std::optional<int> IdOf(std::uint64_t bits) const;
+
+  CameraModel camera_;
+  TagQuadFinder finder_;
+  std::string_view family_;
+  int id_;
+  TagGrid layout_;                       // kNone where tags of the family differ
+  std::vector<std::size_t> data_cells_;  // of the grid, where they do
+  bool dark_inside_ = true;              // of the edge of the square that the size refers to
+  std::vector<Code> others_;             // in the order of their bits
+};
+
+}  // namespace kestrel
