@@ -45,16 +45,16 @@ cv::Point FixedPoint(const cv::Point2f& point) {
   return {fixed(point.x), fixed(point.y)};
 }
 
-void Draw(const std::vector<cv::Point2f>& points, const std::string& label, const cv::Scalar& color,
+void Draw(const OverlayShape& shape, const std::string& label, const cv::Scalar& color,
           cv::Mat* picture) {
-  if (points.empty()) return;
+  if (shape.outline.empty()) return;
   std::vector<cv::Point> outline;
-  for (const cv::Point2f& point : points) outline.push_back(FixedPoint(point));
+  for (const cv::Point2f& point : shape.outline) outline.push_back(FixedPoint(point));
   if (outline.size() == 1) {
     const cv::Point center(outline[0].x >> kFractionBits, outline[0].y >> kFractionBits);
     cv::drawMarker(*picture, center, color, cv::MARKER_CROSS, 2 * kMark_px, 1);
   } else {
-    cv::polylines(*picture, outline, /*isClosed=*/true, color, 1, cv::LINE_AA, kFractionBits);
+    cv::polylines(*picture, outline, shape.is_closed, color, 1, cv::LINE_AA, kFractionBits);
   }
   if (label.empty()) return;
   const cv::Point corner = cv::boundingRect(outline).tl();
@@ -77,10 +77,10 @@ cv::Mat WithShapes(const cv::Mat& image, const std::vector<OverlayShape>& shapes
     picture = image.clone();
   }
   for (const OverlayShape& shape : shapes) {
-    if (shape.run == 1) Draw(shape.outline, shape.label, ColorOf(shape.layer), &picture);
+    if (shape.run == 1) Draw(shape, shape.label, ColorOf(shape.layer), &picture);
     if (shape.run == 1 || !IsFound(shape.layer)) continue;
     const std::string label = shape.label.empty() ? "" : "second: " + shape.label;
-    Draw(shape.outline, label, ColorOf(OverlayLayer::kSecond), &picture);
+    Draw(shape, label, ColorOf(OverlayLayer::kSecond), &picture);
   }
   return picture;
 }

@@ -65,8 +65,9 @@ const foxglove::Color& ColorOf(OverlayLayer layer) {
 foxglove::PointsAnnotation OutlineMessage(Time time, const OverlayShape& shape) {
   foxglove::PointsAnnotation outline;
   outline.timestamp = time;
-  outline.type =
-      shape.outline.size() == 1 ? foxglove::PointsType::kPoints : foxglove::PointsType::kLineLoop;
+  outline.type = shape.outline.size() == 1 ? foxglove::PointsType::kPoints
+                 : shape.is_closed         ? foxglove::PointsType::kLineLoop
+                                           : foxglove::PointsType::kLineStrip;
   for (const cv::Point2f& point : shape.outline) {
     outline.points.push_back(PixelOf(point.x, point.y));
   }

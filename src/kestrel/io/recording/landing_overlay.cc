@@ -106,7 +106,10 @@ class Canvas {
 
 void DrawOutlines(const TargetShape& shape, const Projection& project, const cv::Scalar& color,
                   Canvas* canvas) {
-  for (const Polyline& outline : shape.outlines) canvas->DrawLine(outline, project, color);
+  for (Polyline outline : shape.outlines) {
+    outline.push_back(outline.front());
+    canvas->DrawLine(outline, project, color);
+  }
 }
 
 // Draws the print at its edges in the image, and as pose and lens project it.

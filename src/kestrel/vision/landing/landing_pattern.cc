@@ -9,43 +9,23 @@
 #include <fmt/format.h>
 
 #include "kestrel/core/base/require_metres.h"
+#include "kestrel/vision/target/closed_lines.h"
 
 namespace kestrel {
 namespace {
 
-using Polyline = std::vector<Eigen::Vector3d>;
-
-// A lens bends lines; therefore an edge has this number of pieces.
-constexpr int kPiecesPerEdge = 12;
-constexpr int kPiecesPerCircle = 96;
-
-Polyline Circle(double radius) {
-  Polyline points;
-  for (int i = 0; i <= kPiecesPerCircle; ++i) {
-    const double angle = 2 * std::numbers::pi * i / kPiecesPerCircle;
-    points.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0);
-  }
-  return points;
-}
-
-// Outline of both arms: one corner between two arms and two at each end, four times.
-Polyline CrossOutline(const LandingPattern& pattern) {
+// The corners of both arms' outline: one between two arms and two at each end, four times.
+std::vector<Eigen::Vector2d> CornersOfCross(const LandingPattern& pattern) {
   const double half_width = 0.5 * pattern.arm_width_m;
   const double length = std::min(pattern.arm_half_length_m, pattern.inner_radius_m());
-  Polyline corners;
-  for (int quarter = 0; quarter <= 4; ++quarter) {
-    const Eigen::AngleAxisd turn(quarter * std::numbers::pi / 2, Eigen::Vector3d::UnitZ());
-    corners.emplace_back(turn * Eigen::Vector3d(half_width, -half_width, 0));
-    corners.emplace_back(turn * Eigen::Vector3d(length, -half_width, 0));
-    corners.emplace_back(turn * Eigen::Vector3d(length, half_width, 0));
+  std::vector<Eigen::Vector2d> corners;
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    const Eigen::Rotation2Dd turn(quarter * std::numbers::pi / 2);
+    corners.emplace_back(turn * Eigen::Vector2d(half_width, -half_width));
+    corners.emplace_back(turn * Eigen::Vector2d(length, -half_width));
+    corners.emplace_back(turn * Eigen::Vector2d(length, half_width));
   }
-  Polyline outline;
-  for (std::size_t i = 1; i < corners.size(); ++i) {
-    for (int k = 0; k <= kPiecesPerEdge; ++k) {
-      outline.emplace_back(corners[i - 1] + (corners[i] - corners[i - 1]) * k / kPiecesPerEdge);
-    }
-  }
-  return outline;
+  return corners;
 }
 
 }  // namespace
@@ -88,11 +68,11 @@ LandingPattern Scaled(const LandingPattern& pattern, double factor) {
 
 TargetShape ShapeOf(const LandingPattern& pattern) {
   constexpr double kSightPx = 10;  // diameter of a ring that nearly all images show
-  return {
-      pattern.outer_diameter_m,
-      pattern.board_size_m,
-      pattern.outer_diameter_m / kSightPx,
-      {Circle(pattern.outer_radius_m()), Circle(pattern.inner_radius_m()), CrossOutline(pattern)}};
+  return {pattern.outer_diameter_m,
+          pattern.board_size_m,
+          pattern.outer_diameter_m / kSightPx,
+          {CircleLine(pattern.outer_radius_m()), CircleLine(pattern.inner_radius_m()),
+           ClosedLine(CornersOfCross(pattern))}};
 }
 
 TargetPrint PrintOf(const LandingPattern& pattern) {

@@ -30,8 +30,8 @@ struct TargetShape {
   // Largest size of a pixel on the board with which nearly all images of a search without a track
   // show the pad (bench/sight_range).
   double max_pixel_m = 0;
-  // The edges of the print in frame P, m. The first one is the outermost. A lens bends lines:
-  // straight edges therefore have points in between.
+  // Closed lines along the edges of the print in frame P, m: the last point is joined to the first.
+  // The first line is the outermost. A lens bends lines: straight edges have points in between.
   std::vector<std::vector<Eigen::Vector3d>> outlines;
   std::vector<TargetTag> tags{};  // that it has, if any
 
