@@ -119,7 +119,7 @@ void Run() {
   const CameraCalibration calibration = Vision::Calibration();
   FlightConsole console(options, "benchmark", ViewOf(calibration, Vision::StillOptions()),
                         FlightExamination(calibration, ".", 0));
-  const int port = std::stoi(console.url().substr(console.url().rfind(':') + 1));
+  const int port = std::stoi(console.urls().front().substr(console.urls().front().rfind(':') + 1));
   Vision vision(&console);
   Times warm_up;
   RunRound(&vision, port, 0, &warm_up);

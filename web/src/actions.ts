@@ -3,7 +3,7 @@
 import { wholeOr, withFirst, withLast, type FrameRange } from "./clip";
 import { connection } from "./connection";
 import type { CommandName, Layer } from "./protocol";
-import { store } from "./store";
+import { store, type PanelName } from "./store";
 import { applyTheme, themeAfter } from "./theme";
 import { nextDifference, nextTrouble } from "./timeline";
 
@@ -114,6 +114,14 @@ export function nextTheme(): void {
   const theme = themeAfter(store.state.theme);
   applyTheme(theme);
   store.set({ theme });
+}
+
+export function toggleMute(): void {
+  store.set({ isMuted: !store.state.isMuted });
+}
+
+export function showPanel(panel: PanelName): void {
+  store.set({ panel });
 }
 
 export function toggleHelp(): void {

@@ -17,6 +17,8 @@ export interface ImageWish {
 }
 
 const firstRetryMs = 500;
+/** A connection that opens later is given up. */
+const openMs = 5000;
 const lastRetryMs = 5000;
 
 /** The WebSocket: comes back by itself when it is lost. */
@@ -25,6 +27,7 @@ export class Connection {
   onPicture: ((picture: Picture) => void) | null = null;
   private socket: WebSocket | null = null;
   private retryMs = firstRetryMs;
+  private openedAt = 0;
   /** What the server was asked for; null: no images. */
   private imageWish: ImageWish | null = null;
 
@@ -32,6 +35,7 @@ export class Connection {
     const scheme = location.protocol === "https:" ? "wss" : "ws";
     const socket = new WebSocket(`${scheme}://${location.host}/live`);
     this.socket = socket;
+    this.openedAt = performance.now();
     socket.binaryType = "arraybuffer";
     socket.onopen = () => {
       this.retryMs = firstRetryMs;
@@ -39,6 +43,15 @@ export class Connection {
     };
     socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => void this.receive(event.data);
     socket.onclose = () => void this.lose();
+  }
+
+  /** Gives up a connection on which nothing comes any more. */
+  renew(): void {
+    const socket = this.socket;
+    if (socket === null || performance.now() - this.openedAt < openMs) return;
+    socket.onclose = socket.onmessage = null;
+    socket.close();
+    void this.lose();
   }
 
   /** Null: none. */
@@ -76,6 +89,7 @@ export class Connection {
       return;
     }
     const receivedAt = performance.now();
+    store.state.freshness.hear(receivedAt);
     const { header, jpeg } = unpackImage(data);
     const bitmap = await createImageBitmap(jpeg);
     if (this.onPicture) this.onPicture({ header, bitmap, receivedAt });
@@ -92,9 +106,10 @@ export class Connection {
   }
 
   private async lose(): Promise<void> {
+    this.socket = null;
     store.set({ connection: "lost" });
     // A server that was started anew with another token does not know this browser.
-    const answer = await fetch("/", { method: "HEAD" }).catch(() => null);
+    const answer = await fetch("/", { method: "HEAD", signal: AbortSignal.timeout(openMs) }).catch(() => null);
     if (answer?.status === 401) {
       store.set({ connection: "refused" });
       return;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { render } from "preact";
 import { App } from "./components/app";
+import { startAlarm } from "./alarm";
 import { connection } from "./connection";
 import { handleKey } from "./keys";
 import { firstPage } from "./pages";
@@ -14,3 +15,4 @@ store.set({ theme, page: firstPage() });
 document.addEventListener("keydown", handleKey);
 render(<App />, document.getElementById("app")!);
 connection.open();
+startAlarm();

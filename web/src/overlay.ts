@@ -43,7 +43,7 @@ export function drawOverlay(
   for (const shape of shapes) {
     if (!isOn[shape.layer]) continue;
     const { color, dash } = styles[shape.layer];
-    const path = outlinePath(shape.outline, scale, unit);
+    const path = outlinePath(shape, scale, unit);
     // A dark line below, for bright images.
     strokePath(context, path, "rgba(0, 0, 0, 0.65)", 4 * unit, []);
     const dashes = dash.map((length) => length * unit);
@@ -71,7 +71,8 @@ function at(value: number | undefined, scale: number): number {
   return ((value ?? 0) + 0.5) * scale;
 }
 
-function outlinePath(outline: number[], scale: number, unit: number): Path2D {
+function outlinePath(shape: Shape, scale: number, unit: number): Path2D {
+  const { outline } = shape;
   const path = new Path2D();
   if (outline.length === 2) {
     const [x, y] = [at(outline[0], scale), at(outline[1], scale)];
@@ -84,7 +85,7 @@ function outlinePath(outline: number[], scale: number, unit: number): Path2D {
   for (let i = 0; i + 1 < outline.length; i += 2) {
     path.lineTo(at(outline[i], scale), at(outline[i + 1], scale));
   }
-  path.closePath();
+  if (shape.closed) path.closePath();
   return path;
 }
 

@@ -9,11 +9,13 @@ import type { Study, StudyReplay } from "./study";
 export const layers = ["detection", "prediction", "rejected", "truth", "second"] as const;
 export type Layer = (typeof layers)[number];
 
-/** A closed line over the image, x and y in turn, in pixels of the frame; one point is a mark. */
+/** A line over the image, x and y in turn, in pixels of the frame; one point is a mark. */
 export interface Shape {
   layer: Layer;
   label: string;
   outline: number[];
+  /** The last point is joined to the first. */
+  closed: boolean;
   /** Of the detector over a recording; a flight has the first only. */
   run: 1 | 2;
 }
@@ -30,10 +32,15 @@ export interface FrameHeader {
   shapes: Shape[];
 }
 
+/** Of a flight's values. */
+export type SourceName = "frames" | "autopilot" | "pose";
+
 export interface Series {
   name: string;
   unit: string;
   label: string;
+  /** That its values come from. */
+  sources: SourceName[];
   /** Whole numbers. */
   is_count: boolean;
 }
@@ -73,6 +80,20 @@ export interface Sample {
   kind: "sample";
   time: string;
   values: (number | null)[];
+}
+
+/** All samples of a recording: a list of values for each series of hello. */
+export interface RecordedSeries {
+  kind: "series";
+  times_ms: number[];
+  values: (number | null)[][];
+}
+
+/** How old the newest data of each source were, at a time; null where it has given none yet. */
+export interface Sources {
+  kind: "sources";
+  time: string;
+  sources: { name: SourceName; age_ms: number | null }[];
 }
 
 export interface Status {
@@ -224,6 +245,8 @@ export interface LinkReport {
 export type ServerMessage =
   | Hello
   | Sample
+  | RecordedSeries
+  | Sources
   | Status
   | MapMessage
   | TeamMessage

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-import { secondsBetween, type Sample } from "./protocol";
+import { secondsBetween, type RecordedSeries, type Sample } from "./protocol";
 
 /** The samples of the last while, as columns: time (s since the first one) and each series. */
 export class SeriesBuffer {
@@ -11,6 +11,12 @@ export class SeriesBuffer {
     private readonly spanSeconds = 60,
   ) {
     this.columns = Array.from({ length: seriesCount + 1 }, () => []);
+  }
+
+  static ofRecording({ times_ms, values }: RecordedSeries): SeriesBuffer {
+    const buffer = new SeriesBuffer(values.length, Infinity);
+    [times_ms.map((time) => time / 1000), ...values].forEach((column, i) => buffer.columns[i]!.push(...column));
+    return buffer;
   }
 
   /** Samples of a time before the newest begin anew, as when a recording is wound back. */

@@ -3,6 +3,7 @@ import type { Colors, ColorScores } from "./color_protocol";
 import { firstColorView, viewAfter, type ColorView } from "./color_view";
 import type { Calibration } from "./calibration";
 import type { FrameRange } from "./clip";
+import { Freshness, type Staleness } from "./freshness";
 import type {
   ClipProgress,
   Doctor,
@@ -17,6 +18,7 @@ import type {
   Playback,
   SecondRun,
   ServerMessage,
+  SourceName,
   Status,
   TeamMessage,
   Timeline,
@@ -32,8 +34,13 @@ export type Theme = (typeof themes)[number];
 /** A page of the window: a flight or a recording, its colours, the calibration from it, or the table of a study. */
 export type Page = "watch" | "colors" | "calibration" | "study";
 
+/** Parts of a page of which a phone shows one. */
+export const panels = ["view", "map", "plots", "again", "health", "events"] as const;
+export type PanelName = (typeof panels)[number];
+
 export interface State {
   page: Page;
+  panel: PanelName;
   connection: ConnectionState;
   hello: Hello | null;
   status: Status | null;
@@ -60,7 +67,12 @@ export interface State {
   study: Study | null;
   studyReplay: StudyReplay | null;
   link: LinkReport | null;
+  /** Changed in place, by every message. */
+  freshness: Freshness;
+  staleness: Staleness;
   series: SeriesBuffer;
+  /** All values of a recording, a column of each series; null: a flight. */
+  flight: SeriesBuffer | null;
   /** UAV's way on the map, oldest first. */
   track: [number, number][];
   layers: Record<Layer, boolean>;
@@ -69,9 +81,13 @@ export interface State {
   /** Whether the map shows what the team knows. */
   isTeamShown: boolean;
   isFrozen: boolean;
+  isMuted: boolean;
   isHelpShown: boolean;
   theme: Theme;
 }
+
+/** Nothing is known yet. */
+const unknown: Staleness = { isSilent: false, old: [], fresh: [], missing: [] };
 
 const maxEvents = 200;
 const maxTrack = 600;
@@ -79,6 +95,7 @@ const maxTrack = 600;
 export function initialState(): State {
   return {
     page: "watch",
+    panel: "map",
     connection: "connecting",
     hello: null,
     status: null,
@@ -103,18 +120,22 @@ export function initialState(): State {
     study: null,
     studyReplay: null,
     link: null,
+    freshness: new Freshness(),
+    staleness: unknown,
     series: new SeriesBuffer(0),
+    flight: null,
     track: [],
     layers: { detection: true, prediction: true, rejected: true, truth: true, second: true },
     view: "",
     isTeamShown: true,
     isFrozen: false,
+    isMuted: false,
     isHelpShown: false,
     theme: "auto",
   };
 }
 
-/** The state after a message. The series are changed in place: they are drawn by a clock. */
+/** The state after a message. Series and ages are changed in place: a clock shows them. */
 export function withMessage(state: State, message: ServerMessage): State {
   switch (message.kind) {
     case "hello":
@@ -144,10 +165,18 @@ export function withMessage(state: State, message: ServerMessage): State {
         calibration: null,
         study: null,
         studyReplay: null,
+        freshness: new Freshness(),
+        staleness: unknown,
         series: new SeriesBuffer(message.series.length),
+        flight: null,
       };
     case "sample":
       state.series.add(message);
+      return state;
+    case "series":
+      return { ...state, flight: SeriesBuffer.ofRecording(message) };
+    case "sources":
+      state.freshness.tell(message, performance.now());
       return state;
     case "status":
       return { ...state, status: message };
@@ -165,7 +194,7 @@ export function withMessage(state: State, message: ServerMessage): State {
       return { ...state, events: [...state.events, message].slice(-maxEvents) };
     case "timeline":
       // A study opens one recording after the other: what was said of the one before is gone.
-      return { ...state, timeline: message, second: null, findings: null, clipRange: null, track: [] };
+      return { ...state, timeline: message, second: null, findings: null, clipRange: null, track: [], flight: null };
     case "playback":
       return { ...state, playback: message };
     case "options":
@@ -189,6 +218,13 @@ export function withMessage(state: State, message: ServerMessage): State {
     case "link":
       return { ...state, link: message };
   }
+}
+
+/** Whether values that come from these sources are what is now; what a recording has, always is. */
+export function isFresh(state: State, sources: SourceName[]): boolean {
+  if (!state.hello?.live) return true;
+  const { isSilent, fresh } = state.staleness;
+  return !isSilent && !state.status?.over && sources.every((source) => fresh.includes(source));
 }
 
 /** A study begins with its table; a page that comes back to it stays where it was. */
@@ -232,6 +268,7 @@ export class Store {
 
   receive(message: ServerMessage): void {
     this.replace(withMessage(this.current, message));
+    this.current.freshness.hear(performance.now());
   }
 
   subscribe(listener: () => void): () => void {

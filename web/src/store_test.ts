@@ -2,14 +2,15 @@
 import { describe, expect, test } from "vitest";
 import { secondsBetween, unpackImage, type Hello, type MapMessage } from "./protocol";
 import { SeriesBuffer } from "./series_buffer";
-import { initialState, Store, store, withMessage } from "./store";
+import { stalenessOf } from "./freshness";
+import { initialState, isFresh, Store, store, withMessage } from "./store";
 import { turnView } from "./actions";
 
 const hello: Hello = {
   kind: "hello",
   title: "test",
   live: true,
-  series: [{ name: "height", unit: "m", label: "Height", is_count: false }],
+  series: [{ name: "height", unit: "m", label: "Height", sources: ["frames"], is_count: false }],
   layers: [],
   views: [],
   offers: [],
@@ -46,6 +47,31 @@ describe("store", () => {
     state = withMessage(state, hello);
     expect(state.events).toEqual([]);
     expect(state.series.newest(0)).toBeNull();
+  });
+
+  test("after a reconnection nothing is what is now until fresh data come", () => {
+    const status = { kind: "status", state: "tracking", reason: "", recording: false, over: false, replay: "" } as const;
+    const state = withMessage(withMessage(initialState(), hello), status);
+    const settled = { ...state, staleness: stalenessOf(state.freshness, true, performance.now()) };
+    expect(isFresh(settled, ["frames"])).toBe(false);
+    withMessage(state, { kind: "sources", time: "5000000000", sources: [{ name: "frames", age_ms: 20 }] });
+    const fresh = { ...state, staleness: stalenessOf(state.freshness, true, performance.now()) };
+    expect(isFresh(fresh, ["frames"])).toBe(true);
+    expect(isFresh(fresh, ["frames", "pose"])).toBe(false);
+    expect(isFresh({ ...fresh, status: { ...status, over: true } }, ["frames"])).toBe(false);
+    expect(isFresh(withMessage(fresh, hello), ["frames"])).toBe(false);
+  });
+
+  test("what a recording has is what is shown, however long it is held", () => {
+    expect(isFresh(withMessage(initialState(), { ...hello, live: false }), ["frames", "pose"])).toBe(true);
+  });
+
+  test("a recording has its plots at once, until another is opened", () => {
+    const series = { kind: "series", times_ms: [0, 500], values: [[3, null]] } as const;
+    const timeline = { kind: "timeline", begin: "0", times_ms: [0, 500], marks: "f-" } as const;
+    const state = withMessage(initialState(), { ...series, times_ms: [...series.times_ms], values: [[3, null]] });
+    expect(state.flight?.columns).toEqual([[0, 0.5], [3, null]]);
+    expect(withMessage(state, { ...timeline, times_ms: [0, 500] }).flight).toBeNull();
   });
 
   test("a view that the new server does not have is given up", () => {

@@ -106,6 +106,38 @@ class Try {
     return page;
   }
 
+  /** Numbers, facts of the vehicle and of the plots, as they are on the page. */
+  valuesOn(page) {
+    return page.locator(".numbers dd, .vehicle li b, .chart-grid figcaption b").allTextContents();
+  }
+
+  /** Nothing is shown as a value of now. */
+  async expectDashes(page, name) {
+    const values = await this.valuesOn(page);
+    this.expect(values.length > 3, `${name}: there are no values`);
+    const shown = values.filter((value) => !value.startsWith("–"));
+    this.expect(shown.length === 0, `${name}: still shows ${shown.join(", ")}`);
+    this.expect((await page.locator(".health .sign").allTextContents()).every((sign) => sign.trim() !== "✓"), `${name}: health is ticked`);
+  }
+
+  /** Pictures as a phone shows the page, upright and across, and a laptop; in the sun and in the dark. */
+  async takePictures(page, name) {
+    const before = page.viewportSize();
+    for (const [width, height] of [[390, 844], [844, 390], [1280, 900]]) {
+      await page.setViewportSize({ width, height });
+      for (const theme of ["sun", "dark"]) {
+        await page.evaluate((one) => (document.documentElement.dataset.theme = one), theme);
+        await page.waitForTimeout(400);
+        await this.takePicture(page, `${name}_${width}x${height}_${theme}`);
+        await this.expectAccessible(page, `${name}, ${width}x${height}, ${theme}`);
+      }
+      const isWider = await page.evaluate(() => document.documentElement.scrollWidth > window.innerWidth);
+      this.expect(!isWider, `${name}: the page is wider than ${width} px`);
+    }
+    await page.evaluate(() => (document.documentElement.dataset.theme = "light"));
+    await page.setViewportSize(before);
+  }
+
   async waitForImage(page) {
     await page.waitForFunction(() => !document.querySelector(".screen .empty"));
   }
@@ -177,6 +209,14 @@ class Relay {
         resolve(this.#port);
       });
     });
+  }
+
+  /** Loses all that is sent from now on, as a Wi-Fi out of reach: no end is told. */
+  lose() {
+    for (const socket of this.#sockets) {
+      socket.unpipe();
+      socket.pause();
+    }
   }
 
   /** Ends all connections, and takes no more. */

@@ -58,9 +58,9 @@ export function shapesAt(flight, hasSecond) {
     shapes.push({ layer: "detection", label: "whole pattern, 93 %", outline: circle(u, v, 0.5 * scale) });
     shapes.push({ layer: "detection", label: "", outline: [u, v] });
   }
-  const first = shapes.map((shape) => ({ ...shape, run: 1 }));
+  const first = shapes.map((shape) => ({ ...shape, run: 1, closed: true }));
   if (!hasSecond || !flight.isSeen) return first;
-  const second = { layer: "detection", label: "pattern, by the edges of its cross, 91 %", outline: circle(u + 3, v + 2, 0.47 * scale), run: 2 };
+  const second = { layer: "detection", label: "pattern, by the edges of its cross, 91 %", outline: circle(u + 3, v + 2, 0.47 * scale), run: 2, closed: true };
   return [...first, second];
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Serves dist/ and a simulated flight, for work on the page without the program:
+// Serves page/ and a simulated flight, for work on the page without the program:
 //
 //   node tools/mock_server.js [PORT] [--replay | --study]
 import { existsSync, readFileSync } from "node:fs";
@@ -21,17 +21,18 @@ import {
   width,
 } from "./mock_flight.js";
 
-const dist = new URL("../dist", import.meta.url).pathname;
+const built = new URL("../page", import.meta.url).pathname;
 const types = { html: "text/html; charset=utf-8", js: "text/javascript", css: "text/css", svg: "image/svg+xml" };
 const frameCount = flightSeconds * framesPerSecond;
 
+const ofPose = ["frames", "pose"];
 const series = [
-  { name: "height", unit: "m", label: "Height" },
-  { name: "offset", unit: "m", label: "Offset" },
-  { name: "speed", unit: "m/s", label: "Speed" },
-  { name: "quality", unit: "", label: "Quality" },
-  { name: "detect", unit: "ms", label: "Detection" },
-  { name: "latency", unit: "ms", label: "Latency" },
+  { name: "height", unit: "m", label: "Height of the camera", sources: ofPose },
+  { name: "offset", unit: "m", label: "Offset of the camera", sources: ofPose },
+  { name: "speed", unit: "m/s", label: "Target's speed", sources: ofPose },
+  { name: "quality", unit: "", label: "Quality", sources: ["frames"] },
+  { name: "detect", unit: "ms", label: "Detection", sources: ["frames"] },
+  { name: "latency", unit: "ms", label: "Capture to result", sources: ["frames"] },
 ];
 
 const checks = [
@@ -54,11 +55,15 @@ const options = [
   { name: "landing.still", value: "false", unit: "", meaning: "frames have nothing to do with each other" },
 ];
 
-/** Starts the server; resolves to it. 'isReplay': as `kestrel console` of a recording; 'isStudy': of a study. */
+/**
+ * Starts the server; resolves to it. 'isReplay': as `kestrel console` of a recording; 'isStudy': of a study. Its
+ * 'silent' are the sources of a flight that give nothing any more, with the time of the last, ms.
+ */
 export function startMockServer(port, isReplay = false, isStudy = false) {
   const server = createServer(sendFile);
   const sockets = new WebSocketServer({ server, path: "/live" });
-  sockets.on("connection", (socket) => new Client(socket, isReplay, isStudy));
+  server.silent = new Map();
+  sockets.on("connection", (socket) => new Client(socket, isReplay, isStudy, server.silent));
   return new Promise((resolve) => server.listen(port, "127.0.0.1", () => resolve(server)));
 }
 
@@ -66,8 +71,8 @@ function sendFile(request, response) {
   const picture = colorPicture(request.url);
   if (picture) return response.writeHead(200, { "Content-Type": "image/png" }).end(picture);
   const name = request.url === "/" ? "/index.html" : request.url;
-  const path = join(dist, name);
-  if (!path.startsWith(dist) || !existsSync(path)) return response.writeHead(404).end();
+  const path = join(built, name);
+  if (!path.startsWith(built) || !existsSync(path)) return response.writeHead(404).end();
   response.writeHead(200, {
     "Content-Type": types[path.split(".").at(-1)] ?? "application/octet-stream",
     "Content-Security-Policy":
@@ -77,8 +82,9 @@ function sendFile(request, response) {
 }
 
 class Client {
-  constructor(socket, isReplay, isStudy) {
+  constructor(socket, isReplay, isStudy, silent) {
     this.socket = socket;
+    this.silent = silent;
     this.isReplay = isReplay;
     this.isStudy = isStudy;
     this.frame = 0;
@@ -160,6 +166,18 @@ class Client {
       times_ms: frames.map((i) => (1000 * i) / framesPerSecond),
       marks: frames.map((i) => markAt(flightAt(i / framesPerSecond))).join(""),
     });
+    const samples = frames.map((i) => valuesAt(flightAt(i / framesPerSecond)));
+    this.send({
+      kind: "series",
+      times_ms: frames.map((i) => (1000 * i) / framesPerSecond),
+      values: series.map((_, column) => samples.map((sample) => sample[column])),
+    });
+  }
+
+  sendSources() {
+    const age = (name) => Date.now() - (this.silent.get(name) ?? Date.now() - 20);
+    const sources = ["frames", "autopilot", "pose"].map((name) => ({ name, age_ms: age(name) }));
+    this.send({ kind: "sources", time: `${Date.now()}000000`, sources });
   }
 
   event(level, text) {
@@ -210,13 +228,10 @@ class Client {
   tellAll() {
     const flight = flightAt(this.frame / framesPerSecond);
     const [state, reason] = stateAt(flight);
-    const offset = Math.hypot(...flight.offset);
     this.send({ kind: "status", state, reason, recording: this.isRecording, over: false, replay: "" });
     if (!this.isReplay) this.send(vehicleAt(flight));
-    const quality = flight.isSeen ? 0.93 + 0.03 * Math.sin(3 * flight.t) : null;
-    const detect = 1.6 + 0.4 * Math.sin(7 * flight.t);
-    const values = [flight.altitude, offset, 0.8, quality, detect, 31 + 4 * Math.sin(flight.t)];
-    this.send({ kind: "sample", time: this.time(), values });
+    if (!this.isReplay) this.sendSources();
+    this.send({ kind: "sample", time: this.time(), values: valuesAt(flight) });
     this.send(mapOf(flight));
     if (this.isReplay) this.send(this.findings(flight));
     if (this.isReplay) this.send({ kind: "playback", frame: this.frame, speed: this.speed });
@@ -225,7 +240,7 @@ class Client {
   }
 
   sendImage(flight) {
-    if (!this.wantsImages || this.inFlight !== null) return;
+    if (!this.wantsImages || this.inFlight !== null || this.silent.has("frames")) return;
     this.sequence = (this.sequence ?? 0) + 1;
     this.inFlight = this.sequence;
     if (this.isHeld) this.wantsImages = false;
@@ -244,6 +259,12 @@ class Client {
     size.writeUInt32LE(header.length);
     this.socket.send(Buffer.concat([size, header, pictureAt(flight)]));
   }
+}
+
+function valuesAt(flight) {
+  const quality = flight.isSeen ? 0.93 + 0.03 * Math.sin(3 * flight.t) : null;
+  const detect = 1.6 + 0.4 * Math.sin(7 * flight.t);
+  return [flight.altitude, Math.hypot(...flight.offset), 0.8, quality, detect, 31 + 4 * Math.sin(flight.t)];
 }
 
 function mapOf(flight) {

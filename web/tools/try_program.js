@@ -27,8 +27,13 @@ async function watchFlight(t) {
   t.expect(/Frame \d+, \d+ ms old/.test(age), `age of the picture: ${age}`);
   await page.waitForTimeout(1000);
   await t.takePicture(page, "console_live");
+  await t.takePictures(page, "console_live");
   await page.getByText("landed: contact with the deck").first().waitFor({ timeout: 90_000 });
-  // The program ends with the flight, and the page says how.
+  // The program stays with the page, which says how the flight ended.
+  await t.waitForState(page, /Flight over: landed/);
+  await t.expectDashes(page, "over");
+  await t.takePictures(page, "console_ended");
+  await page.reload();
   await t.waitForState(page, /Flight over: landed/);
   await t.stop(program);
   t.expect(program.exitCode === 0, `the flight ended with status ${program.exitCode}`);
@@ -73,7 +78,7 @@ async function waitForNextPicture(page, t) {
     return now !== "" && now !== last;
   };
   await page.waitForFunction(isNext, before);
-  await t.waitForState(page, /^(?!Connect)/);
+  await t.waitForState(page, /^(?!Connect|No data)/);
 }
 
 async function loseConnection(t) {
@@ -82,9 +87,10 @@ async function loseConnection(t) {
   const page = await t.openPage(relayed);
   await waitForNextPicture(page, t);
   relay.cut();
-  await t.waitForState(page, /Connection lost/);
-  await t.takePicture(page, "console_lost");
-  await t.expectAccessible(page, "lost");
+  await t.waitForState(page, /^No data for \d+ s$/);
+  await page.getByText("Connection lost, trying again").waitFor();
+  await t.expectDashes(page, "lost");
+  await t.takePictures(page, "console_lost");
   await relay.open();
   await waitForNextPicture(page, t);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { useEffect } from "preact/hooks";
 import { isOffered } from "../actions";
+import { panels } from "../store";
 import { useStore } from "../use_store";
 import { CalibrationPage } from "./calibration_page";
 import { Charts } from "./charts";
@@ -9,9 +10,10 @@ import { EventsPanel } from "./events_panel";
 import { Header } from "./header";
 import { HealthPanel } from "./health_panel";
 import { HelpDialog } from "./help_dialog";
-import { ImageView } from "./image_view";
+import { ImageView, ViewPanel } from "./image_view";
 import { MapPanel } from "./map_panel";
 import { PageSwitch } from "./page_switch";
+import { Panel, PanelSwitch } from "./panel";
 import { ReplayBar } from "./replay_bar";
 import { SecondRunPanel } from "./second_run_panel";
 import { StudyCaption, StudyPage } from "./study_page";
@@ -43,18 +45,34 @@ function WatchPage() {
   const hasTimeline = useStore((state) => state.timeline !== null);
   const hasOptions = useStore((state) => state.options.length > 0);
   return (
-    <main>
-      <div class="column">
+    <main class="watch">
+      <div class="stage">
         <StudyCaption />
         <ImageView />
         {hasTimeline && <ReplayBar />}
-        <Charts />
       </div>
-      <div class="column">
-        <MapPanel />
-        {hasOptions && <SecondRunPanel />}
-        <HealthPanel />
-        <EventsPanel />
+      <div class="details">
+        <PanelSwitch names={panels.filter((name) => name !== "again" || hasOptions)} />
+        <div class="column">
+          <Panel name="view">
+            <ViewPanel />
+          </Panel>
+          <Panel name="plots">
+            <Charts />
+          </Panel>
+        </div>
+        <div class="column">
+          <Panel name="map">
+            <MapPanel />
+          </Panel>
+          <Panel name="again">{hasOptions && <SecondRunPanel />}</Panel>
+          <Panel name="health">
+            <HealthPanel />
+          </Panel>
+          <Panel name="events">
+            <EventsPanel />
+          </Panel>
+        </div>
       </div>
     </main>
   );

@@ -4,24 +4,26 @@ import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import type { Series } from "../protocol";
 import type { SeriesBuffer } from "../series_buffer";
+import { store } from "../store";
 import { themeColor } from "../theme";
 import { useStore } from "../use_store";
-import { numberText } from "./header";
+import { NewestNumber, numberText } from "./header";
 
 const drawsPerSecond = 5;
 const chartHeight = 110;
 
-/** Each series over the last minute; the time under the pointer is the same in all. */
+/** Each series, of a flight the last minute, of a recording all; the time under the pointer is the same in all. */
 export function Charts() {
   const hello = useStore((state) => state.hello);
-  const series = useStore((state) => state.series);
+  const live = useStore((state) => state.series);
+  const flight = useStore((state) => state.flight);
   const theme = useStore((state) => state.theme);
   return (
     <section class="charts" aria-label="Time series">
-      <h2>The last minute</h2>
+      <h2>{flight ? "The whole recording" : "The last minute"}</h2>
       <div class="chart-grid">
         {hello?.series.map((one, i) => (
-          <Chart key={`${one.name} ${theme}`} series={one} buffer={series} index={i} />
+          <Chart key={`${one.name} ${theme}`} series={one} buffer={flight ?? live} isRecording={flight !== null} index={i} />
         ))}
       </div>
     </section>
@@ -31,10 +33,11 @@ export function Charts() {
 interface ChartProps {
   series: Series;
   buffer: SeriesBuffer;
+  isRecording: boolean;
   index: number;
 }
 
-function Chart({ series, buffer, index }: ChartProps) {
+function Chart({ series, buffer, isRecording, index }: ChartProps) {
   const place = useRef<HTMLDivElement>(null);
   useEffect(() => {
     if (!place.current) return undefined;
@@ -45,20 +48,33 @@ function Chart({ series, buffer, index }: ChartProps) {
     });
     resize.observe(place.current);
     draw();
-    const timer = setInterval(draw, 1000 / drawsPerSecond);
+    // The samples of a recording do not change, but the frame that is shown does.
+    const timer = setInterval(isRecording ? () => plot.redraw(false) : draw, 1000 / drawsPerSecond);
     return () => {
       clearInterval(timer);
       resize.disconnect();
       plot.destroy();
     };
-  }, [buffer, index]);
+  }, [buffer, isRecording, index]);
   const title = series.unit === "" ? series.label : `${series.label}, ${series.unit}`;
   return (
     <figure>
-      <figcaption>{title}</figcaption>
-      <div ref={place} class="plot" role="img" aria-label={`${title} over the last minute`} />
+      <figcaption>
+        {series.label} <b><NewestNumber index={index} /></b>
+      </figcaption>
+      <div ref={place} class="plot" role="img" aria-label={`${title}, ${isRecording ? "the whole recording" : "the last minute"}`} />
     </figure>
   );
+}
+
+// The time of the frame that is shown.
+function drawPlayhead(plot: uPlot): void {
+  const { flight, playback } = store.state;
+  const time = flight?.columns[0]?.[playback?.frame ?? -1];
+  if (time === null || time === undefined) return;
+  const x = plot.valToPos(time, "x", true);
+  plot.ctx.fillStyle = themeColor("wrong");
+  plot.ctx.fillRect(x - 1, plot.bbox.top, 2, plot.bbox.height);
 }
 
 function plotOptions(series: Series, width: number): uPlot.Options {
@@ -79,6 +95,7 @@ function plotOptions(series: Series, width: number): uPlot.Options {
       { ...axis, size: 22, values: (_, ticks) => ticks.map((tick) => `${tick} s`) },
       { ...axis, size: 48, values: (_, ticks) => ticks.map((tick) => numberText(tick, series.is_count)) },
     ],
+    hooks: { draw: [drawPlayhead] },
     series: [{}, { label: series.label, stroke: themeColor("line"), width: 2, spanGaps: false }],
   };
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { countText, sortedChecks } from "../checks";
-import type { Check } from "../protocol";
-import { useStore } from "../use_store";
+import type { Check, SourceName } from "../protocol";
+import { useFresh, useStore } from "../use_store";
 
 const signs: Record<Check["verdict"], string> = {
   good: "✓",
@@ -10,18 +10,22 @@ const signs: Record<Check["verdict"], string> = {
   "not checked": "–",
 };
 
+/** What a check is about; of the others it is the program itself. */
+const sourcesOf: Record<string, SourceName[]> = { camera: ["frames"], vision: ["frames"], autopilot: ["autopilot"] };
+
 /** How the flight's parts do now, the doctor's checks, and this browser's connection. */
 export function HealthPanel() {
   const health = useStore((state) => state.health);
   const doctor = useStore((state) => state.doctor);
   const link = useStore((state) => state.link);
   const isLive = useStore((state) => state.hello?.live ?? false);
+  const isHeard = useFresh([]);
   return (
     <section class="health" aria-label="Health">
       <h2>Health</h2>
       <ul>
-        {health?.checks.map((check) => <CheckItem key={check.name} check={check} />)}
-        {link && (
+        {health?.checks.map((check) => <CheckItem key={check.name} check={check} sources={sourcesOf[check.name] ?? []} />)}
+        {link && isHeard && (
           <li data-verdict={link.dropped > 0 ? "doubtful" : "good"}>
             <span class="sign" aria-hidden="true">
               {signs[link.dropped > 0 ? "doubtful" : "good"]}
@@ -59,15 +63,18 @@ function DoctorChecks({ checks }: { checks: Check[] }) {
   );
 }
 
-function CheckItem({ check }: { check: Check }) {
+/** A check of what is not known any more is none. */
+function CheckItem({ check, sources = [] }: { check: Check; sources?: SourceName[] }) {
+  const isKnown = useFresh(sources);
+  const verdict = isKnown ? check.verdict : "not checked";
   return (
-    <li data-verdict={check.verdict}>
+    <li data-verdict={verdict} data-stale={!isKnown}>
       <span class="sign" aria-hidden="true">
-        {signs[check.verdict]}
+        {signs[verdict]}
       </span>
-      <b>{check.name}</b> {check.measured}
-      <span class="unseen"> ({check.verdict})</span>
-      {check.advice !== "" && <p class="advice">{check.advice}</p>}
+      <b>{check.name}</b> {isKnown ? check.measured : "–"}
+      <span class="unseen"> ({verdict})</span>
+      {isKnown && check.advice !== "" && <p class="advice">{check.advice}</p>}
     </li>
   );
 }

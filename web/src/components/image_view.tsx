@@ -5,11 +5,11 @@ import { connection, type Picture } from "../connection";
 import { drawOverlay, layerColor, ofRun, together } from "../overlay";
 import type { FrameHeader, Layer, Shape } from "../protocol";
 import { store, type State } from "../store";
-import { useClock, useStore } from "../use_store";
+import { useClock, useFresh, useStore } from "../use_store";
 import { RunFacts } from "./run_facts";
 
-/** Older than this, a live picture is not what the UAV sees now. */
-const staleMs = 500;
+/** Older than this, a live picture is late. */
+const lateMs = 500;
 
 const noLayers: Layer[] = [];
 const noViews: string[] = [];
@@ -25,6 +25,7 @@ export function ImageView() {
   const secondCanvas = useRef<HTMLCanvasElement>(null);
   const [shown, setShown] = useState<Shown | null>(null);
   const isBeside = useStore(hasTwoPictures);
+  const isFresh = useFresh(["frames"]);
   const replay = useStore((state) => state.studyReplay);
   usePictures(canvas, secondCanvas, setShown);
   return (
@@ -32,8 +33,9 @@ export function ImageView() {
       <div class={isBeside ? "screens beside" : "screens"}>
         <div>
           {isBeside && <h2>{titleOf("First run", replay?.before)}</h2>}
-          <div class="screen">
-            <canvas ref={canvas} role="img" aria-label={pictureInWords(shown, 1)} />
+          <div class="screen" data-stale={!isFresh}>
+            <canvas ref={canvas} role="img" aria-label={pictureInWords(shown, 1, isFresh)} />
+            {shown !== null && !isFresh && <OldPicture shown={shown} />}
             {shown === null && <p class="empty">No image yet</p>}
           </div>
           <RunFacts run={1} />
@@ -42,19 +44,33 @@ export function ImageView() {
           <div>
             <h2>{titleOf("Second run", replay?.after)}</h2>
             <div class="screen">
-              <canvas ref={secondCanvas} role="img" aria-label={pictureInWords(shown, 2)} />
+              <canvas ref={secondCanvas} role="img" aria-label={pictureInWords(shown, 2, isFresh)} />
             </div>
             <RunFacts run={2} />
           </div>
         )}
       </div>
-      <ViewChoice />
-      <div class="image-bar">
-        <LayerSwitches />
-        <PictureAge shown={shown} />
-      </div>
+      <PictureAge shown={shown} />
     </section>
   );
+}
+
+/** What of the image is seen. */
+export function ViewPanel() {
+  return (
+    <section aria-label="View">
+      <ViewChoice />
+      <LayerSwitches />
+    </section>
+  );
+}
+
+/** Over a picture that is not what the camera sees now. */
+function OldPicture({ shown }: { shown: Shown }) {
+  useClock(2);
+  const isOver = useStore((state) => state.status?.over ?? false);
+  const age = (shown.header.age_ms ?? 0) + performance.now() - shown.receivedAt;
+  return <p class="old">{isOver ? "The last image" : `Image ${(age / 1000).toFixed(0)} s old`}</p>;
 }
 
 /** The title of a picture: in a study with the configuration. */
@@ -67,8 +83,9 @@ export function hasTwoPictures(state: State): boolean {
   return state.isBeside && state.second?.state === "done";
 }
 
-function pictureInWords(shown: Shown | null, run: 1 | 2): string {
+function pictureInWords(shown: Shown | null, run: 1 | 2, isFresh: boolean): string {
   if (shown === null) return "no image yet";
+  if (!isFresh) return "an old image";
   const image = shown.header.view === "" ? "camera image" : shown.header.view;
   const picture = run === 1 ? image : `${image}, second run`;
   const found = ofRun(shown.header.shapes, run).filter(({ layer, label }) => layer === "detection" && label !== "");
@@ -85,20 +102,24 @@ function usePictures(
   const picture = useRef<Picture | null>(null);
   const isBeside = useStore(hasTwoPictures);
   const layers = useStore((state) => state.layers);
+  const isFresh = useFresh(["frames"]);
   const draw = () => {
     if (!picture.current) return;
     const { shapes } = picture.current.header;
+    if (!isFresh) return drawPicture(canvas.current, picture.current, []);
     if (!secondCanvas.current) return drawPicture(canvas.current, picture.current, together(shapes));
     drawPicture(canvas.current, picture.current, ofRun(shapes, 1));
     drawPicture(secondCanvas.current, picture.current, ofRun(shapes, 2));
   };
-  useEffect(draw, [isBeside, layers]);
+  useEffect(draw, [isBeside, layers, isFresh]);
+  const drawNow = useRef(draw);
+  drawNow.current = draw;
   useEffect(() => {
     connection.onPicture = (next) => {
       requestAnimationFrame(() => {
         picture.current?.bitmap.close();
         picture.current = next;
-        draw();
+        drawNow.current();
         setShown({ header: next.header, receivedAt: next.receivedAt });
         connection.drawn(next.header);
       });
@@ -174,7 +195,7 @@ function PictureAge({ shown }: { shown: Shown | null }) {
   const age = shown.header.age_ms + performance.now() - shown.receivedAt;
   const text = age < 10000 ? `${age.toFixed(0)} ms old` : `${(age / 1000).toFixed(0)} s old`;
   return (
-    <p class="age" data-stale={age > staleMs}>
+    <p class="age" data-stale={age > lateMs}>
       Frame {shown.header.sequence}, {text}
       {isFrozen && ", frozen"}
     </p>

@@ -11,6 +11,7 @@ import {
   type MapView,
 } from "../map_geometry";
 import type { MapMessage, MapObject, TeamObject } from "../protocol";
+import { isFresh } from "../store";
 import { themeColor } from "../theme";
 import { useStore } from "../use_store";
 
@@ -23,14 +24,21 @@ const noObjects: TeamObject[] = [];
  */
 export function MapPanel() {
   const canvas = useRef<HTMLCanvasElement>(null);
-  const map = useStore((state) => state.map);
+  const map = useStore((state) => (isFresh(state, ["frames", "pose"]) ? state.map : null));
   const track = useStore((state) => state.track);
   const hasTeam = useStore((state) => state.team !== null);
   const team = useStore((state) => (state.isTeamShown && state.team?.objects) || noObjects);
   const theme = useStore((state) => state.theme);
-  useEffect(() => {
+  const draw = useRef(() => {});
+  draw.current = () => {
     if (canvas.current) drawMap(canvas.current, map, team, track);
-  }, [map, team, track, theme]);
+  };
+  useEffect(() => draw.current(), [map, team, track, theme]);
+  useEffect(() => {
+    const resize = new ResizeObserver(() => draw.current());
+    if (canvas.current) resize.observe(canvas.current);
+    return () => resize.disconnect();
+  }, []);
   return (
     <section class="map" aria-label="Map">
       <h2>Map</h2>
@@ -58,7 +66,7 @@ function TeamSwitch() {
 
 function mapInWords(map: MapMessage | null, team: TeamObject[]): string {
   const ofTeam = team.length > 0 ? `, ${team.length} objects of the team` : "";
-  if (!map?.uav) return ofTeam ? `map${ofTeam}` : "map, nothing known yet";
+  if (!map?.uav) return ofTeam ? `map${ofTeam}` : "map, nothing known now";
   const known = (map.mapped.length > 0 ? `, ${map.mapped.length} objects in the map` : "") + ofTeam;
   if (map.objects.length > 0) return `map with the UAV, ${map.objects.length} objects in view${known}`;
   if (!map.target) return `map with the UAV, no target${known}`;

@@ -14,6 +14,7 @@
 #include "kestrel/app/cli/fly_arguments.h"
 #include "kestrel/app/cli/fly_command.h"
 #include "kestrel/app/cli/interrupt.h"
+#include "kestrel/app/cli/page_links.h"
 #include "kestrel/app/cli/recorded_run.h"
 #include "kestrel/app/cli/result_argument.h"
 #include "kestrel/app/console/calibration_tools.h"
@@ -41,7 +42,7 @@ void RunConsole(const ConsoleArguments& arguments) {
     throw InputError("--model: " + name + " has no images in color to teach it by");
   }
   ReplayConsole console(arguments.PageOptions(options), name, search->Subject(), std::move(colors));
-  fmt::print(stderr, "console: {}\n", console.url());
+  PrintLinks(console.urls());
   if (has_colors) fmt::print(stderr, "folder for taught colors: {}\n", arguments.output);
   const auto start = arguments.result.empty() ? search->Detect({}) : search->Show(arguments.result);
   ObservationSinks sinks(SinkErrors::kThrow);

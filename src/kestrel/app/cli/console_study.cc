@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/app/cli/interrupt.h"
+#include "kestrel/app/cli/page_links.h"
 #include "kestrel/app/console/study_console.h"
 #include "kestrel/app/console/study_results.h"
 #include "kestrel/core/base/error.h"
@@ -99,7 +100,7 @@ void RunStudyConsole(const ConsoleArguments& arguments) {
                        [&](const std::string& path, const auto& variant, const auto& of_run) {
                          return OpenForReplay(arguments, path, variant, of_run);
                        });
-  fmt::print(stderr, "console: {}\n", console.url());
+  PrintLinks(console.urls());
   console.Play(WasInterrupted);
 }
 

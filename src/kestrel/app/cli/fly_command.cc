@@ -12,6 +12,7 @@
 
 #include "kestrel/app/cli/fly_arguments.h"
 #include "kestrel/app/cli/interrupt.h"
+#include "kestrel/app/cli/page_links.h"
 #include "kestrel/app/console/flight_console.h"
 #include "kestrel/app/fly/fly_autopilot.h"
 #include "kestrel/app/fly/fly_session.h"
@@ -78,6 +79,13 @@ class Flight {
     }
   }
 
+  // Leaves the page, with how the flight ended, to those who look at it.
+  void ShowEnd(const FlightEnd& end) {
+    if (console_ == nullptr || !console_->IsWanted()) return;
+    fmt::print(stderr, "{}; the page stays while somebody looks, Ctrl-C ends it\n", InWords(end));
+    console_->Stay(WasInterrupted);
+  }
+
   // The console asks nothing of a session that is gone.
   ~Flight() { sinks_.Finish(); }
   Flight(const Flight&) = delete;
@@ -140,7 +148,7 @@ class Flight {
     console_ = sinks_.Add(std::make_unique<FlightConsole>(options,
                                                           arguments_.source.sources.front(), View(),
                                                           examination, live->channels(), Colors()));
-    Log("console: " + console_->url());
+    PrintLinks(console_->urls());
     Log("for Foxglove: " + console_->viewer_url());
   }
 
@@ -281,6 +289,7 @@ class Flight {
 void RunFly(const FlyArguments& arguments) {
   Flight flight(arguments);
   const FlightEnd end = flight.Run();
+  flight.ShowEnd(end);
   if (ExitStatus(end) != 0) throw BadFlightEnd(end);
   fmt::print(stderr, "{}\n", InWords(end));
 }

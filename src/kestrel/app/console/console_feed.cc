@@ -29,6 +29,11 @@ const char* ToString(OverlayLayer layer) {
   return "";
 }
 
+const char* ToString(ConsoleSource source) {
+  static constexpr const char* kNames[] = {"frames", "autopilot", "pose"};
+  return kNames[static_cast<int>(source)];
+}
+
 ConsoleFeed::ConsoleFeed(Description description)
     : description_(std::move(description)),
       updates_(kMaxUpdates),

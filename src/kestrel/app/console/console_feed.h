@@ -30,12 +30,13 @@ enum class OverlayLayer { kDetection, kPrediction, kRejected, kTruth, kSecond };
 // Returns "detection", "prediction", "rejected", "truth" or "second".
 const char* ToString(OverlayLayer layer);
 
-// A closed line over the image with a label: what was found and how, or why it was rejected.
+// A line over the image with a label: what was found and how, or why it was rejected.
 struct OverlayShape {
   OverlayLayer layer = OverlayLayer::kDetection;
   std::vector<cv::Point2f> outline;  // pixels; a single point is drawn as a mark
   std::string label;
-  int run = 1;  // run of the detector over a recording: first or second
+  bool is_closed = true;  // the last point is joined to the first
+  int run = 1;            // run of the detector over a recording: first or second
 };
 
 // A frame and what was found in it.
@@ -54,18 +55,41 @@ struct ImageView {
   std::function<cv::Mat(const cv::Mat& image)> draw;
 };
 
+// Sources of a flight's values. A value is worth no more than the sources that it comes from.
+enum class ConsoleSource { kFrames, kAutopilot, kPose };
+// Returns "frames", "autopilot" or "pose".
+const char* ToString(ConsoleSource source);
+
+// Ages of what the sources of a flight gave last; nothing where a source has given nothing yet.
+// Sources that the flight does not have are left out.
+struct ConsoleSources {
+  struct Age {
+    ConsoleSource source = ConsoleSource::kFrames;
+    std::optional<Duration> age;
+  };
+  Time time;  // of these ages
+  std::vector<Age> ages;
+};
+
 // A quantity that the page plots over time.
 struct SeriesDescription {
-  std::string name;       // as "height"
-  std::string unit;       // as "m"; empty for a pure number
-  std::string label;      // for people
-  bool is_count = false;  // whole numbers
+  std::string name;                    // as "height"
+  std::string unit;                    // as "m"; empty for a pure number
+  std::string label;                   // for people
+  std::vector<ConsoleSource> sources;  // that its values come from
+  bool is_count = false;               // whole numbers
 };
 
 // One value per series; NaN where unknown.
 struct ConsoleSample {
   Time time;
   std::vector<double> values;
+};
+
+// All samples of a recording: its plots at once.
+struct ConsoleSeries {
+  std::vector<Duration> times;              // of the frames, since the first
+  std::vector<std::vector<double>> values;  // for each series its values; NaN where unknown
 };
 
 // The state of the flight, in words that a pilot takes in at a glance.
@@ -194,7 +218,8 @@ using ConsoleUpdate =
     std::variant<ConsoleSample, ConsoleStatus, ConsoleMap, ConsoleHealth, SessionEvent,
                  ConsoleTimeline, ConsolePlayback, ConsoleDoctor, ConsoleOptionList,
                  ConsoleSecondRun, ConsoleFindings, ConsoleClip, ConsoleColors, ConsoleColorScores,
-                 ConsoleCalibration, ConsoleTeam, ConsoleVehicle, ConsoleStudy, ConsoleStudyReplay>;
+                 ConsoleCalibration, ConsoleTeam, ConsoleVehicle, ConsoleStudy, ConsoleStudyReplay,
+                 ConsoleSources, ConsoleSeries>;
 
 // A task of the page of colours.
 using ColorJob = std::variant<ColorRequest, PendingExport>;

@@ -10,7 +10,7 @@ namespace kestrel {
 namespace {
 
 constexpr std::size_t kEventsForNewcomers = 50;
-constexpr Duration kReportInterval = std::chrono::seconds(1);
+constexpr Duration kReportInterval = std::chrono::milliseconds(500);
 
 }  // namespace
 
@@ -74,13 +74,15 @@ void ConsoleHub::Tick(Time now) {
 }
 
 void ConsoleHub::Broadcast(const ConsoleUpdate& update) {
-  const bool is_sample = std::holds_alternative<ConsoleSample>(update);
-  if (is_sample && clients_.empty()) return;
+  // Of the moment: what comes later needs the next one.
+  const bool is_fleeting = std::holds_alternative<ConsoleSample>(update) ||
+                           std::holds_alternative<ConsoleSources>(update);
+  if (is_fleeting && clients_.empty()) return;
   const auto message = std::make_shared<const std::string>(ToJson(update));
   if (std::holds_alternative<SessionEvent>(update)) {
     events_.push_back(message);
     if (events_.size() > kEventsForNewcomers) events_.pop_front();
-  } else if (!is_sample) {
+  } else if (!is_fleeting) {
     newest_[update.index()] = message;
   }
   for (ConsoleClient* client : clients_) client->Push(message);

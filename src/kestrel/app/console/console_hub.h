@@ -84,7 +84,7 @@ class ConsoleHub {
   ImageChannel images_;
   std::optional<ViewerHub> viewers_;
   SharedMessage hello_;
-  // The newest message of each kind except samples, for browsers that join later.
+  // The newest message of each kind except samples and ages, for browsers that join later.
   std::array<SharedMessage, std::variant_size_v<ConsoleUpdate>> newest_;
   std::deque<SharedMessage> events_;
   std::vector<ConsoleClient*> clients_;

@@ -40,6 +40,7 @@ Json Shape(const OverlayShape& shape) {
   return {{"layer", ToString(shape.layer)},
           {"label", shape.label},
           {"outline", std::move(outline)},
+          {"closed", shape.is_closed},
           {"run", shape.run}};
 }
 
@@ -59,6 +60,14 @@ Json Objects(const std::vector<ConsoleMapObject>& objects) {
 
 Json Message(const ConsoleSample& sample) {
   return {{"kind", "sample"}, {"time", TimeText(sample.time)}, {"values", sample.values}};
+}
+
+Json Message(const ConsoleSources& sources) {
+  Json ages = Json::array();
+  for (const ConsoleSources::Age& one : sources.ages) {
+    ages.push_back({{"name", ToString(one.source)}, {"age_ms", Milliseconds(one.age)}});
+  }
+  return {{"kind", "sources"}, {"time", TimeText(sources.time)}, {"sources", std::move(ages)}};
 }
 
 Json Message(const ConsoleStatus& status) {
@@ -134,14 +143,23 @@ std::string Marks(const std::vector<FrameMark>& marks) {
   return text;
 }
 
-Json Message(const ConsoleTimeline& timeline) {
-  Json times = Json::array();
-  for (const Duration time : timeline.times) {
-    times.push_back(std::chrono::duration_cast<std::chrono::milliseconds>(time).count());
+Json WholeMilliseconds(const std::vector<Duration>& times) {
+  Json list = Json::array();
+  for (const Duration time : times) {
+    list.push_back(std::chrono::duration_cast<std::chrono::milliseconds>(time).count());
   }
+  return list;
+}
+
+Json Message(const ConsoleSeries& series) {
+  return {
+      {"kind", "series"}, {"times_ms", WholeMilliseconds(series.times)}, {"values", series.values}};
+}
+
+Json Message(const ConsoleTimeline& timeline) {
   return {{"kind", "timeline"},
           {"begin", TimeText(timeline.begin)},
-          {"times_ms", std::move(times)},
+          {"times_ms", WholeMilliseconds(timeline.times)},
           {"marks", Marks(timeline.marks)}};
 }
 
@@ -191,8 +209,13 @@ std::string ToJson(const ConsoleFeed::Description& description) {
   Json series = Json::array(), layers = Json::array(), offers = Json::array();
   Json views = Json::array();
   for (const SeriesDescription& one : description.series) {
-    series.push_back(
-        {{"name", one.name}, {"unit", one.unit}, {"label", one.label}, {"is_count", one.is_count}});
+    Json sources = Json::array();
+    for (const ConsoleSource source : one.sources) sources.push_back(ToString(source));
+    series.push_back({{"name", one.name},
+                      {"unit", one.unit},
+                      {"label", one.label},
+                      {"sources", std::move(sources)},
+                      {"is_count", one.is_count}});
   }
   for (const OverlayLayer layer : description.layers) layers.push_back(ToString(layer));
   for (const ImageView& view : description.views) views.push_back(view.name);

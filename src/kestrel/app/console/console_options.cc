@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <boost/asio/ip/address.hpp>
 #include <cctype>
+#include <random>
 #include <sstream>
+#include <unistd.h>
 
+#include <climits>
 #include <fmt/format.h>
 
 #include "kestrel/core/base/error.h"
@@ -22,15 +25,19 @@ bool IsToken(const std::string& token) {
          std::all_of(token.begin(), token.end(), IsTokenCharacter);
 }
 
+std::string InLowerCase(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
 // The comma-separated parts, in lower case, without blanks.
 std::vector<std::string> PartsOf(const std::string& list) {
   std::vector<std::string> parts;
   std::istringstream stream(list);
   for (std::string part; std::getline(stream, part, ',');) {
     std::erase_if(part, [](unsigned char c) { return std::isspace(c); });
-    std::transform(part.begin(), part.end(), part.begin(),
-                   [](unsigned char c) { return std::tolower(c); });
-    if (!part.empty()) parts.push_back(part);
+    if (!part.empty()) parts.push_back(InLowerCase(part));
   }
   return parts;
 }
@@ -54,12 +61,6 @@ std::vector<std::string> ConsoleOptions::Validate() const {
   // The message does not repeat the token: it is a secret.
   if (!token.empty() && !IsToken(token)) {
     violations.push_back("token is not 16 to 128 of A-Z a-z 0-9 - _");
-  }
-  if (token.empty() && !error && !IsLoopback()) {
-    violations.push_back(
-        fmt::format("token is empty, expected one, as others can reach {} (openssl rand -hex 16 "
-                    "makes one)",
-                    address));
   }
   for (const std::string& origin : ViewerOrigins()) {
     if (origin == "file://" && token.empty()) {
@@ -85,9 +86,28 @@ bool ConsoleOptions::IsLoopback() const {
   return !error && ip.is_loopback();
 }
 
-std::vector<std::string> ConsoleOptions::HostNames() const { return PartsOf(host_names); }
+std::vector<std::string> ConsoleOptions::HostNames() const {
+  std::vector<std::string> names = PartsOf(host_names);
+  const std::string own = OwnHostName();
+  names.insert(names.end(), {own, own + ".local"});
+  return names;
+}
 
 std::vector<std::string> ConsoleOptions::ViewerOrigins() const { return PartsOf(viewer_origins); }
+
+std::string OwnHostName() {
+  char name[HOST_NAME_MAX + 1] = {};
+  gethostname(name, sizeof(name) - 1);
+  return InLowerCase(name);
+}
+
+ConsoleOptions WithToken(ConsoleOptions options) {
+  constexpr int kWords = 4;
+  if (!options.token.empty() || options.IsLoopback()) return options;
+  std::random_device random;
+  for (int i = 0; i < kWords; ++i) options.token += fmt::format("{:08x}", random());
+  return options;
+}
 
 ConsoleOptions WithAddress(ConsoleOptions options, const std::string& text,
                            const std::string& argument) {

@@ -17,6 +17,8 @@ constexpr std::size_t kFrames = 2;
 constexpr std::size_t kArrivals = 256;
 constexpr Duration kCheckInterval = std::chrono::seconds(2);
 constexpr Duration kAnswerInterval = std::chrono::milliseconds(50);
+// A browser that is lost to the network comes back within this time.
+constexpr Duration kReturn = std::chrono::seconds(20);
 constexpr Duration kLastWords = std::chrono::milliseconds(300);
 
 ConsoleFeed::Description DescriptionOf(const std::string& title, const FlightView& view,
@@ -30,8 +32,8 @@ ConsoleFeed::Description DescriptionOf(const std::string& title, const FlightVie
       .views = is_hunt ? HuntImageViews(std::get<HuntView>(view)) : LandingImageViews(),
       .offers = {ConsoleCommandKind::kRecord, ConsoleCommandKind::kSnapshot},
       .has_colors = has_colors};
-  description.series.push_back({"latency", "ms", "Capture to result"});
-  description.series.push_back({"link", "1/s", "Packets"});
+  description.series.push_back({"latency", "ms", "Capture to result", {ConsoleSource::kFrames}});
+  description.series.push_back({"link", "1/s", "Packets", {ConsoleSource::kAutopilot}});
   return description;
 }
 
@@ -50,7 +52,12 @@ class FlightConsole::Page : public SinkWriter {
     frame_.captured = observation.frame.time;
     frame_.image = observation.frame.image;
     const Duration latency = observation.latency.value_or(Duration::zero());
-    std::visit([&](const auto& seen) { Show(seen, latency); }, observation.seen);
+    std::visit(
+        [&](const auto& seen) {
+          sources_.Look(frame_.captured, seen.world_from_camera.has_value());
+          Show(seen, latency);
+        },
+        observation.seen);
     examination_.Look(frame_.image, Now());
     {
       const std::lock_guard lock(console_.mutex_);
@@ -62,6 +69,7 @@ class FlightConsole::Page : public SinkWriter {
   void Write(const FlightReport& report) override {
     if (const auto health = health_.Update(report, Now())) feed_.Add(*health);
     report_ = report;
+    feed_.Add(sources_.Update(report, Now()));
     ShowStatus();
     ShowVehicle();
   }
@@ -133,6 +141,7 @@ class FlightConsole::Page : public SinkWriter {
   FlightExamination examination_;
   Time examined_{};
   FlightHealth health_;
+  SourceWatch sources_;
   FlightReport report_;   // the newest
   ConsoleStatus vision_;  // status from the newest frame
   ConsoleStatus told_;    // the last status that the page got
@@ -179,6 +188,14 @@ void FlightConsole::Finish() {
   if (answering_thread_.joinable()) answering_thread_.join();
   pictures_.Finish();
   if (feed_.IsWatched()) std::this_thread::sleep_for(kLastWords);
+}
+
+void FlightConsole::Stay(const std::function<bool()>& is_stopped) {
+  Time seen = feed_.IsWatched() ? Now() : Time{};
+  while (Now() - seen < kReturn && !is_stopped()) {
+    std::this_thread::sleep_for(kAnswerInterval);
+    if (feed_.IsWatched()) seen = Now();
+  }
 }
 
 void FlightConsole::Take(const Observation& observation) {

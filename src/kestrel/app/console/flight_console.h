@@ -56,8 +56,8 @@ class FlightConsole : public ObservationSink {
   FlightConsole(const FlightConsole&) = delete;
   FlightConsole& operator=(const FlightConsole&) = delete;
 
-  // URL to open in a browser on this computer.
-  std::string url() const { return server_.url(); }
+  // As WebServer::urls.
+  std::vector<std::string> urls() const { return server_.urls(); }
   // URL for a viewer that speaks Foxglove's protocol.
   std::string viewer_url() const { return server_.viewer_url(); }
 
@@ -72,6 +72,9 @@ class FlightConsole : public ObservationSink {
   void Take(const SessionEvent& event) override { feed_.Add(event); }
   // Answers no more requests; the page stays.
   void Finish() override;
+  // Keeps the page after Finish, with how the flight ended, as long as a browser looks at it, or
+  // has a moment ago, and 'is_stopped' returns false.
+  void Stay(const std::function<bool()>& is_stopped);
 
  private:
   struct Image {

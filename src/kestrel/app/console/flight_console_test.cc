@@ -20,7 +20,7 @@ namespace {
 using namespace std::chrono_literals;
 
 int PortOf(const FlightConsole& console) {
-  const std::string url = console.url();
+  const std::string url = console.urls().front();
   return std::stoi(url.substr(url.rfind(':') + 1));
 }
 
@@ -76,7 +76,14 @@ TEST_F(FlightConsoleTest, ShowsWhatTheVisionSees) {
   ASSERT_TRUE(threshold);
   EXPECT_EQ((*threshold)["view"], "threshold 1/2");
   EXPECT_EQ((*threshold)["sequence"], (*image)["sequence"]);
-  console_.Take(FlightReport{});
+  FlightReport report;
+  report.autopilot.emplace();
+  console_.Take(report);
+  const auto sources = socket.Next("sources");
+  ASSERT_TRUE(sources);
+  EXPECT_GE((*sources)["sources"][0]["age_ms"], 0);
+  EXPECT_EQ((*sources)["sources"][1]["name"], "autopilot");
+  EXPECT_TRUE((*sources)["sources"][1]["age_ms"].is_null());
   const auto status = socket.Next("status");
   ASSERT_TRUE(status);
   EXPECT_THAT((*status)["reason"].get<std::string>(), testing::HasSubstr("no ring"));
@@ -236,6 +243,28 @@ TEST(FlightHealthTest, ComparesSeconds) {
   EXPECT_EQ(verdict("camera"), "wrong") << "no frame in a second";
   EXPECT_EQ(verdict("vision"), "doubtful");
   EXPECT_EQ(verdict("autopilot"), "wrong");
+}
+
+TEST(SourceWatchTest, TellsTheAgesOfWhatTheyGaveLast) {
+  const Time start = Now();
+  SourceWatch watch;
+  FlightReport report;
+  ASSERT_EQ(watch.Update(report, start).ages.size(), 1u) << "no autopilot, no poses";
+  EXPECT_FALSE(watch.Update(report, start).ages[0].age) << "no frame yet";
+  report.autopilot.emplace().is_here = true;
+  report.autopilot->link.received = 7;
+  watch.Look(start - 40ms, /*has_pose=*/true);
+  watch.Look(start, /*has_pose=*/false);
+  const ConsoleSources sources = watch.Update(report, start + 10ms);
+  ASSERT_EQ(sources.ages.size(), 3u);
+  EXPECT_EQ(sources.ages[0].age, Duration(10ms));
+  EXPECT_EQ(sources.ages[1].source, ConsoleSource::kAutopilot);
+  EXPECT_EQ(sources.ages[1].age, Duration(0));
+  EXPECT_EQ(sources.ages[2].age, Duration(50ms));
+  EXPECT_EQ(watch.Update(report, start + 2s).ages[1].age, Duration(1990ms)) << "no more packets";
+  report.autopilot->is_here = false;
+  report.autopilot->link.received = 8;
+  EXPECT_EQ(watch.Update(report, start + 3s).ages[1].age, Duration(2990ms)) << "those of others";
 }
 
 TEST(FlightStatusTest, SaysWhatMattersMost) {

@@ -44,6 +44,7 @@ ConsoleCheck VisionCheck(const FlightReport& now, const FlightReport& last) {
 
 ConsoleCheck LinkCheck(const AutopilotState& autopilot, double rate_hz, bool is_damaged) {
   if (!autopilot.is_here) return {"autopilot", "wrong", "no heartbeat"};
+  if (rate_hz == 0) return {"autopilot", "wrong", "no packets"};
   return {"autopilot", is_damaged ? "doubtful" : "good",
           fmt::format("{:.0f} packets/s, {} damaged, {} not sent", rate_hz,
                       autopilot.link.bad_checksums, autopilot.link.unsent)};
@@ -115,6 +116,28 @@ std::optional<ConsoleVehicle> VehicleOf(const FlightReport& report) {
     vehicle.cannot_follow = limits->cannot_follow;
   }
   return vehicle;
+}
+
+void SourceWatch::Look(Time captured, bool has_pose) {
+  frame_ = captured;
+  if (has_pose) pose_ = captured;
+}
+
+// Others may send over the link of an autopilot that is dead.
+ConsoleSources SourceWatch::Update(const FlightReport& report, Time now) {
+  ConsoleSources sources{now, {}};
+  const auto add = [&](ConsoleSource source, const std::optional<Time>& newest) {
+    sources.ages.push_back({source, newest ? std::optional(now - *newest) : std::nullopt});
+  };
+  add(ConsoleSource::kFrames, frame_);
+  if (report.autopilot) {
+    const std::uint64_t received = report.autopilot->link.received;
+    if (report.autopilot->is_here && received != received_) autopilot_ = now;
+    received_ = received;
+    add(ConsoleSource::kAutopilot, autopilot_);
+  }
+  if (report.autopilot || pose_) add(ConsoleSource::kPose, pose_);
+  return sources;
 }
 
 std::optional<ConsoleHealth> FlightHealth::Update(const FlightReport& report, Time now) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -31,6 +32,19 @@ class FlightHealth {
 
 // Returns the vehicle as its autopilot reports it; nothing in a flight without an autopilot.
 std::optional<ConsoleVehicle> VehicleOf(const FlightReport& report);
+
+// Watches when the sources of a flight gave something last. Call it from one thread.
+class SourceWatch {
+ public:
+  // A frame that the vision has seen. 'has_pose': where the camera was at that time is known.
+  void Look(Time captured, bool has_pose);
+  // Returns the ages. The autopilot's is exact to the interval of the reports.
+  ConsoleSources Update(const FlightReport& report, Time now);
+
+ private:
+  std::optional<Time> frame_, autopilot_, pose_;
+  std::uint64_t received_ = 0;  // packets by the last report
+};
 
 // Returns the state of a flight and what is in its way, in words for a pilot. 'vision': status from
 // the newest frame.

@@ -51,7 +51,9 @@ std::string Rejections(const ObjectReport& report) {
 }  // namespace
 
 std::vector<SeriesDescription> HuntSeries() {
-  return {{"objects", "", "Objects in view", true}, {"detect", "ms", "Detection"}};
+  using enum ConsoleSource;
+  return {{"objects", "", "Objects in view", {kFrames}, true},
+          {"detect", "ms", "Detection", {kFrames}}};
 }
 
 ConsoleSample HuntSample(const HuntObservation& observation) {

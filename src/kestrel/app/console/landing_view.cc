@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/app/console/landing_view.h"
 
-#include <cmath>
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -16,69 +15,81 @@
 
 #include "kestrel/app/console/map_view.h"
 #include "kestrel/vision/landing/search/threshold_view.h"
+#include "kestrel/vision/target/closed_lines.h"
 #include "kestrel/vision/target/plane_warp.h"
 
 namespace kestrel {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr int kPiecesPerCircle = 64;
 constexpr double kSigmas = 2;
 
-// The image of a closed curve. 'curve' gives its points in the camera frame for angles 0 to 2 pi.
-std::vector<cv::Point2f> Outline(const CameraModel& camera,
-                                 const std::function<Eigen::Vector3d(double)>& curve) {
-  std::vector<cv::Point2f> outline;
-  for (int i = 0; i < kPiecesPerCircle; ++i) {
-    Eigen::Vector2d pixel;
-    const Eigen::Vector3d point = curve(2 * std::numbers::pi * i / kPiecesPerCircle);
-    if (camera.Project(point, &pixel) == ProjectionStatus::kOutsideModel) continue;
-    if (pixel.allFinite()) outline.emplace_back(pixel.x(), pixel.y());
-  }
-  return outline;
+// Projects a point (m) to its pixel; false when the lens does not show it.
+using Projection = std::function<bool(const Eigen::Vector3d& point, Eigen::Vector2d* pixel)>;
+
+std::optional<cv::Point2f> PixelOf(const Eigen::Vector3d& point, const Projection& project) {
+  Eigen::Vector2d pixel;
+  if (!project(point, &pixel) || !pixel.allFinite()) return std::nullopt;
+  return cv::Point2f(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
 }
 
-// Projects a point of the pad (m) to its pixel; false when the lens does not show it.
-using PadProjection = std::function<bool(const Eigen::Vector3d& point, Eigen::Vector2d* pixel)>;
-
-PadProjection ByPose(const CameraModel& camera, const RigidTransform& camera_from_pattern) {
-  return [&](const Eigen::Vector3d& point, Eigen::Vector2d* pixel) {
-    return camera.Project(camera_from_pattern * point, pixel) != ProjectionStatus::kOutsideModel;
+Projection ByPose(const CameraModel& camera, const RigidTransform& camera_from_points) {
+  return [&camera, camera_from_points](const Eigen::Vector3d& point, Eigen::Vector2d* pixel) {
+    return camera.Project(camera_from_points * point, pixel) != ProjectionStatus::kOutsideModel;
   };
 }
 
-PadProjection AsSeen(const PlaneWarp& warp) {
+Projection AsSeen(const PlaneWarp& warp) {
   return [&](const Eigen::Vector3d& point, Eigen::Vector2d* pixel) {
     return warp.Project(point.head<2>(), pixel);
   };
 }
 
+// Adds a closed line in the image, where the lens shows it: nothing is drawn across what it does
+// not show. The first piece takes the label.
+void AddClosedLine(const std::vector<Eigen::Vector3d>& points, const Projection& project,
+                   OverlayLayer layer, std::string* label, std::vector<OverlayShape>* shapes) {
+  std::vector<std::optional<cv::Point2f>> line;
+  for (const Eigen::Vector3d& point : points) line.push_back(PixelOf(point, project));
+  const auto gap = std::find(line.begin(), line.end(), std::nullopt);
+  const bool is_closed = gap == line.end();
+  // A line with gaps begins after one of them; each piece ends before the next.
+  if (!is_closed) std::rotate(line.begin(), gap, line.end());
+  std::vector<cv::Point2f> piece;
+  const auto end_piece = [&] {
+    if (piece.size() > 1) {
+      shapes->push_back({layer, std::exchange(piece, {}), std::exchange(*label, {}), is_closed});
+    }
+    piece.clear();
+  };
+  for (const auto& point : line) {
+    if (point) piece.push_back(*point);
+    if (!point) end_piece();
+  }
+  end_piece();
+}
+
 // Adds the outlines of the pad; the first one has the label.
-void AddOutlines(const TargetShape& pad, const PadProjection& project, OverlayLayer layer,
+void AddOutlines(const TargetShape& pad, const Projection& project, OverlayLayer layer,
                  std::string label, std::vector<OverlayShape>* shapes) {
   for (const std::vector<Eigen::Vector3d>& line : pad.outlines) {
-    OverlayShape& shape = shapes->emplace_back(OverlayShape{layer, {}, std::exchange(label, {})});
-    for (const Eigen::Vector3d& point : line) {
-      Eigen::Vector2d pixel;
-      if (project(point, &pixel) && pixel.allFinite()) {
-        shape.outline.emplace_back(pixel.x(), pixel.y());
-      }
-    }
+    AddClosedLine(line, project, layer, &label, shapes);
   }
 }
 
-std::vector<cv::Point2f> TrackOutline(const CameraModel& camera,
-                                      const RigidTransform& camera_from_world,
-                                      const TurnState& motion) {
+// Returns the ellipse around the track's centre, in the world.
+std::vector<Eigen::Vector3d> TrackEllipse(const TurnState& motion) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(
       motion.covariance.topLeftCorner<2, 2>());
   const Eigen::Matrix2d root =
       axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
-  return Outline(camera, [&](double angle) {
-    Eigen::Vector3d point = motion.position();
-    point.head<2>() += kSigmas * root * Eigen::Vector2d(std::cos(angle), std::sin(angle));
-    return Eigen::Vector3d(camera_from_world * point);
-  });
+  std::vector<Eigen::Vector3d> ellipse = CircleLine(kSigmas);
+  for (Eigen::Vector3d& point : ellipse) {
+    const Eigen::Vector2d offset = root * point.head<2>();
+    point = motion.position();
+    point.head<2>() += offset;
+  }
+  return ellipse;
 }
 
 // The recognised parts of the pattern.
@@ -132,11 +143,12 @@ LandingView ViewOf(const CameraCalibration& calibration, const LandingPipelineOp
 }
 
 std::vector<SeriesDescription> LandingSeries() {
-  return {{"height", "m", "Height"},
-          {"offset", "m", "Offset"},
-          {"speed", "m/s", "Target's speed"},
-          {"quality", "", "Quality"},
-          {"detect", "ms", "Detection"}};
+  using enum ConsoleSource;
+  return {{"height", "m", "Camera height", {kFrames, kPose}},
+          {"offset", "m", "Camera offset", {kFrames, kPose}},
+          {"speed", "m/s", "Target's speed", {kFrames, kPose}},
+          {"quality", "", "Quality", {kFrames}},
+          {"detect", "ms", "Detection", {kFrames}}};
 }
 
 ConsoleSample LandingSample(const LandingObservation& observation) {
@@ -161,10 +173,10 @@ std::vector<OverlayShape> LandingShapes(const LandingView& view,
                                         const LandingObservation& observation) {
   std::vector<OverlayShape> shapes;
   if (observation.target && observation.world_from_camera) {
-    shapes.push_back({OverlayLayer::kPrediction,
-                      TrackOutline(view.camera, observation.world_from_camera->Inverse(),
-                                   observation.target->motion),
-                      ""});
+    std::string no_label;
+    AddClosedLine(TrackEllipse(observation.target->motion),
+                  ByPose(view.camera, observation.world_from_camera->Inverse()),
+                  OverlayLayer::kPrediction, &no_label, &shapes);
   }
   if (!observation.report.detection) return shapes;
   const LandingDetection& found = *observation.report.detection;
@@ -208,6 +220,8 @@ ConsoleStatus LandingStatus(const LandingObservation& observation) {
   const LandingReport& report = observation.report;
   ConsoleStatus status;
   status.state = ToString(observation.track_state);
+  // One sighting is no track yet.
+  if (report.detection && observation.track_state == TrackState::kSearching) status.state = "found";
   if (!report.detection) {
     status.reason = "not found: " + MissInWords(observation);
   } else if (observation.fate == MeasurementFate::kFarFromTrack) {

@@ -9,6 +9,7 @@
 #include "kestrel/core/camera/paper_camera.h"
 #include "kestrel/vision/landing/landing_pattern.h"
 #include "kestrel/vision/target/plane_warp.h"
+#include "kestrel/vision/targets/make_target_detector.h"
 
 namespace kestrel {
 namespace {
@@ -43,6 +44,17 @@ LandingView View() {
   return {CameraModel(PaperCamera()), ShapeOf(LandingPattern()), TargetTrackerOptions().Noise()};
 }
 
+// Returns the length of the longest drawn piece of a shape.
+double LongestPiece(const OverlayShape& shape) {
+  const std::size_t count = shape.outline.size();
+  double longest = 0;
+  for (std::size_t i = shape.is_closed ? 0 : 1; i < count; ++i) {
+    longest =
+        std::max(longest, cv::norm(shape.outline[i] - shape.outline[(i + count - 1) % count]));
+  }
+  return longest;
+}
+
 cv::Point2f Middle(const OverlayShape& shape) {
   cv::Point2f sum(0, 0);
   for (const cv::Point2f& point : shape.outline) sum += point;
@@ -69,6 +81,42 @@ TEST(LandingViewTest, TheTracksEllipseLiesWhereTheRingIs) {
   // Two standard deviations of 0.5 m and 0.1 m to either side; the ring is 1 m wide.
   EXPECT_NEAR(Width(shapes[0], false) / Width(shapes[1], false), 2, 0.1);
   EXPECT_NEAR(Width(shapes[0], true) / Width(shapes[1], true), 0.4, 0.05);
+}
+
+// The longest side of any of these pads is drawn in 8 pieces, as the print has no diagonals.
+TEST(LandingViewTest, NoLineIsDrawnAcrossAPad) {
+  for (const char* const kind :
+       {"ring-cross", "ring-with-tags", "apriltag", "aruco", "nested", "helipad"}) {
+    TargetOptions target;
+    target.kind = kind;
+    LandingView view = View();
+    view.shape = ShapeOfTarget(target, {});
+    const auto shapes = LandingShapes(view, Seen());
+    ASSERT_EQ(shapes.size(), view.shape.outlines.size() + 2) << kind;
+    for (std::size_t i = 1; i + 1 < shapes.size(); ++i) {
+      const double size = std::max(Width(shapes[i], false), Width(shapes[i], true));
+      EXPECT_TRUE(shapes[i].is_closed) << kind;
+      EXPECT_LT(LongestPiece(shapes[i]), 0.15 * size) << kind << ", line " << i;
+    }
+  }
+}
+
+TEST(LandingViewTest, ALineEndsWhereTheLensShowsNothing) {
+  // A pad so near, beside a lens that shows a part of the world only.
+  LandingObservation observation = Seen();
+  observation.report.detection->camera_from_pattern.translation = {0.6, 0, 0.05};
+  observation.target.reset();
+  LandingView view = View();
+  CameraIntrinsics narrow = PaperCamera();
+  narrow.distortion_model = DistortionModel::kNone;
+  narrow.distortion.clear();
+  view.camera = CameraModel(narrow);
+  observation.report.detection->camera_from_pattern.rotation =
+      Eigen::Quaterniond(Eigen::AngleAxisd(1.2, Eigen::Vector3d::UnitY()));
+  const auto shapes = LandingShapes(view, observation);
+  ASSERT_GT(shapes.size(), 1U);
+  EXPECT_FALSE(shapes[0].is_closed) << "the ring leaves what the lens shows";
+  EXPECT_NE(shapes[0].label, "");
 }
 
 TEST(LandingViewTest, WhatTheTrackDoesNotTakeIsRejected) {

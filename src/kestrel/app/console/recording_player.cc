@@ -18,7 +18,7 @@ constexpr Duration kTellInterval = std::chrono::milliseconds(250);
 
 std::vector<SeriesDescription> ReplaySeries(const ReplaySubject& subject) {
   std::vector<SeriesDescription> series = subject.series;
-  if (subject.has_truth) series.push_back({"error", "px", "Error"});
+  if (subject.has_truth) series.push_back({"error", "px", "Error", {ConsoleSource::kFrames}});
   return series;
 }
 
@@ -67,6 +67,7 @@ RecordingPlayer::RecordingPlayer(const ReplaySubject& subject, ReplayResult firs
       clips_(feed) {
   playhead_.Step(static_cast<double>(FirstFound(first_->frames)));
   SendTimeline();
+  SendSeries();
   feed_->Add(subject.options);
 }
 
@@ -165,9 +166,7 @@ void RecordingPlayer::ShowFrame() {
 void RecordingPlayer::TellFrame() {
   const std::size_t index = playhead_.frame();
   const ReplayFrame& frame = first_->frames[index];
-  ConsoleSample sample = frame.sample;
-  if (has_truth_) sample.values.push_back(frame.error_px.value_or(std::nan("")));
-  feed_->Add(std::move(sample));
+  feed_->Add(ConsoleSample{frame.time, ValuesOf(frame)});
   ConsoleMap map = frame.map;
   for (const MapEntry& entry : first_->map) {
     if (entry.since <= frame.time) map.mapped.push_back(entry.object);
@@ -224,6 +223,22 @@ Clip RecordingPlayer::ClipOf(const ExportRequest& request) const {
   };
   return {start, request.last - request.number + 1, RateOf(*first_, request.number, request.last),
           fmt::format("{}-{}-{}", has_shapes ? "overlays" : "clip", request.number, request.last)};
+}
+
+std::vector<double> RecordingPlayer::ValuesOf(const ReplayFrame& frame) const {
+  std::vector<double> values = frame.sample.values;
+  if (has_truth_) values.push_back(frame.error_px.value_or(std::nan("")));
+  return values;
+}
+
+void RecordingPlayer::SendSeries() {
+  ConsoleSeries series{TimesOf(*first_), {}};
+  for (const ReplayFrame& frame : first_->frames) {
+    const std::vector<double> values = ValuesOf(frame);
+    series.values.resize(values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) series.values[i].push_back(values[i]);
+  }
+  feed_->Add(std::move(series));
 }
 
 void RecordingPlayer::SendTimeline() {

@@ -73,6 +73,8 @@ class RecordingPlayer {
   ExportAnswer MakeExport(const ExportRequest& request) const;
   Clip ClipOf(const ExportRequest& request) const;
   void SendTimeline();
+  void SendSeries();
+  std::vector<double> ValuesOf(const ReplayFrame& frame) const;
 
   bool has_truth_;
   ConsoleFeed* feed_;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "kestrel/app/console/calibration_page.h"
 #include "kestrel/app/console/color_page.h"
@@ -28,7 +29,8 @@ class ReplayConsole {
   ReplayConsole(const ConsoleOptions& options, const std::string& title, ReplaySubject subject,
                 std::optional<ColorSource> colors = std::nullopt);
 
-  std::string url() const { return server_.url(); }
+  // As WebServer::urls.
+  std::vector<std::string> urls() const { return server_.urls(); }
 
   // Shows the progress in words before there is anything to play.
   void SetProgress(const std::string& text) { feed_.Add(ConsoleStatus{"detecting", text, false}); }

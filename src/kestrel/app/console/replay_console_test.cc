@@ -95,7 +95,7 @@ class ReplayConsoleTest : public testing::Test {
     return {};
   }
   int port() const {
-    const std::string url = console_.url();
+    const std::string url = console_.urls().front();
     return std::stoi(url.substr(url.rfind(':') + 1));
   }
   // Reads until the page is told this frame with this speed; false when it is not.

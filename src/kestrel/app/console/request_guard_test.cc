@@ -107,8 +107,24 @@ TEST(ConsoleOptionsTest, NamesWhatIsWrongButNeverTheToken) {
                                    "port is 70000, expected 0 to 65535"));
   EXPECT_THAT(OptionsAt("::1").Validate(), testing::IsEmpty());
   EXPECT_THAT(OptionsAt("10.0.0.5", "0123456789abcdef").Validate(), testing::IsEmpty());
-  EXPECT_THAT(OptionsAt("10.0.0.5").Validate(),
-              testing::ElementsAre(testing::StartsWith("token is empty, expected one")));
+}
+
+TEST(ConsoleOptionsTest, WhatOthersReachHasAToken) {
+  EXPECT_EQ(WithToken(OptionsAt("127.0.0.1")).token, "");
+  const ConsoleOptions open = WithToken(OptionsAt("0.0.0.0"));
+  EXPECT_EQ(open.token.size(), 32u);
+  EXPECT_THAT(open.Validate(), testing::IsEmpty());
+  EXPECT_NE(WithToken(OptionsAt("0.0.0.0")).token, open.token);
+  EXPECT_EQ(WithToken(OptionsAt("0.0.0.0", "0123456789abcdef")).token, "0123456789abcdef");
+}
+
+TEST(RequestGuardTest, OwnNameIsAHost) {
+  const RequestGuard guard(OptionsAt("0.0.0.0", "0123456789abcdef"), 8080);
+  for (const std::string& host : {OwnHostName(), OwnHostName() + ".local:8080"}) {
+    EXPECT_NE(guard.Admit({.target = "/", .host = host}), Admission::kWrongHost) << host;
+  }
+  EXPECT_EQ(guard.Admit({.target = "/", .host = OwnHostName() + ".example"}),
+            Admission::kWrongHost);
 }
 
 TEST(ConsoleOptionsTest, OriginsOfViewersAreNeitherPathsNorAnything) {

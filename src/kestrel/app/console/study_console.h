@@ -37,7 +37,8 @@ class StudyConsole {
   StudyConsole(const ConsoleOptions& options, const std::string& title, StudyResults results,
                std::vector<StudyVariant> variants, ReplaySubject subject, Open open);
 
-  std::string url() const { return server_.url(); }
+  // As WebServer::urls.
+  std::vector<std::string> urls() const { return server_.urls(); }
 
   // Shows what the users ask for, until 'is_stopped' returns true; it is called often.
   void Play(const std::function<bool()>& is_stopped);

@@ -4,6 +4,9 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <ifaddrs.h>
+#include <net/if.h>
+#include <netinet/in.h>
 #include <sys/resource.h>
 #include <thread>
 #include <utility>
@@ -40,13 +43,32 @@ Tcp::acceptor Listen(asio::io_context& context, const ConsoleOptions& options) {
   }
 }
 
+std::string HostOf(const asio::ip::address& address) {
+  return address.is_v6() ? "[" + address.to_string() + "]" : address.to_string();
+}
+
+// IPv4 addresses at which other devices reach this computer.
+std::vector<std::string> OwnAddresses() {
+  std::vector<std::string> addresses;
+  ifaddrs* interfaces = nullptr;
+  if (getifaddrs(&interfaces) != 0) return addresses;
+  for (const ifaddrs* one = interfaces; one != nullptr; one = one->ifa_next) {
+    const bool is_up = (one->ifa_flags & IFF_UP) != 0 && (one->ifa_flags & IFF_LOOPBACK) == 0;
+    if (!is_up || one->ifa_addr == nullptr || one->ifa_addr->sa_family != AF_INET) continue;
+    const auto* const address = reinterpret_cast<const sockaddr_in*>(one->ifa_addr);
+    addresses.push_back(asio::ip::address_v4(ntohl(address->sin_addr.s_addr)).to_string());
+  }
+  freeifaddrs(interfaces);
+  return addresses;
+}
+
 }  // namespace
 
 class WebServer::Impl {
  public:
   Impl(const ConsoleOptions& options, ConsoleFeed* feed, std::span<const WebAsset> assets,
        ChannelFeed* channels)
-      : options_(Checked(options)),
+      : options_(WithToken(Checked(options))),
         acceptor_(Listen(context_, options_)),
         timer_(context_),
         port_(acceptor_.local_endpoint().port()) {
@@ -66,13 +88,23 @@ class WebServer::Impl {
 
   std::string Url(std::string_view scheme, std::string_view path) const {
     const auto address = acceptor_.local_endpoint().address();
-    std::string host = address.is_unspecified() ? "localhost" : address.to_string();
-    if (address.is_v6() && !address.is_unspecified()) host = "[" + host + "]";
+    return Url(scheme, address.is_unspecified() ? "localhost" : HostOf(address), path);
+  }
+
+  std::vector<std::string> Urls() const {
+    std::vector<std::string> urls = {Url("http", "/")};
+    if (!acceptor_.local_endpoint().address().is_unspecified()) return urls;
+    for (const std::string& host : OwnAddresses()) urls.push_back(Url("http", host, "/"));
+    if (urls.size() > 1) urls.push_back(Url("http", OwnHostName() + ".local", "/"));
+    return urls;
+  }
+
+ private:
+  std::string Url(std::string_view scheme, const std::string& host, std::string_view path) const {
     const std::string query = options_.token.empty() ? "" : "?token=" + options_.token;
     return fmt::format("{}://{}:{}{}{}", scheme, host, port_, path, query);
   }
 
- private:
   void Serve() {
     SetUpThisThread("console", {});
     // On Linux this concerns this thread only. Where it is not permitted the server runs all the
@@ -124,7 +156,7 @@ WebServer::~WebServer() = default;
 
 int WebServer::port() const { return impl_->port(); }
 
-std::string WebServer::url() const { return impl_->Url("http", "/"); }
+std::vector<std::string> WebServer::urls() const { return impl_->Urls(); }
 
 std::string WebServer::viewer_url() const { return impl_->Url("ws", kViewerPath); }
 

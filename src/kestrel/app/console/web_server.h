@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "kestrel/app/console/channel_feed.h"
 #include "kestrel/app/console/console_feed.h"
@@ -39,8 +40,9 @@ class WebServer {
   WebServer& operator=(const WebServer&) = delete;
 
   int port() const;
-  // URL to open in a browser on this computer, with the token if there is one.
-  std::string url() const;
+  // URLs of the page, with the token if there is one: the first for a browser on this computer, the
+  // others for other devices, where it serves all addresses of this computer.
+  std::vector<std::string> urls() const;
   // URL for a viewer.
   std::string viewer_url() const;
   Counters counters() const;

@@ -131,7 +131,7 @@ TEST_F(WebServerTest, WrongHostsAndOriginsAreRefused) {
 
 TEST_F(WebServerTest, WithATokenNothingIsSaidWithoutIt) {
   const WebServer server(AnyPort(kSecret), &feed_, kAssets);
-  EXPECT_THAT(server.url(), testing::EndsWith("/?token=0123456789abcdef"));
+  EXPECT_THAT(server.urls().front(), testing::EndsWith("/?token=0123456789abcdef"));
   for (const char* target : {"/", "/index.html", "/nothing", "/?token=0123456789abcdee"}) {
     TestBrowser browser(server.port());
     const auto answer = browser.Send(browser.Get(target));
