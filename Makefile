@@ -25,10 +25,7 @@ export CCACHE_SLOPPINESS ?= locale
 demo: command  ## a simulated landing, or with DATA=<folder> [CAMERA=<file>] your own images
 	scripts/demo $(BIN) "$(DATA)" "$(CAMERA)"
 
-console:  ## the web page: what it needs, built in, over a simulated flight
-	scripts/install-deps --console
-	cmake --preset release
-	cmake --build --preset release --target kestrel
+console: command  ## the web page over a simulated flight
 	$(BIN)/src/kestrel/app/cli/kestrel console --demo
 
 test: tests
@@ -68,11 +65,11 @@ interop:  ## MAVLink, MCAP, live flights, bags and ROS 2 against implementations
 	cmake --build --preset release --target interop
 	ctest --preset release -R ^interop/ --no-tests=error
 
-browser:  ## the console's page: its unit tests, and used in Chromium as a person would; pictures to out/browser
+browser:  ## the console's page: its unit tests, proof that web/page is made of it, and used in Chromium as a person would; pictures to out/browser
 	scripts/install-deps --browser
 	cmake --preset release
 	cmake --build --preset release --target kestrel
-	cd web && npm test && npm run try -- ../$(BIN)/src/kestrel/app/cli/kestrel ../out/browser
+	cd web && npm test && npm run check-page && npm run try -- ../$(BIN)/src/kestrel/app/cli/kestrel ../out/browser
 
 bench: build  ## speed
 	@for program in $(BIN)/bench/*_benchmark $(BIN)/bench/landing_speed; do echo "== $$program"; $$program || exit; done
@@ -139,8 +136,7 @@ configure-tests:
 	cmake --preset release
 
 package:  ## packages for DIST (bookworm, trixie) and ARCH (amd64, arm64), in out/packages/DIST
-	scripts/install-deps --package --console
-	cd web && npm run --silent build
+	scripts/install-deps --package
 	packaging/build $(DIST) $(ARCH)
 
 repository:  ## a signed repository for apt of all packages, in out/repository; KEY=<key of gpg>

@@ -1,9 +1,6 @@
-# Writes OUTPUT, the C++ source of WebAssets(): the files of FOLDER, and PLAIN_PAGE as /index.html
-# where the folder has none.
+# Writes OUTPUT, the C++ source of WebAssets(): the files of FOLDER, gzipped.
 #
-#   cmake -DFOLDER=web/dist -DPLAIN_PAGE=plain_page.html -DOUTPUT=web_assets.cc -P EmbedWebAssets.cmake
-#
-# web/'s build gzips its files; a name that ends in .gz is served without it.
+#   cmake -DFOLDER=web/page -DOUTPUT=web_assets.cc -P EmbedWebAssets.cmake
 cmake_minimum_required(VERSION 3.22)
 
 function(web_type name result)
@@ -24,35 +21,21 @@ endfunction()
 set(arrays "")
 set(entries "")
 set(count 0)
-macro(embed file path)
-  file(READ ${file} bytes HEX)
+file(GLOB_RECURSE files ${FOLDER}/*)
+list(SORT files)
+foreach(file IN LISTS files)
+  file(RELATIVE_PATH path ${FOLDER} ${file})
+  execute_process(COMMAND gzip -9nc ${file} OUTPUT_FILE ${OUTPUT}.gz COMMAND_ERROR_IS_FATAL ANY)
+  file(READ ${OUTPUT}.gz bytes HEX)
   string(REGEX REPLACE "(..)" "0x\\1," bytes "${bytes}")
   string(REGEX REPLACE "(................................................................................)" "\\1\n"
                        bytes "${bytes}")
-  set(is_gzipped false)
-  if(${file} MATCHES "\\.gz$")
-    set(is_gzipped true)
-  endif()
   web_type(${path} type)
   string(APPEND arrays "constexpr unsigned char kFile${count}[] = {\n${bytes}};\n")
-  string(APPEND entries
-         "    {\"${path}\", \"${type}\", Content(kFile${count}), ${is_gzipped}},\n")
+  string(APPEND entries "    {\"/${path}\", \"${type}\", Content(kFile${count}), true},\n")
   math(EXPR count "${count} + 1")
-endmacro()
-
-set(files "")
-if(FOLDER AND EXISTS ${FOLDER}/index.html.gz)
-  file(GLOB_RECURSE files ${FOLDER}/*.gz)
-  list(SORT files)
-endif()
-foreach(file IN LISTS files)
-  file(RELATIVE_PATH name ${FOLDER} ${file})
-  string(REGEX REPLACE "\\.gz$" "" name ${name})
-  embed(${file} "/${name}")
 endforeach()
-if(NOT files)
-  embed(${PLAIN_PAGE} "/index.html")
-endif()
+file(REMOVE ${OUTPUT}.gz)
 
 file(WRITE ${OUTPUT}.new "// Made by cmake/EmbedWebAssets.cmake.
 #include \"kestrel/app/console/web_assets.h\"

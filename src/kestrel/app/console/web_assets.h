@@ -14,8 +14,7 @@ struct WebAsset {
   bool is_gzipped = false;
 };
 
-// The files that the build makes of web/ and puts into the program. A build without Node has
-// instead one page that says how to get them.
+// The files of web/page, which the build puts into the program.
 std::span<const WebAsset> WebAssets();
 
 }  // namespace kestrel
