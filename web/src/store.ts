@@ -35,7 +35,7 @@ export type Theme = (typeof themes)[number];
 export type Page = "watch" | "colors" | "calibration" | "study";
 
 /** Parts of a page of which a phone shows one. */
-export const panels = ["view", "map", "plots", "again", "health", "events"] as const;
+export const panels = ["view", "map", "plots", "save", "again", "health", "events"] as const;
 export type PanelName = (typeof panels)[number];
 
 export interface State {

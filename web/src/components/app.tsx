@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { useEffect } from "preact/hooks";
 import { isOffered } from "../actions";
-import { panels } from "../store";
+import { panels, type PanelName } from "../store";
 import { useStore } from "../use_store";
 import { CalibrationPage } from "./calibration_page";
 import { Charts } from "./charts";
 import { ColorPage } from "./color_page";
 import { EventsPanel } from "./events_panel";
+import { ExportPanel } from "./export_panel";
 import { Header } from "./header";
 import { HealthPanel } from "./health_panel";
 import { HelpDialog } from "./help_dialog";
@@ -44,6 +45,8 @@ export function App() {
 function WatchPage() {
   const hasTimeline = useStore((state) => state.timeline !== null);
   const hasOptions = useStore((state) => state.options.length > 0);
+  const hasExports = useStore((state) => state.hello?.exports ?? false);
+  const isThere = (name: PanelName) => (name !== "again" || hasOptions) && (name !== "save" || hasExports);
   return (
     <main class="watch">
       <div class="stage">
@@ -52,11 +55,12 @@ function WatchPage() {
         {hasTimeline && <ReplayBar />}
       </div>
       <div class="details">
-        <PanelSwitch names={panels.filter((name) => name !== "again" || hasOptions)} />
+        <PanelSwitch names={panels.filter(isThere)} />
         <div class="column">
           <Panel name="view">
             <ViewPanel />
           </Panel>
+          <Panel name="save">{hasExports && <ExportPanel />}</Panel>
           <Panel name="plots">
             <Charts />
           </Panel>

@@ -6,18 +6,14 @@ import type { Timeline } from "../protocol";
 import { clockText } from "../timeline";
 import { useStore } from "../use_store";
 
-interface ExportPanelProps {
-  timeline: Timeline;
-  frame: number;
-  hasSecond: boolean;
-}
-
 /** What can be taken away: the frame that is shown, the tables of what was found, a clip. */
-export function ExportPanel({ timeline, frame, hasSecond }: ExportPanelProps) {
-  const isOffered = useStore((state) => state.hello?.exports ?? false);
-  if (!isOffered) return null;
+export function ExportPanel() {
+  const timeline = useStore((state) => state.timeline);
+  const frame = useStore((state) => state.playback?.frame ?? 0);
+  const hasSecond = useStore((state) => state.second?.state === "done");
+  if (!timeline) return null;
   return (
-    <>
+    <section class="export" aria-label="Save">
       <p class="exports">
         Save: <a href={`/export/frame-${frame}.png`} download>frame</a>
         <a href={`/export/overlays-${frame}.png`} download>frame with overlays</a>
@@ -25,7 +21,7 @@ export function ExportPanel({ timeline, frame, hasSecond }: ExportPanelProps) {
         {hasSecond && <a href="/export/detections-2.csv" download>second run's detections (CSV)</a>}
       </p>
       <ClipChooser timeline={timeline} />
-    </>
+    </section>
   );
 }
 

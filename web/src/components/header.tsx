@@ -41,10 +41,11 @@ function State() {
   const title = useStore((state) => state.hello?.title) ?? "Kestrel";
   const over = useStore((state) => (state.status?.over && state.connection !== "refused" ? state.status : null));
   const said = useSaid();
+  const hasSilent = useStore((state) => state.staleness.old.length > 0);
   // The program ends with the flight: what is gone then is no fault. Another may come at its address.
   if (over) return <FlightOver title={title} status={over} />;
   return (
-    <div class="state" data-state={said.data}>
+    <div class="state" data-state={said.data} data-alarm={hasSilent}>
       <h1>{title}</h1>
       <p class="state-word" role="status">
         {said.words}

@@ -2,7 +2,6 @@
 import { seekTrouble, setSpeed, step, togglePlaying } from "../actions";
 import { clockText, markAt, markInWords } from "../timeline";
 import { useStore } from "../use_store";
-import { ExportPanel } from "./export_panel";
 import { Scrubber } from "./scrubber";
 
 const speeds = [0.1, 0.25, 0.5, 1, 2, 5, 10];
@@ -35,14 +34,13 @@ export function ReplayBar() {
             ))}
           </select>
         </label>
-        <span class="replay-time">
+      </div>
+      <p class="replay-time">
           {clockText(timeline.times_ms[frame] ?? 0)} / {clockText(timeline.times_ms.at(-1) ?? 0)},
           frame {frame + 1} of {timeline.times_ms.length}, {markInWords(markAt(timeline, frame))}
           {second?.state === "done" && `, second run: ${markInWords(markAt(second, frame))}`}
-        </span>
-      </div>
+      </p>
       <Scrubber timeline={timeline} second={second?.state === "done" ? second.marks : null} frame={frame} />
-      <ExportPanel timeline={timeline} frame={frame} hasSecond={second?.state === "done"} />
     </section>
   );
 }
