@@ -27,8 +27,8 @@ const frameCount = flightSeconds * framesPerSecond;
 
 const ofPose = ["frames", "pose"];
 const series = [
-  { name: "height", unit: "m", label: "Height of the camera", sources: ofPose },
-  { name: "offset", unit: "m", label: "Offset of the camera", sources: ofPose },
+  { name: "height", unit: "m", label: "Camera height", sources: ofPose },
+  { name: "offset", unit: "m", label: "Camera offset", sources: ofPose },
   { name: "speed", unit: "m/s", label: "Target's speed", sources: ofPose },
   { name: "quality", unit: "", label: "Quality", sources: ["frames"] },
   { name: "detect", unit: "ms", label: "Detection", sources: ["frames"] },
@@ -57,12 +57,14 @@ const options = [
 
 /**
  * Starts the server; resolves to it. 'isReplay': as `kestrel console` of a recording; 'isStudy': of a study. Its
- * 'silent' are the sources of a flight that give nothing any more, with the time of the last, ms.
+ * 'silent' are the sources of a flight that give nothing any more, with the time of the last, ms; "program": it says
+ * nothing at all; "flight": it is over.
  */
 export function startMockServer(port, isReplay = false, isStudy = false) {
   const server = createServer(sendFile);
   const sockets = new WebSocketServer({ server, path: "/live" });
   server.silent = new Map();
+  server.sockets = sockets;
   sockets.on("connection", (socket) => new Client(socket, isReplay, isStudy, server.silent));
   return new Promise((resolve) => server.listen(port, "127.0.0.1", () => resolve(server)));
 }
@@ -97,7 +99,7 @@ class Client {
     socket.on("message", (text) => this.receive(JSON.parse(text)));
     const timer = setInterval(() => this.tick(), 1000 / framesPerSecond);
     socket.on("close", () => clearInterval(timer));
-    this.greet();
+    if (!silent.has("program")) this.greet();
   }
 
   send(message) {
@@ -220,6 +222,7 @@ class Client {
   }
 
   tick() {
+    if (this.silent.has("program")) return;
     if (!this.isReplay) this.frame += 1;
     else if (this.speed !== 0) this.frame = Math.round(this.frame + Math.max(this.speed, 1)) % frameCount;
     this.tellAll();
@@ -228,7 +231,9 @@ class Client {
   tellAll() {
     const flight = flightAt(this.frame / framesPerSecond);
     const [state, reason] = stateAt(flight);
-    this.send({ kind: "status", state, reason, recording: this.isRecording, over: false, replay: "" });
+    const over = this.silent.has("flight");
+    const end = { state: "flight over", reason: "landed, 0.04 m from the centre by the estimate", over, replay: "kept/flight_08" };
+    this.send({ kind: "status", state, reason, recording: this.isRecording, over: false, replay: "", ...(over ? end : {}) });
     if (!this.isReplay) this.send(vehicleAt(flight));
     if (!this.isReplay) this.sendSources();
     this.send({ kind: "sample", time: this.time(), values: valuesAt(flight) });

@@ -29,10 +29,22 @@ const views = [
   { name: "study-beside", theme: "light", width: 1440, height: 1000, isStudy: true, opens: true },
 ];
 
+// What a phone and a laptop show of a flight that lives, stops, loses its network and ends, and of a replay.
+const sizes = [[390, 844], [844, 390], [1280, 900]];
+for (const state of ["live", "stopped", "lost", "ended", "replay"]) {
+  for (const [width, height] of sizes) {
+    for (const theme of ["sun", "dark"]) {
+      views.push({ name: `${state}-${width}x${height}-${theme}`, theme, width, height, state, isReplay: state === "replay", isShort: true });
+    }
+  }
+}
+
+// A word after the folder: only views whose names begin so.
+const wanted = views.filter(({ name }) => name.startsWith(process.argv[3] ?? ""));
 let findings = 0;
 const servers = [await startMockServer(8091), await startMockServer(8092, true), await startMockServer(8093, true, true)];
 const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: ["--no-sandbox"] });
-for (const view of views) {
+for (const view of wanted) {
   const page = await browser.newPage({ viewport: { width: view.width, height: view.height }, bypassCSP: false });
   page.on("pageerror", (error) => report(`${view.name}: ${error}`));
   page.on("console", (message) => {
@@ -45,16 +57,27 @@ for (const view of views) {
   if (view.isColors) await teachColor(page);
   else await page.keyboard.press("3");
   if (view.calibrates) await calibrate(page);
-  if (view.isReplay && !view.isColors && !view.calibrates) await detectAgain(page);
+  if (view.isReplay && !view.isColors && !view.calibrates && !view.isShort) await detectAgain(page);
   if (view.isBeside) await page.keyboard.press("b");
-  await page.waitForTimeout(view.isColors || view.calibrates ? 1000 : 7000);
+  await page.waitForTimeout(view.isColors || view.calibrates ? 1000 : view.isShort ? 4000 : 7000);
+  await reach(view.state, servers[0]);
   await page.screenshot({ path: join(folder, `${view.name}.png`) });
   for (const finding of await findingsOf(page)) report(`${view.name}: ${finding}`);
   await page.close();
+  servers[0].silent.clear();
 }
 await browser.close();
 for (const server of servers) server.close();
 process.exit(findings > 0 ? 1 : 0);
+
+/** A flight that has come to a state, some seconds ago. */
+async function reach(state, server) {
+  if (state === "stopped") server.silent.set("program", Date.now());
+  if (state === "ended") server.silent.set("flight", Date.now());
+  if (state === "lost") server.sockets.clients.forEach((socket) => socket.terminate());
+  if (state === "lost") server.silent.set("program", Date.now());
+  if (["stopped", "ended", "lost"].includes(state)) await new Promise((resolve) => setTimeout(resolve, 2500));
+}
 
 async function detectAgain(page) {
   await page.getByLabel("Change").selectOption("landing.detector.min_quality");

@@ -211,7 +211,7 @@ export function numberText(value: number | null, isCount: boolean): string {
 
 function Actions() {
   const offers = useStore((state) => (state.status?.over ? undefined : state.hello?.offers));
-  const isLive = useStore((state) => state.hello?.live ?? false);
+  const canAlarm = useStore((state) => (state.hello?.live ?? false) && !state.status?.over);
   const isRecording = useStore((state) => state.status?.recording ?? false);
   const isMuted = useStore((state) => state.isMuted);
   const theme = useStore((state) => state.theme);
@@ -223,7 +223,7 @@ function Actions() {
         </button>
       )}
       {offers?.includes("snapshot") && <button onClick={takeSnapshot}>Snapshot</button>}
-      {isLive && (
+      {canAlarm && (
         <button aria-pressed={isMuted} onClick={toggleMute}>
           Mute
         </button>
