@@ -73,11 +73,11 @@ struct ConsoleSources {
 
 // A quantity that the page plots over time.
 struct SeriesDescription {
-  std::string name;                    // as "height"
-  std::string unit;                    // as "m"; empty for a pure number
-  std::string label;                   // for people
-  std::vector<ConsoleSource> sources;  // that its values come from
-  bool is_count = false;               // whole numbers
+  std::string name;                      // as "height"
+  std::string unit;                      // as "m"; empty for a pure number
+  std::string label;                     // for people
+  std::vector<ConsoleSource> sources{};  // that its values come from
+  bool is_count = false;                 // whole numbers
 };
 
 // One value per series; NaN where unknown.

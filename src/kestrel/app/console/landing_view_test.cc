@@ -186,6 +186,13 @@ TEST(LandingViewTest, SaysWhyNot) {
   EXPECT_EQ(LandingStatus(Seen()).state, "tracking");
 }
 
+TEST(LandingViewTest, OneSightingIsFoundBeforeItIsATrack) {
+  LandingObservation observation = Seen();
+  observation.track_state = TrackState::kSearching;
+  observation.target.reset();
+  EXPECT_EQ(LandingStatus(observation).state, "found");
+}
+
 TEST(LandingViewTest, TheThresholdIsSeenAtFourResolutionsOfGrayAndColour) {
   cv::Mat board(96, 128, CV_8UC1, cv::Scalar(230));
   board(cv::Rect(40, 24, 32, 32)).setTo(20);

@@ -136,6 +136,14 @@ TEST_F(ReplayConsoleTest, SeeksStepsAndPlays) {
   EXPECT_TRUE(IsTold(&socket, 0, 0));
 }
 
+TEST_F(ReplayConsoleTest, PlotsOfTheWholeRecordingAreThereAtOnce) {
+  TestSocket socket(port());
+  const auto series = socket.Next("series");
+  ASSERT_TRUE(series);
+  EXPECT_EQ((*series)["times_ms"].size(), kFrames);
+  for (const auto& values : (*series)["values"]) EXPECT_EQ(values.size(), kFrames);
+}
+
 TEST_F(ReplayConsoleTest, DetectsAgainWithOtherOptions) {
   TestSocket socket(port());
   const auto options = socket.Next("options");
