@@ -85,8 +85,7 @@ TEST(LandingViewTest, TheTracksEllipseLiesWhereTheRingIs) {
 
 // The longest side of any of these pads is drawn in 8 pieces, as the print has no diagonals.
 TEST(LandingViewTest, NoLineIsDrawnAcrossAPad) {
-  for (const char* const kind :
-       {"ring-cross", "ring-with-tags", "apriltag", "aruco", "nested", "helipad"}) {
+  for (const char* const kind : {"ring-cross", "apriltag", "aruco", "helipad"}) {
     TargetOptions target;
     target.kind = kind;
     LandingView view = View();
