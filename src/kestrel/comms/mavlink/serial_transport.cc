@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-#include "kestrel/comms/mavlink/socket_address.h"
+#include "kestrel/core/base/device_fault.h"
 #include "kestrel/core/base/error.h"
 
 namespace kestrel {
@@ -74,11 +74,9 @@ SerialTransport::SerialTransport(const LinkUrl& url) : url_(url) {
   }
   FileDescriptor file = OpenDevice(url.place);
   const int error = errno;
-  if (!file.is_open() && (error == EWOULDBLOCK || error == EBUSY)) {
-    throw InputError(
-        fmt::format("autopilot '{}': another program has {} open", url.text, url.place));
+  if (!file.is_open()) {
+    throw InputError(fmt::format("autopilot '{}': {}", url.text, DeviceFault(url.place, error)));
   }
-  if (!file.is_open()) ThrowLinkError(url, "the device cannot be opened", error);
   if (!Configure(file, *speed, url.scheme == LinkScheme::kSerialFlowControl)) {
     throw InputError(fmt::format("autopilot '{}': {} is no serial line", url.text, url.place));
   }

@@ -14,11 +14,12 @@
 #include "kestrel/flight/onboard/exposure_drive.h"
 #include "kestrel/flight/onboard/gstreamer_pipeline.h"
 #include "kestrel/flight/onboard/image_pool.h"
+#include "kestrel/io/recording/video_device.h"
+#include "kestrel/io/recording/video_source.h"
 
 namespace kestrel {
 namespace {
 
-constexpr std::string_view kDevice = "/dev/video";
 constexpr std::size_t kPooledImages = 64;  // that vision and the recorder's queue hold at a time
 
 // Returns the caps to request from a device.
@@ -50,7 +51,7 @@ GstreamerCamera::GstreamerCamera(const std::string& camera, const CameraIntrinsi
       images_(std::make_unique<ImagePool>(kPooledImages)),
       back_off_(DurationFromSeconds(options.reopen_s)) {
   constexpr Duration kFirstFrame = std::chrono::seconds(10);
-  if (camera.starts_with(kDevice) && options.exposure_property.empty()) {
+  if (camera.starts_with(kVideoDevice) && options.exposure_property.empty()) {
     v4l2_exposure_ = std::make_unique<V4l2ExposureActuator>(camera);
   }
   Open();
@@ -67,10 +68,22 @@ void GstreamerCamera::Open() {
   if (!options_.exposure_property.empty()) {
     pipeline->UseExposureProperty(options_.exposure_property, options_.exposure_unit_s);
   }
-  pipeline->Start();
+  StartPipeline(pipeline.get());
   last_arrival_ = Now();
   const std::lock_guard lock(mutex_);
   pipeline_ = std::move(pipeline);
+}
+
+// GStreamer's words for a device that does not open do not tell why.
+void GstreamerCamera::StartPipeline(GstreamerPipeline* pipeline) const {
+  try {
+    pipeline->Start();
+  } catch (const InputError&) {
+    const bool is_device = camera_.starts_with(kVideoDevice);
+    const std::string fault = is_device ? VideoDeviceFault(camera_) : "";
+    if (fault.empty()) throw;
+    throw InputError(fault);
+  }
 }
 
 std::optional<Event> GstreamerCamera::Next(Duration timeout) {

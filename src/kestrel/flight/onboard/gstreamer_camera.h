@@ -80,6 +80,7 @@ class GstreamerCamera : public LiveSource, public ExposureActuator {
  private:
   // These throw InputError with a message for the user.
   void Open();
+  void StartPipeline(GstreamerPipeline* pipeline) const;
   std::optional<Event> TakeFrame(Duration timeout);
 
   std::optional<Event> TakeFrameOrFail(Duration timeout);

@@ -13,6 +13,7 @@
 #include "kestrel/io/recording/image_file.h"
 #include "kestrel/io/recording/video_container.h"
 #include "kestrel/io/recording/video_decoder.h"
+#include "kestrel/io/recording/video_device.h"
 
 namespace kestrel {
 namespace {
@@ -135,11 +136,19 @@ std::unique_ptr<FrameSource> OpenVideoFile(const std::string& path) {
 std::unique_ptr<FrameSource> OpenCamera(const std::string& camera) {
   const bool is_pipeline = camera.find('!') != std::string::npos;
   GstElementPointer pipeline = ParsePipeline(CameraPipelineText(camera, ""), camera);
-  const char* fault =
-      is_pipeline ? "this GStreamer pipeline does not start" : "no such camera, or in use";
-  auto decoder = Open(std::move(pipeline), fmt::format("{}: {}", camera, fault));
-  return std::make_unique<VideoSource>(std::move(decoder), is_pipeline ? "gstreamer" : camera,
-                                       VideoContainer());
+  try {
+    auto decoder = std::make_unique<VideoDecoder>(std::move(pipeline));
+    return std::make_unique<VideoSource>(std::move(decoder), is_pipeline ? "gstreamer" : camera,
+                                         VideoContainer());
+  } catch (const InputError& error) {
+    const bool is_device = camera.starts_with(kVideoDevice) && !is_pipeline;
+    const std::string fault = is_device ? VideoDeviceFault(camera) : "";
+    if (!fault.empty()) throw InputError(fault);
+    throw InputError(fmt::format(
+        "{}: {}: {}", camera,
+        is_pipeline ? "this GStreamer pipeline does not start" : "the camera does not start",
+        error.what()));
+  }
 }
 
 }  // namespace kestrel

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/io/recording/video_device.h"
+
+#include <cerrno>
+#include <fcntl.h>
+#include <linux/videodev2.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include "kestrel/core/base/device_fault.h"
+
+namespace kestrel {
+
+std::string VideoDeviceFault(const std::string& path) {
+  const int device = open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+  if (device < 0) return DeviceFault(path, errno);
+  v4l2_capability capability{};
+  const bool is_video = ioctl(device, VIDIOC_QUERYCAP, &capability) == 0;
+  close(device);
+  if (!is_video) return path + ": is no video device";
+  const bool has_own = (capability.capabilities & V4L2_CAP_DEVICE_CAPS) != 0;
+  const auto can = has_own ? capability.device_caps : capability.capabilities;
+  if ((can & (V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_VIDEO_CAPTURE_MPLANE)) == 0) {
+    return path + ": gives no images (the second device of a camera, for its metadata, or a " +
+           "converter): take another number, v4l2-ctl --list-devices shows them";
+  }
+  // Any number of programs can open a camera; only one gets its images.
+  return UsersOf(path).empty() ? "" : DeviceFault(path, EBUSY);
+}
+
+}  // namespace kestrel
