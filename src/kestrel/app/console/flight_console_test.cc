@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/app/console/flight_console.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <thread>
 
@@ -217,10 +218,32 @@ TEST(HuntConsoleTest, FramesOfTheCameraAreKeptAndTaught) {
   EXPECT_TRUE(fs::exists(folder / "taught" / "objects.yaml"));
 }
 
+TEST(FlightHealthTest, WhatHadNoTimeIsNotCheckedAndWhatIsWaitedForIsSaid) {
+  FlightHealth health;
+  FlightReport state;
+  state.autopilot.emplace();
+  const Time start = Now();
+  health.Update(state, start);
+  const auto early = health.Update(state, start + 1s);
+  ASSERT_TRUE(early);
+  EXPECT_EQ(early->checks.at(0).measured, "not checked yet");
+  for (const ConsoleCheck& check : early->checks) EXPECT_NE(check.verdict, "wrong") << check.name;
+  state.trouble = "waits for the camera: no image yet";
+  state.autopilot->waits = "waits for the autopilot: nothing received on /dev/ttyAMA0";
+  const auto later = health.Update(state, start + 2s);
+  ASSERT_TRUE(later);
+  EXPECT_EQ(later->checks.at(0).measured, state.trouble);
+  const auto autopilot = std::ranges::find(later->checks, "autopilot", &ConsoleCheck::name);
+  ASSERT_NE(autopilot, later->checks.end());
+  EXPECT_EQ(autopilot->verdict, "wrong");
+  EXPECT_EQ(autopilot->measured, state.autopilot->waits);
+}
+
 TEST(FlightHealthTest, ComparesSeconds) {
   FlightHealth health;
   FlightReport state;
   state.autopilot.emplace().is_here = true;
+  state.autopilot->mode = "LOITER";
   const Time start = Now();
   EXPECT_FALSE(health.Update(state, start));
   state.capture.captured = 30;
@@ -290,7 +313,7 @@ TEST(FlightStatusTest, AnEndIsTheLastWord) {
   report.end = FlightEnd{FlightOutcome::kOnPattern, 0.05};
   const ConsoleStatus status = FlightStatus(report, {.state = "tracking", .reason = ""});
   EXPECT_TRUE(status.is_over);
-  EXPECT_EQ(status.reason, "landed 0.05 m from the centre");
+  EXPECT_EQ(status.reason, "landed 0.05 m from the centre (estimated)");
   EXPECT_EQ(status.replay, "flight");
 }
 

@@ -22,7 +22,11 @@ double CpuTime_s() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
+// A check that has had no time to be made.
+ConsoleCheck NotYet(const char* name) { return {name, "not checked", "not checked yet"}; }
+
 ConsoleCheck CameraCheck(const FlightReport& now, const FlightReport& last, double interval_s) {
+  if (now.capture.captured == 0 && now.trouble.empty()) return NotYet("camera");
   const auto frames = static_cast<double>(now.capture.captured - last.capture.captured);
   const bool is_missing = now.capture.missed > last.capture.missed;
   const bool is_repeating = now.repeated_frames > last.repeated_frames;
@@ -43,7 +47,12 @@ ConsoleCheck VisionCheck(const FlightReport& now, const FlightReport& last) {
 }
 
 ConsoleCheck LinkCheck(const AutopilotState& autopilot, double rate_hz, bool is_damaged) {
-  if (!autopilot.is_here) return {"autopilot", "wrong", "no heartbeat"};
+  if (!autopilot.is_here) {
+    const bool was_here = !autopilot.mode.empty();
+    if (was_here) return {"autopilot", "wrong", "no heartbeat"};
+    if (autopilot.waits.empty()) return NotYet("autopilot");
+    return {"autopilot", "wrong", autopilot.waits};
+  }
   if (rate_hz == 0) return {"autopilot", "wrong", "no packets"};
   return {"autopilot", is_damaged ? "doubtful" : "good",
           fmt::format("{:.0f} packets/s, {} damaged, {} not sent", rate_hz,

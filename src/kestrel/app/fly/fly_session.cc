@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/app/fly/fly_session.h"
 
+#include <optional>
+
 namespace kestrel {
 
 LiveSessionOptions SessionOptions(const KestrelOptions& options, const FlySource& source,
@@ -31,6 +33,12 @@ LiveSessionParts SessionParts(FlySource* source, const FlyAutopilot& autopilot) 
   parts.pose = [simulated](const PoseSample& pose) { simulated->TakePose(pose); };
   parts.true_pose = [simulated](const PoseSample& pose) { simulated->TakeTruePose(pose); };
   parts.truth = [simulated](const Frame& frame) { return simulated->Truth(frame); };
+  if (const SimulatedAutopilot* const uav = autopilot.simulated.get()) {
+    parts.true_offset_m = [uav]() -> std::optional<double> {
+      const SitlResult result = uav->result();
+      return result.contact ? std::optional(result.offset_m()) : std::nullopt;
+    };
+  }
   return parts;
 }
 

@@ -7,6 +7,9 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/core/base/error.h"
+#include "kestrel/io/recording/open_source.h"
+
 namespace kestrel {
 
 FlySource::FlySource(const KestrelOptions& options, DdsSource::OpenNode open_node)
@@ -17,6 +20,13 @@ FlySource::FlySource(const KestrelOptions& options, DdsSource::OpenNode open_nod
       camera_(options.fly.camera) {}
 
 void FlySource::Open(const RecordingChoice& recording, bool is_looped) {
+  const std::string& source = recording.sources.front();
+  if (IsCamera(source) && recording.camera.empty()) {
+    throw InputError(fmt::format(
+        "{}: no calibration: nothing can be measured, and no autopilot be told anything, without "
+        "one: --camera FILE (kestrel calibrate lens makes one)",
+        source));
+  }
   live = OpenLiveSource({recording, is_looped}, camera_, {dds.Scheme(), simulated.Scheme()});
 }
 

@@ -171,6 +171,7 @@ std::size_t GuardLink::Take(const ReceivedDatagram& datagram) {
     case GuardMessage::kAnswer:
       unanswered_.reset();
       is_connected_ = !datagram.bytes.empty() && datagram.bytes[0] != 0;
+      open_error_ = datagram.bytes.size() > 1 ? datagram.bytes[1] : 0;
       break;
     case GuardMessage::kTakenOver:
       unanswered_.reset();

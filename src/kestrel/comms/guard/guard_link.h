@@ -54,6 +54,7 @@ class GuardLink : public Transport {
   bool Send(std::span<const std::uint8_t> frame) override;
   bool is_connected() const override;
   bool has_datagrams() const override;
+  int open_error() const override { return open_error_; }
   std::array<int, 2> files() const override;
 
  private:
@@ -70,6 +71,7 @@ class GuardLink : public Transport {
   std::atomic<GuardState> state_{GuardState::kWaits};
   std::string error_;
   std::atomic<bool> is_connected_{false};
+  std::atomic<int> open_error_{0};
   bool has_guard_ = true;   // its process lives
   bool has_ended_ = false;  // goodbye was said
   Time life_due_{};

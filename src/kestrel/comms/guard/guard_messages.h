@@ -24,7 +24,7 @@ enum class GuardMessage : std::uint8_t {
   kWaits = 'W',      // the guard of an earlier flight still works on this line
   kReady = 'R',      // the line is open
   kFailed = 'X',     // it cannot be opened: the reason in words
-  kAnswer = 'A',     // to a sign of life: one byte, whether the line is connected
+  kAnswer = 'A',     // to a sign of life: a byte, whether the line is connected, and its open_error
   kTakenOver = 'T',  // the program was taken for dead
   // Both ways.
   kBytes = 'M',  // of the line

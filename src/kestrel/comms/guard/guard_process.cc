@@ -131,8 +131,10 @@ void GuardProcess::TakeFromProgram(GuardMessage kind, std::span<const std::uint8
 void GuardProcess::TakeLife(const GuardLife& life) {
   life_ = life;
   guard_.TakeLife(life.task, life.kind, std::min(TimeFromNanoseconds(life.sent_ns), Now()));
-  const std::uint8_t is_connected = line_->is_connected() ? 1 : 0;
-  SendTo(program_, GuardMessage::kAnswer, {&is_connected, 1});
+  const std::array<std::uint8_t, 2> answer = {
+      line_->is_connected() ? std::uint8_t{1} : std::uint8_t{0},
+      static_cast<std::uint8_t>(line_->open_error())};
+  SendTo(program_, GuardMessage::kAnswer, answer);
 }
 
 // Reads a packet of the line: what the autopilot says of itself.

@@ -81,6 +81,8 @@ class Connection {
   mavlink::Signing::Timestamp signing_timestamp() const;
 
   bool is_connected() const { return transport_->is_connected(); }
+  // See Transport.
+  int open_error() const { return transport_->open_error(); }
   const std::string& url() const { return url_; }
   ConnectionCounters counters() const;
 

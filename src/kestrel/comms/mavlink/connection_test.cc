@@ -10,6 +10,8 @@
 #include <memory>
 #include <string>
 #include <sys/stat.h>
+#include <unistd.h>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -17,6 +19,7 @@
 
 #include "kestrel/comms/mavlink/link_url.h"
 #include "kestrel/comms/mavlink/messages.h"
+#include "kestrel/comms/mavlink/silence.h"
 #include "kestrel/comms/mavlink/socket_address.h"
 #include "kestrel/comms/mavlink/test_link.h"
 #include "kestrel/core/base/error.h"
@@ -80,7 +83,7 @@ TEST(LinkUrlTest, ReadsMavsdkUrls) {
 
 TEST(LinkUrlTest, SaysWhatIsWrong) {
   const auto error = [](const std::string& url) { return ErrorOf([&] { ParseLinkUrl(url); }); };
-  EXPECT_THAT(error("14550"), testing::HasSubstr("autopilot '14550': expected serial:///dev"));
+  EXPECT_THAT(error("14550"), testing::HasSubstr("autopilot '14550': has no scheme"));
   EXPECT_THAT(error("mavlink://x:1"), testing::HasSubstr("unknown scheme 'mavlink'"));
   EXPECT_THAT(error("udp://x:1"), testing::HasSubstr("expected udpin or udpout"));
   EXPECT_THAT(error("udpin://0.0.0.0"), testing::HasSubstr("no port at its end"));
@@ -90,9 +93,72 @@ TEST(LinkUrlTest, SaysWhatIsWrong) {
   EXPECT_THAT(error("serial:///dev/ttyS0:fast"), testing::HasSubstr("'fast' is no baud rate"));
 }
 
+TEST(LinkUrlTest, OffersTheUrlThatWasMeant) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"/dev/ttyACM0", "serial:///dev/ttyACM0:57600"},
+      {"/dev/ttyAMA0:921600", "serial:///dev/ttyAMA0:921600"},
+      {"/dev/ttyUSB0,115200", "serial:///dev/ttyUSB0:115200"},
+      {"/dev/serial0", "serial:///dev/serial0:57600"},
+      {"ttyTHS1", "serial:///dev/ttyTHS1:57600"},
+      {"serial:/dev/ttyACM0:57600", "serial:///dev/ttyACM0:57600"},
+      {"com3", "serial:///dev/ttyACM0:57600"},
+      {"COM12:115200", "serial:///dev/ttyACM0:115200"},
+      {"192.168.1.5:5760", "tcpout://192.168.1.5:5760"},
+      {"localhost:5760", "tcpout://localhost:5760"},
+      {"tcp:127.0.0.1:5760", "tcpout://127.0.0.1:5760"},
+      {"tcp://10.0.0.2:5762", "tcpout://10.0.0.2:5762"},
+      {"tcpin:0.0.0.0:5760", "tcpin://0.0.0.0:5760"},
+      {"udp:127.0.0.1:14550", "udpin://127.0.0.1:14550"},
+      {"udp://:14540", "udpin://0.0.0.0:14540"},
+      {"udpout:10.0.0.2:14550", "udpout://10.0.0.2:14550"},
+      {":14550", "udpin://0.0.0.0:14550"},
+      {"14550", "udpin://0.0.0.0:14550"},
+      {"192.168.1.5:14550", "udpout://192.168.1.5:14550"},
+      {"192.168.1.5", "udpout://192.168.1.5:14550"},
+  };
+  for (const auto& [given, meant] : cases) {
+    EXPECT_THAT(ErrorOf([&] { ParseLinkUrl(given); }), testing::HasSubstr(meant)) << given;
+    ParseLinkUrl(meant);  // does not throw
+  }
+}
+
+TEST(SilenceTest, SaysWhyNoAutopilotIsHeard) {
+  const auto receive = [](Connection* connection) {
+    for (int i = 0; i < 100; ++i) connection->Receive(milliseconds(2), [](const auto&, Time) {});
+    return WhySilent(*connection);
+  };
+  const int port = FreeLoopbackPort();
+  Connection nobody(Url("tcpout", port), {});
+  EXPECT_EQ(receive(&nobody),
+            Url("tcpout", port) + " refused: does the other end run, is its port right?");
+  Connection in(Url("udpin", port), {});
+  EXPECT_EQ(receive(&in), "nothing received on " + Url("udpin", port));
+  const auto stranger = OpenTransport(ParseLinkUrl(Url("udpout", port)));
+  EXPECT_TRUE(stranger->Send(std::vector<std::uint8_t>(100, 0x55)));
+  EXPECT_EQ(receive(&in), "bytes on " + Url("udpin", port) + ", but no MAVLink");
+  Connection other(Url("udpout", port), {});
+  other.Send(mavlink::Heartbeat{18, 8, 0, 0, 4, 3});
+  EXPECT_EQ(receive(&in), "MAVLink on " + Url("udpin", port) + ", but no autopilot's heartbeat");
+}
+
+TEST(SilenceTest, AWrongBaudRateIsGuessed) {
+  const int master = posix_openpt(O_RDWR | O_NOCTTY);
+  ASSERT_GE(master, 0);
+  grantpt(master);
+  unlockpt(master);
+  const std::string device = ptsname(master);
+  Connection connection("serial://" + device + ":57600", {});
+  const std::vector<std::uint8_t> garbage(100, 0x55);
+  ASSERT_EQ(write(master, garbage.data(), garbage.size()), 100);
+  for (int i = 0; i < 10; ++i) connection.Receive(milliseconds(5), [](const auto&, Time) {});
+  EXPECT_EQ(WhySilent(connection),
+            "bytes on " + device + ", but no MAVLink: is its baud rate 57600?");
+  close(master);
+}
+
 TEST(ConnectionTest, SaysWhatIsNotThere) {
   EXPECT_THAT(ErrorOfUrl("serial:///dev/no_such_line:57600"),
-              testing::HasSubstr("the device cannot be opened: No such file"));
+              testing::HasSubstr("there is no /dev/no_such_line"));
   EXPECT_THAT(ErrorOfUrl("serial:///dev/null:57600"), testing::HasSubstr("is no serial line"));
   EXPECT_THAT(ErrorOfUrl("serial:///dev/null:57601"), testing::HasSubstr("57601 baud is no rate"));
   EXPECT_THAT(ErrorOfUrl("udpout://no.such.host.invalid:1"), testing::HasSubstr("is not known"));
@@ -218,7 +284,7 @@ TEST_F(SerialLineTest, Speaks) {
 TEST_F(SerialLineTest, SaysThatAnotherProgramHasIt) {
   const std::string url = "serial://" + device_ + ":57600";
   const Connection first(url, {});
-  EXPECT_THAT(ErrorOfUrl(url), testing::HasSubstr("another program has " + device_ + " open"));
+  EXPECT_THAT(ErrorOfUrl(url), testing::HasSubstr(device_ + ": in use by another program"));
 }
 
 TEST_F(SerialLineTest, OutlivesItsDevice) {

@@ -22,6 +22,59 @@ constexpr std::string_view kForms =
   throw InputError(fmt::format("autopilot '{}': {}", text, what));
 }
 
+bool IsNumber(std::string_view text) { return ParseNumber<int>(text).has_value(); }
+
+// Returns the URL of a serial line in a notation of others: "/dev/ttyACM0", "/dev/ttyUSB0,57600",
+// "ttyAMA0:921600", "COM3".
+std::string GuessedSerial(std::string_view text) {
+  const std::size_t end = text.find_first_of(",:");
+  std::string device(text.substr(0, end));
+  const bool is_of_windows = device.size() > 3 && (device[0] | 0x20) == 'c' && device[3] <= '9';
+  if (is_of_windows) device = "/dev/ttyACM0";  // a name that only Windows has
+  if (!device.starts_with('/')) device = "/dev/" + device;
+  const std::string_view baud = end == std::string_view::npos ? "" : text.substr(end + 1);
+  return fmt::format("serial://{}:{}", device, IsNumber(baud) ? baud : "57600");
+}
+
+// Returns the URL of a host and a port. Autopilots and their simulations serve TCP at ports from
+// 5760 on, and send UDP to 14550 and its neighbours.
+std::string GuessedSocket(std::string_view scheme, std::string_view text) {
+  constexpr int kUdp = 14000;
+  const std::size_t colon = text.rfind(':');
+  const bool has_port = colon != std::string_view::npos;
+  const std::string_view told = has_port ? text.substr(colon + 1) : IsNumber(text) ? text : "";
+  std::string host(has_port ? text.substr(0, colon) : IsNumber(text) ? "" : text);
+  if (host.empty()) host = "0.0.0.0";
+  const bool is_tcp =
+      scheme.empty() ? IsNumber(told) && *ParseNumber<int>(told) < kUdp : scheme.starts_with("tcp");
+  const bool is_here = host == "0.0.0.0" || host == "127.0.0.1" || host == "localhost";
+  const std::string_view port = IsNumber(told) ? told : is_tcp ? "5760" : "14550";
+  if (is_tcp && host == "0.0.0.0" && scheme != "tcpin") host = "127.0.0.1";
+  const std::string_view guess = is_tcp ? "tcpout" : is_here ? "udpin" : "udpout";
+  return fmt::format("{}://{}:{}",
+                     scheme.ends_with('n') || scheme.ends_with("out") ? scheme : guess, host, port);
+}
+
+// Returns the URL that somebody who writes it as another program wants probably means.
+std::string GuessedUrl(std::string_view text) {
+  constexpr std::array<std::string_view, 7> kNames = {"udpin",  "udpout", "udp",   "tcpin",
+                                                      "tcpout", "tcp",    "serial"};
+  std::string_view scheme;
+  for (const std::string_view name : kNames) {
+    if (!scheme.empty() || !text.starts_with(name) || !text.substr(name.size()).starts_with(':')) {
+      continue;
+    }
+    scheme = name;
+    text.remove_prefix(name.size() + 1);
+    if (text.starts_with("//")) text.remove_prefix(2);
+  }
+  const auto begins = [&](std::string_view word) { return text.starts_with(word); };
+  const bool is_com =
+      text.size() > 3 && (begins("com") || begins("COM")) && IsNumber(text.substr(3, 1));
+  const bool is_device = begins("/") || begins("tty") || begins("serial") || is_com;
+  return scheme == "serial" || is_device ? GuessedSerial(text) : GuessedSocket(scheme, text);
+}
+
 LinkScheme ParseScheme(const std::string& text, std::string_view name) {
   constexpr std::array<std::pair<std::string_view, LinkScheme>, 6> kSchemes = {{
       {"serial", LinkScheme::kSerial},
@@ -35,14 +88,11 @@ LinkScheme ParseScheme(const std::string& text, std::string_view name) {
     if (name == known) return scheme;
   }
   if (name == "udp" || name == "tcp") {
-    Refuse(text, fmt::format("'{0}' does not say who speaks first, expected {0}in or {0}out",
-                             std::string(name)));
+    Refuse(text,
+           fmt::format("'{0}' does not say who speaks first, expected {0}in or {0}out, as {1}",
+                       std::string(name), GuessedUrl(text)));
   }
   Refuse(text, fmt::format("unknown scheme '{}', expected {}", std::string(name), kForms));
-}
-
-bool IsSerial(LinkScheme scheme) {
-  return scheme == LinkScheme::kSerial || scheme == LinkScheme::kSerialFlowControl;
 }
 
 int ParseLinkNumber(const std::string& text, bool is_serial, std::string_view digits) {
@@ -66,10 +116,17 @@ std::string WithoutBrackets(std::string_view host) {
 
 }  // namespace
 
+bool IsSerial(LinkScheme scheme) {
+  return scheme == LinkScheme::kSerial || scheme == LinkScheme::kSerialFlowControl;
+}
+
 LinkUrl ParseLinkUrl(const std::string& text) {
   constexpr std::string_view kSeparator = "://";
   const std::size_t separator = text.find(kSeparator);
-  if (separator == std::string::npos) Refuse(text, fmt::format("expected {}", kForms));
+  if (separator == std::string::npos) {
+    Refuse(text,
+           fmt::format("has no scheme, did you mean {}? Expected {}", GuessedUrl(text), kForms));
+  }
   const std::string_view view(text);
   LinkUrl url;
   url.text = text;

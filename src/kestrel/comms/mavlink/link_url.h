@@ -22,7 +22,10 @@ struct LinkUrl {
   int number = 0;     // baud rate of a serial line, else the port
 };
 
-// Throws InputError when 'text' is not valid: says what is wrong and how it is written.
+bool IsSerial(LinkScheme scheme);
+
+// Throws InputError when 'text' is not valid: says what is wrong and how it is written, where it
+// can be guessed with the URL that was probably meant.
 LinkUrl ParseLinkUrl(const std::string& text);
 
 }  // namespace kestrel

@@ -21,6 +21,7 @@ void StreamTransport::Use(Line line) {
   rest_begin_ = rest_end_ = 0;
   is_broken_ = false;
   is_connected_ = file_.is_open() && !line.is_connecting;
+  if (is_connected_) open_error_ = 0;
   heard_ = Now();
 }
 
@@ -71,6 +72,7 @@ void StreamTransport::Reopen(Duration timeout) {
   if (line.file.is_open()) {
     Use(std::move(line));
   } else {
+    open_error_ = errno;
     Close();
   }
 }
@@ -79,16 +81,16 @@ void StreamTransport::AwaitConnection(Duration timeout) {
   constexpr Duration kPatience = std::chrono::seconds(5);
   pollfd entry = {file_.number(), POLLOUT, 0};
   if (WaitForAny({&entry, 1}, timeout) <= 0) {
-    if (Now() - heard_ > kPatience) Close();
-    return;
+    if (Now() - heard_ <= kPatience) return;
+    open_error_ = ETIMEDOUT;
+    return Close();
   }
   int error = 0;
   socklen_t size = sizeof(error);
-  if (getsockopt(file_.number(), SOL_SOCKET, SO_ERROR, &error, &size) != 0 || error != 0) {
-    Close();
-  } else {
-    is_connected_ = true;
-  }
+  if (getsockopt(file_.number(), SOL_SOCKET, SO_ERROR, &error, &size) != 0) error = errno;
+  open_error_ = error;
+  is_connected_ = error == 0;
+  if (error != 0) Close();
 }
 
 // Somebody else has connected. It is an autopilot that was cut off without closing the line, unless

@@ -19,6 +19,7 @@ class StreamTransport : public Transport {
   bool Send(std::span<const std::uint8_t> frame) override;
   bool is_connected() const override { return is_connected_; }
   bool has_datagrams() const override { return false; }
+  int open_error() const override { return open_error_; }
   std::array<int, 2> files() const override { return {file_.number(), listener()}; }
 
  protected:
@@ -46,6 +47,7 @@ class StreamTransport : public Transport {
   FileDescriptor file_;  // changed only by the receiving thread, under the lock
   std::atomic<bool> is_connected_ = false;
   std::atomic<bool> is_broken_ = false;  // noticed by a sender
+  std::atomic<int> open_error_ = 0;
   Time heard_{};
   Time next_attempt_{};
   Duration backoff_ = kFirstBackoff;

@@ -37,6 +37,9 @@ class Transport {
   // True when connected, as far as this end can know.
   virtual bool is_connected() const = 0;
   virtual bool has_datagrams() const = 0;
+  // Why the line could not be opened when that was last tried (errno); 0: it is open, or nobody has
+  // tried. Any thread.
+  virtual int open_error() const { return 0; }
 
   // The files on which Receive waits, for a thread that also waits for others; -1: none at this
   // moment. Called by the receiving thread.

@@ -47,6 +47,7 @@ int LongestFreeze(const CameraObservations& camera) {
 }  // namespace
 
 Finding CheckImages(const CameraObservations& camera) {
+  constexpr double kShortest_s = 1;  // a camera needs some time until its first image
   const std::string check = "images";
   if (!camera.open_error.empty()) {
     return Wrong(
@@ -54,6 +55,9 @@ Finding CheckImages(const CameraObservations& camera) {
         "the source has to open first: its name, its cable, whether another program uses it");
   }
   if (camera.frames.empty()) {
+    if (camera.error.empty() && camera.duration_s < kShortest_s) {
+      return NotChecked(check, "not checked yet");
+    }
     const std::string error = camera.error.empty() ? "" : ": " + camera.error;
     return Wrong(check, fmt::format("none in {:.0f} s{}", camera.duration_s, error),
                  "see whether the camera delivers at all: gst-launch-1.0 SOURCE ! autovideosink");

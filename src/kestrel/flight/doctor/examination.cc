@@ -8,6 +8,7 @@
 #include <utility>
 #include <variant>
 
+#include "kestrel/comms/mavlink/silence.h"
 #include "kestrel/flight/doctor/calibration_checks.h"
 #include "kestrel/flight/doctor/camera_checks.h"
 #include "kestrel/flight/doctor/computer_checks.h"
@@ -215,6 +216,7 @@ void Examination::SummarizeLink(Time end, LinkObservations* link) const {
   link->autopilot_system = autopilot.system();
   link->hears_signed = hears_signed_;
   link->is_heard = autopilot.is_here();
+  if (!link->is_heard) link->silence = WhySilent(*parts_.connection);
   link->kind = autopilot.kind();
   link->version = autopilot.version();
   link->mode = autopilot.mode_name();

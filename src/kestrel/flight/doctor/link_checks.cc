@@ -13,9 +13,7 @@
 namespace kestrel {
 namespace {
 
-bool IsSerial(const LinkObservations& link) {
-  return link.scheme == LinkScheme::kSerial || link.scheme == LinkScheme::kSerialFlowControl;
-}
+bool IsSerial(const LinkObservations& link) { return IsSerial(link.scheme); }
 
 double ShareOf(std::uint64_t part, std::uint64_t rest) {
   return static_cast<double>(part) / std::max(1.0, static_cast<double>(part + rest));
@@ -28,7 +26,7 @@ Finding SilentLine(const std::string& check, const LinkObservations& link) {
   const std::uint64_t rubbish = counters.garbage_bytes + counters.bad_checksums;
   if (rubbish > kGarbage) {
     return Wrong(
-        check, fmt::format("{} bytes, and no message in them", counters.garbage_bytes),
+        check, link.silence,
         IsSerial(link)
             ? fmt::format("wrong baud, most likely: {} here; ArduPilot SERIALn_BAUD (921 = "
                           "921600, 57 = 57600), PX4 SER_TEL2_BAUD",
@@ -36,7 +34,7 @@ Finding SilentLine(const std::string& check, const LinkObservations& link) {
             : "who sends there does not speak MAVLink");
   }
   return Wrong(
-      check, "silence",
+      check, link.silence,
       IsSerial(link)
           ? "TX to RX crossed, ground joined, the right port; ArduPilot SERIALn_PROTOCOL 2, "
             "PX4 MAV_1_CONFIG 102 (TELEM2), MAV_1_MODE 2; no login console on that line"
@@ -78,7 +76,7 @@ Finding CheckLine(const LinkObservations& link) {
   }
   if (!link.open_error.empty()) {
     return Wrong(check, link.open_error,
-                 "the device's name, the right to use it (group dialout), another program on it");
+                 "the line has to open first: kestrel fly --help shows how lines are written");
   }
   const ConnectionCounters& counters = link.counters;
   if (counters.received == 0 && counters.unsigned_packets + counters.forged_packets > 0) {

@@ -34,6 +34,7 @@ struct DoctorUse {
   double position_rate_hz = 50;        //
   std::optional<double> link_delay_s;  // as configured; nothing: by the round trip
   std::string record;                  // folder of the recording; empty: none
+  double sight_range_m = 0;            // from which the camera sees the pattern; 0: not known
 };
 
 // The times of a frame.
@@ -81,6 +82,7 @@ struct VisionObservations {
 struct LinkObservations {
   bool is_asked = false;   // an autopilot was given at all
   std::string open_error;  // why the line could not be opened; empty: it could be
+  std::string silence;     // why no autopilot is heard, see WhySilent; empty: it is heard
   LinkScheme scheme = LinkScheme::kUdpIn;
   int baud = 0;               // of a serial line
   bool is_signed = false;     // this side signs its packets
@@ -114,12 +116,18 @@ struct LinkObservations {
 
 struct ComputerObservations {
   int cores = 1;
-  double load = 0;                         // processes that run or wait, mean of a minute
-  std::optional<double> hottest_c;         // of all thermal zones
-  std::optional<std::uint32_t> throttled;  // Raspberry Pi's flags
-  std::optional<double> free_disk_mb;      // on the disk of the recording
-  double least_disk_mb = 0;                // room that the recorder leaves free
-  double frame_mb = 0;                     // size of a frame, uncompressed
+  double load = 0;                           // processes that run or wait, mean of a minute
+  std::optional<double> hottest_c;           // of all thermal zones
+  std::optional<std::uint32_t> throttled;    // Raspberry Pi's flags
+  std::optional<double> free_disk_mb;        // on the disk of the recording
+  double least_disk_mb = 0;                  // room that the recorder leaves free
+  double frame_mb = 0;                       // size of a frame, uncompressed
+  bool is_disk_read_only = false;            // the disk of the recording
+  std::optional<double> disk_mb_per_s;       // at which it can be written
+  std::optional<double> disk_wear;           // used share of its life, by its own account; 0 to 1
+  bool has_low_voltage = false;              // the alarm of a Raspberry Pi's supply
+  std::optional<bool> is_time_synchronized;  // the time of day, by NTP, GNSS or another source
+  bool has_battery_clock = true;             // keeps the time of day while it is off
 };
 
 struct DoctorObservations {

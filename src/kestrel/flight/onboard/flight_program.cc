@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/comms/mavlink/mavlink_enums.h"
+#include "kestrel/comms/mavlink/silence.h"
 #include "kestrel/core/base/options.h"
 
 namespace kestrel {
@@ -23,6 +24,9 @@ constexpr Duration kOutputPeriod = std::chrono::milliseconds(50);
 constexpr std::size_t kPoses = 512;  // from the link: some seconds
 constexpr Duration kPoseGap = std::chrono::milliseconds(500);
 constexpr Duration kLandingPeriod = std::chrono::milliseconds(20);
+// So long camera and autopilot may take to begin until what is waited for is said.
+constexpr Duration kQuietStart = std::chrono::milliseconds(1500);
+constexpr char kNoImageYet[] = "waits for the camera: no image yet";
 
 }  // namespace
 
@@ -106,6 +110,16 @@ void FlightProgram::End(const FlightEnd& end) {
   });
 }
 
+// A simulation knows the offset that a flight can only estimate.
+void FlightProgram::EndByLanding(FlightEnd end) {
+  const auto true_m = parts_.true_offset_m ? parts_.true_offset_m() : std::nullopt;
+  if (end.offset_m && true_m) {
+    end.offset_m = true_m;
+    end.has_true_offset = true;
+  }
+  End(end);
+}
+
 // --- The capture thread ---
 
 void FlightProgram::Capture() {
@@ -124,15 +138,22 @@ void FlightProgram::Capture() {
       last = Now();
       Take(std::move(*event));
     }
-    if (const std::string error = parts_.source->error(); error != trouble) {
-      say_(error.empty() ? "the camera is back" : error);
-      trouble = error;
+    if (const std::string now = SourceTrouble(); now != trouble) {
+      const char* const end = trouble == kNoImageYet ? "images come" : "the camera is back";
+      say_(now.empty() ? end : now);
+      trouble = now;
     }
     if (ToSeconds(Now() - last) < options_.source_timeout_s) continue;
     return End({FlightOutcome::kNotLanded,
                 {},
                 fmt::format("no image for {:g} s", options_.source_timeout_s)});
   }
+}
+
+std::string FlightProgram::SourceTrouble() const {
+  const bool waits = parts_.source->counters().captured == 0 && Now() - began_ > kQuietStart;
+  const std::string error = parts_.source->error();
+  return error.empty() && waits ? kNoImageYet : error;
 }
 
 void FlightProgram::Take(Event event) {
@@ -278,15 +299,31 @@ void FlightProgram::WatchFlight(Time now) {
   landing_due_ = now + kLandingPeriod;
   ShowAutopilot(now);
   if (parts_.autopilot->is_here()) {
+    was_heard_ = true;
     heard_ = now;
     landing_.Observe(LandingInput(now));
-    if (landing_.end()) End(*landing_.end());
+    if (landing_.end()) EndByLanding(*landing_.end());
     return;
   }
+  SayWhatItWaitsFor(now);
   if (ToSeconds(now - heard_) < options_.autopilot_timeout_s) return;
   End({FlightOutcome::kLinkLost,
        {},
        fmt::format("no heartbeat of the autopilot for {:g} s", options_.autopilot_timeout_s)});
+}
+
+// Until the first heartbeat. That one which was there is gone is said by its events.
+void FlightProgram::SayWhatItWaitsFor(Time now) {
+  constexpr Duration kPeriod = std::chrono::milliseconds(500);
+  if (was_heard_ || now - began_ < kQuietStart || now < wait_due_) return;
+  wait_due_ = now + kPeriod;
+  const std::string waits = "waits for the autopilot: " + WhySilent(*parts_.connection);
+  {
+    const std::lock_guard lock(autopilot_mutex_);
+    if (autopilot_state_.waits == waits) return;
+    autopilot_state_.waits = waits;
+  }
+  say_(waits);
 }
 
 void FlightProgram::ShowAutopilot(Time now) {
@@ -296,7 +333,10 @@ void FlightProgram::ShowAutopilot(Time now) {
   state.is_here = autopilot.is_here();
   state.is_armed = autopilot.is_armed();
   state.is_landing = state.is_armed && autopilot.is_landing_mode();
-  if (state.is_here) state.mode = autopilot.mode_name();
+  if (state.is_here) {
+    state.mode = autopilot.mode_name();
+    state.waits.clear();
+  }
   if (const auto battery = autopilot.battery()) {
     state.battery_v = battery->voltage_v;
     state.battery_remaining = battery->remaining;
@@ -355,7 +395,7 @@ std::shared_ptr<FlightRecorder> FlightProgram::Recorder() const {
 }
 
 FlightReport FlightProgram::Report() const {
-  FlightReport report{.trouble = parts_.source->error(),
+  FlightReport report{.trouble = SourceTrouble(),
                       .capture = parts_.source->counters(),
                       .events = events_.counters(),
                       .repeated_frames = repeated_frames_,
@@ -390,6 +430,10 @@ std::string FlightProgram::State() const {
   }
   if (capture.missed > 0) state += fmt::format(", {} missed", capture.missed);
   if (parts_.autopilot == nullptr) return state;
+  {
+    const std::lock_guard lock(autopilot_mutex_);
+    if (!autopilot_state_.waits.empty()) return state + "; " + autopilot_state_.waits;
+  }
   state += fmt::format("; target {}", ToString(phase_.load()));
   if (phase_ == TargetPhase::kFound) state += fmt::format(", {:.1f} m below", height_m_.load());
   if (guided_) return state + fmt::format("; guidance: {}", ToString(guidance_phase_.load()));

@@ -49,6 +49,8 @@ struct FlightParts {
   std::optional<LinkProfile> profile;  // nothing: chosen by the heartbeat
   // Returns the true pattern at the time of a frame, in a simulation that knows it.
   std::function<std::optional<TruePattern>(const Frame&)> truth;
+  // Returns the true offset of the touch-down, in a simulation that knows it, see FlightEnd.
+  std::function<std::optional<double>()> true_offset_m;
   double pattern_size_m = 1;  // outer diameter of the pattern; 0: it looks for none
 };
 
@@ -102,12 +104,16 @@ class FlightProgram {
   void WatchFlight(Time now);
   LandingWatchInput LandingInput(Time now);
   void ShowAutopilot(Time now);
+  void SayWhatItWaitsFor(Time now);
+  std::string SourceTrouble() const;
   void End(const FlightEnd& end);
+  void EndByLanding(FlightEnd end);
   void TellEnd();
   std::shared_ptr<FlightRecorder> Recorder() const;  // null: nothing is recorded
 
   FlightOptions options_;
   FlightParts parts_;
+  const Time began_ = Now();
   std::function<void(const std::string&)> say_;
   LiveEvents events_;
   LatestValue<TrackSnapshot> track_;
@@ -131,6 +137,8 @@ class FlightProgram {
   Time landing_due_{};   // when the landing is looked at next
   std::string gave_up_;  // why guidance gave up last; empty: it flies, or has not
   Time heard_;           // the newest time at which the autopilot was heard
+  bool was_heard_ = false;
+  Time wait_due_{};  // when it is next looked for the reason of the autopilot's silence
 
   std::mutex vision_mutex_;  // held while the vision works
 

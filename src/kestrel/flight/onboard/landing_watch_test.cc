@@ -71,7 +71,8 @@ TEST_F(LandingWatchTest, TheHeadingIsThatOfTouchDown) {
   ComeDown(0.12);
   input_.heading_error = 1;
   Disarm();
-  EXPECT_EQ(InWords(*watch_.end()), "landed 0.12 m from the centre, heading off by -1.1 degrees");
+  EXPECT_EQ(InWords(*watch_.end()),
+            "landed 0.12 m from the centre (estimated), heading off by -1.1 degrees");
 }
 
 TEST_F(LandingWatchTest, LandedBesideIt) {

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -16,6 +15,7 @@
 #include "kestrel/comms/mavlink/target_profile.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/options.h"
+#include "kestrel/core/base/write_file.h"
 #include "kestrel/flight/onboard/exposure_drive.h"
 #include "kestrel/flight/onboard/flight_program.h"
 #include "kestrel/flight/onboard/hunt_vision.h"
@@ -133,7 +133,7 @@ class LiveSession::Impl {
   std::string sink_error_;  // what the sink has thrown; read after Run only
   RecordingSwitch recording_;
   std::optional<OutputFolder> output_;
-  std::ofstream end_file_;
+  std::filesystem::path end_file_;
   std::unique_ptr<ExposureActuator> actuator_;
   std::unique_ptr<FlightVision> vision_;
   LandingVision* landing_ = nullptr;  // one of these is the vision
@@ -170,7 +170,7 @@ FlightEnd LiveSession::Impl::Run(const std::function<bool()>& is_stopped) {
   FlightEnd end = program_->Run(is_stopped);
   recording_.Close();
   if (hunt_ != nullptr && output_) hunt_->WriteMap(*output_);
-  if (output_) WriteAtOnce(FlightEndCsv(end), "flight_end.csv", &end_file_);
+  if (output_) WriteFile(end_file_.string(), FlightEndCsv(end));
   return end;
 }
 
@@ -198,7 +198,9 @@ void LiveSession::Impl::Change(const LiveSessionOptions& changed) {
 void LiveSession::Impl::OpenVision() {
   if (!parts_.output.empty()) {
     output_.emplace(parts_.output, parts_.replace);
-    end_file_ = output_->OpenText("flight_end.csv");
+    // That of an earlier flight would be taken for this one's, should this one not come to its end.
+    end_file_ = output_->NewFile("flight_end.csv");
+    std::filesystem::remove(end_file_);
   }
   if (parts_.objects) {
     const ObjectModel& model = *parts_.objects;
@@ -287,6 +289,7 @@ FlightParts LiveSession::Impl::ProgramParts() {
           .sees_repeated = parts_.sees_repeated,
           .profile = parts_.profile,
           .truth = parts_.truth,
+          .true_offset_m = parts_.true_offset_m,
           .pattern_size_m =
               hunt_ != nullptr
                   ? 0

@@ -57,6 +57,9 @@ struct LiveSessionParts {
   std::function<void(const PoseSample&)> pose;
   std::function<void(const PoseSample&)> true_pose;
   std::function<std::optional<TruePattern>(const Frame&)> truth;
+  // Set by a simulation: the true offset of the touch-down, see FlightEnd; nothing before it.
+  // Called by the link's thread.
+  std::function<std::optional<double>()> true_offset_m;
 };
 
 // A flight as a library: a live source, the pipeline, the autopilot, guidance, a recorder and

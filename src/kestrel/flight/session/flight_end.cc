@@ -3,15 +3,22 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/core/base/fixed.h"
 #include "kestrel/core/geometry/angles.h"
 
 namespace kestrel {
 namespace {
 
+const char* KindOfOffset(const FlightEnd& end) {
+  if (!end.offset_m) return "";
+  return end.has_true_offset ? "true" : "estimated";
+}
+
 // Place of the landing, for an end at which the UAV may be anywhere.
 std::string PlaceOf(const FlightEnd& end) {
-  return end.offset_m ? fmt::format("down {:.1f} m from the pattern", *end.offset_m)
-                      : "down, and not known where";
+  return end.offset_m
+             ? fmt::format("down {:.1f} m from the pattern ({})", *end.offset_m, KindOfOffset(end))
+             : "down, and not known where";
 }
 
 std::string WithReason(const std::string& words, const std::string& reason) {
@@ -20,7 +27,7 @@ std::string WithReason(const std::string& words, const std::string& reason) {
 
 std::string HeadingInWords(const FlightEnd& end) {
   return end.heading_error
-             ? fmt::format(", heading off by {:.1f} degrees", Degrees(*end.heading_error))
+             ? fmt::format(", heading off by {} degrees", Fixed(Degrees(*end.heading_error), 1))
              : "";
 }
 
@@ -61,11 +68,13 @@ std::string InWords(const FlightEnd& end) {
     case FlightOutcome::kLanded:
       return "landed";
     case FlightOutcome::kOnPattern:
-      return (end.offset_m ? fmt::format("landed {:.2f} m from the centre", *end.offset_m)
+      return (end.offset_m ? fmt::format("landed {:.2f} m from the centre ({})", *end.offset_m,
+                                         KindOfOffset(end))
                            : "landed on the pattern") +
              HeadingInWords(end);
     case FlightOutcome::kBesidePattern:
-      return fmt::format("landed {:.1f} m beside the pattern", end.offset_m.value_or(0));
+      return fmt::format("landed {:.1f} m beside the pattern ({})", end.offset_m.value_or(0),
+                         KindOfOffset(end));
     case FlightOutcome::kDownSomewhere:
       return WithReason("down, and not known where", end.reason);
     case FlightOutcome::kGaveUp:
@@ -81,10 +90,10 @@ std::string InWords(const FlightEnd& end) {
 }
 
 std::string FlightEndCsv(const FlightEnd& end) {
-  return fmt::format("end,offset_m,words,heading_error_deg\n{},{},\"{}\",{}\n",
-                     ToString(end.outcome),
-                     end.offset_m ? fmt::format("{:.4f}", *end.offset_m) : "", InWords(end),
-                     end.heading_error ? fmt::format("{:.2f}", Degrees(*end.heading_error)) : "");
+  return fmt::format(
+      "end,offset_m,words,heading_error_deg,offset_is\n{},{},\"{}\",{},{}\n", ToString(end.outcome),
+      end.offset_m ? fmt::format("{:.4f}", *end.offset_m) : "", InWords(end),
+      end.heading_error ? Fixed(Degrees(*end.heading_error), 2) : "", KindOfOffset(end));
 }
 
 int ExitStatus(const FlightEnd& end) {

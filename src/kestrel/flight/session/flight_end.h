@@ -26,18 +26,22 @@ const char* ToString(FlightOutcome outcome);
 struct FlightEnd {
   FlightOutcome outcome = FlightOutcome::kStopped;
   // Horizontal distance of the feet from the pattern's centre at touch-down, m; nothing: not known.
+  // The one number that all outputs give.
   std::optional<double> offset_m = {};
   std::string reason = {};  // why it is not known, or what failed
   // Angle of the nose off guidance.touchdown_heading at touch-down, rad, counter-clockwise from
   // above; nothing: any heading would do, or the pad's is not known.
   std::optional<double> heading_error = {};
+  bool has_true_offset = false;  // the offset is a simulation's truth; false: Kestrel's estimate
 };
 
-// Returns the end for people, as "landed 0.05 m from the centre". All outputs use these words.
+// Returns the end for people, as "landed 0.05 m from the centre (estimated)".
+// All outputs use these words.
 std::string InWords(const FlightEnd& end);
 
 // Returns the end as a table with a header and one row: its name, the offset (empty: not known),
-// the words, and the error of the heading in degrees (empty: not known).
+// the words, the error of the heading in degrees (empty: not known), and what the offset is:
+// "true", "estimated" or empty.
 std::string FlightEndCsv(const FlightEnd& end);
 
 // Returns the exit status of a program whose flight ended so: 0 on the pattern, or where nobody

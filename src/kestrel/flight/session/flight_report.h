@@ -36,6 +36,7 @@ struct LimitsInUse {
 // does not report it.
 struct AutopilotState {
   bool is_here = false;     // its heartbeats come
+  std::string waits;        // before the first one: what is waited for, and why; else empty
   bool is_landing = false;  // armed, in a mode that lands
   bool is_armed = false;
   std::string mode;  // as "LAND"; empty before its first heartbeat

@@ -10,8 +10,10 @@ std::string LandingInWords(const SitlResult& result) {
   if (!result.contact) return "did not come down in a landing mode\n";
   const std::string where =
       result.contact->on_board
-          ? fmt::format("on the board, {:.3f} m from the pattern's centre", result.offset_m())
-          : fmt::format("beside the board, {:.2f} m from the pattern's centre", result.offset_m());
+          ? fmt::format("on the board, {:.3f} m from the pattern's centre (true)",
+                        result.offset_m())
+          : fmt::format("beside the board, {:.2f} m from the pattern's centre (true)",
+                        result.offset_m());
   std::string disarmed = "not disarmed";
   if (result.is_disarmed) disarmed = fmt::format("disarmed {:.1f} s later", result.disarm_s);
   if (result.was_forced) disarmed = "disarmed by force";

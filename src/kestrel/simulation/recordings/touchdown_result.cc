@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/core/base/fixed.h"
 #include "kestrel/core/geometry/angles.h"
 
 namespace kestrel {
@@ -16,11 +17,13 @@ std::string EndInWords(const TouchdownResult& result) {
   if (result.outcome == TouchdownOutcome::kTimeUp) {
     return fmt::format("still in the air after {:.1f} s", result.time_s);
   }
-  const std::string heading = result.heading_error ? fmt::format(", heading off by {:.1f} degrees",
-                                                                 Degrees(*result.heading_error))
-                                                   : "";
+  const std::string heading =
+      result.heading_error
+          ? fmt::format(", heading off by {} degrees", Fixed(Degrees(*result.heading_error), 1))
+          : "";
   return fmt::format(
-      "{} {:.1f} s after the start, {:.2f} m from the centre, at {:.2f} m/s against the board "
+      "{} {:.1f} s after the start, {:.2f} m from the centre (true), at {:.2f} m/s against the "
+      "board "
       "({:.2f} m/s down){}",
       ToString(result.outcome), result.time_s, result.distance_m, result.slip_mps, result.sink_mps,
       heading);

@@ -85,7 +85,8 @@ TEST(TouchdownResultTest, SaysInWordsAndRowsHowItEnded) {
   result.outcome = TouchdownOutcome::kLanded;
   result.first_seen_s = 2.5;
   result.distance_m = 0.123;
-  EXPECT_THAT(InWords(result), HasSubstr("landed 90.0 s after the start, 0.12 m from the centre"));
+  EXPECT_THAT(InWords(result),
+              HasSubstr("landed 90.0 s after the start, 0.12 m from the centre (true)"));
   EXPECT_EQ(TouchdownCsvRow(7, result), "7,landed,90.000,2.500,0.1230,0.000,0.000,0,0.00,0,\n");
   result.heading_error = Radians(-1.5);
   EXPECT_THAT(InWords(result), HasSubstr(", heading off by -1.5 degrees; pattern first"));
