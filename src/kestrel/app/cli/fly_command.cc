@@ -13,6 +13,7 @@
 #include "kestrel/app/cli/fly_arguments.h"
 #include "kestrel/app/cli/interrupt.h"
 #include "kestrel/app/cli/page_links.h"
+#include "kestrel/app/cli/terminal.h"
 #include "kestrel/app/console/flight_console.h"
 #include "kestrel/app/fly/fly_autopilot.h"
 #include "kestrel/app/fly/fly_session.h"
@@ -30,11 +31,16 @@
 #include "kestrel/flight/ros/ros_sink.h"
 #include "kestrel/flight/ros1/ros1_result_connection.h"
 #include "kestrel/flight/session/observation_sinks.h"
+#include "kestrel/io/recording/open_source.h"
 
 namespace kestrel {
 namespace {
 
 constexpr double kStatePeriod_s = 5;
+constexpr char kEndsByLanding[] =
+    "runs until Ctrl-C, SIGTERM or the landing; goes on when its terminal closes\n";
+constexpr char kEndsWithoutAutopilot[] =
+    "runs until Ctrl-C, SIGTERM or the end of the source; goes on when its terminal closes\n";
 
 // Prints events with the time since the start. Any thread may give one and does not wait for the
 // terminal; the flight's own thread shows them.
@@ -47,7 +53,7 @@ class FlightLog : public ObservationSink {
   bool IsWanted() const override { return false; }
 
   void Show() {
-    while (const auto line = lines_.TryPop()) fmt::print(stderr, "{}", *line);
+    while (const auto line = lines_.TryPop()) Tell(*line);
   }
 
  private:
@@ -64,6 +70,7 @@ class Flight {
         options_(arguments.ReadOptions()),
         source_(options_, arguments_.source.dds.NodeOpener(options_.dds)) {
     const PixelFormat format = arguments.hunt ? PixelFormat::kBgr : PixelFormat::kGray;
+    SayThatItWaits();
     source_.Open(arguments_.source.Recording(format), arguments.loop);
     RequireAutopilot();
     log_ = sinks_.Add(std::make_unique<FlightLog>());
@@ -117,6 +124,12 @@ class Flight {
     const std::string& source = arguments_.source.sources.front();
     if (!SimulatedSource::IsNamed(source) || !arguments_.autopilot.empty()) return;
     throw WrongUsage(source + ": expected --autopilot URL, as sim:ardupilot or sim:px4");
+  }
+
+  // A camera that is slow, or delivers nothing, must not look like a program that hangs.
+  void SayThatItWaits() const {
+    const std::string& source = arguments_.source.sources.front();
+    if (IsCamera(source)) Tell("waits for the camera: the first image of " + source + "\n");
   }
 
   void Say(const std::string& text, EventLevel level = EventLevel::kInfo) {
@@ -268,9 +281,9 @@ class Flight {
     if (team_) LeaveTeam();
     sinks_.Finish();
     log_->Show();
-    fmt::print(stderr, "{}", session_->Summary());
-    if (autopilot_.simulated) fmt::print(stderr, "{}", InWords(autopilot_.simulated->result()));
-    if (team_) fmt::print(stderr, "{}\n", team_->Found());
+    Tell(session_->Summary());
+    if (autopilot_.simulated) Tell(InWords(autopilot_.simulated->result()));
+    if (team_) Tell(team_->Found() + "\n");
   }
 
   FlyArguments arguments_;
@@ -287,11 +300,13 @@ class Flight {
 };
 
 void RunFly(const FlyArguments& arguments) {
+  OutliveTerminal();
   Flight flight(arguments);
+  Tell(arguments.autopilot.empty() ? kEndsWithoutAutopilot : kEndsByLanding);
   const FlightEnd end = flight.Run();
   flight.ShowEnd(end);
   if (ExitStatus(end) != 0) throw BadFlightEnd(end);
-  fmt::print(stderr, "{}\n", InWords(end));
+  Tell(InWords(end) + "\n");
 }
 
 }  // namespace
@@ -299,7 +314,7 @@ void RunFly(const FlyArguments& arguments) {
 void FlyUntilInterrupted(const FlyArguments& arguments) {
   while (!WasInterrupted()) {
     Flight flight(arguments);
-    fmt::print(stderr, "{}\n", InWords(flight.Run()));
+    Tell(InWords(flight.Run()) + "\n");
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "kestrel/app/cli/commands.h"
 #include "kestrel/app/cli/fly_command.h"
+#include "kestrel/app/cli/terminal.h"
 #include "kestrel/app/cli/usage_error.h"
 #include "kestrel/io/recording/silence_gstreamer.h"
 #include "kestrel/version.h"
@@ -65,7 +66,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "kestrel: {}\n", error.what());
     return kWrongUsage;
   } catch (const kestrel::BadFlightEnd& end) {
-    fmt::print(stderr, "kestrel: {}\n", end.what());
+    kestrel::Tell(fmt::format("kestrel: {}\n", end.what()));
     return end.status();
   } catch (const std::exception& error) {
     fmt::print(stderr, "kestrel: {}\n", error.what());
