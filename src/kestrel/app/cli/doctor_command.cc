@@ -27,6 +27,7 @@
 #include "kestrel/flight/doctor/examination.h"
 #include "kestrel/flight/doctor/explanation.h"
 #include "kestrel/flight/doctor/finding.h"
+#include "kestrel/vision/targets/make_target_detector.h"
 
 namespace kestrel {
 namespace {
@@ -49,6 +50,11 @@ class DoctorVisit {
         source_(options_, arguments_.flight.source.dds.NodeOpener(options_.dds)) {
     SetUse();
     OpenSource();
+    if (source_.live.source) {
+      observations_.use.sight_range_m =
+          ShapeOfTarget(options_.landing.target, options_.landing.detector)
+              .SightRange(source_.live.calibration.intrinsics);
+    }
     OpenLink();
     ExaminationParts parts;
     parts.source = source_.live.source.get();
@@ -65,6 +71,9 @@ class DoctorVisit {
     ComputerObservations computer = ObserveComputer(observations_.use.record);
     computer.frame_mb = observations_.computer.frame_mb;
     computer.least_disk_mb = options_.fly.recorder.free_space_mb;
+    if (!observations_.use.record.empty()) {
+      computer.disk_mb_per_s = MeasureDisk(observations_.use.record);
+    }
     observations_.computer = computer;
     return Check(observations_);
   }

@@ -36,8 +36,8 @@ class DoctorCommandTest : public CommandTest {
   // this computer is are left out.
   static std::vector<std::string> Checks(const Outcome& outcome, const std::string& verdict) {
     static const std::set<std::string> kOfTime = {
-        "frame rate",  "steadiness", "missed images", "detection time",    "load",
-        "heat, power", "latency",    "attitude",      "autopilot's clock", "round trip"};
+        "frame rate", "steadiness", "missed images", "detection time",    "load",      "heat",
+        "power",      "latency",    "attitude",      "autopilot's clock", "round trip"};
     std::vector<std::string> checks;
     const nlohmann::json json = nlohmann::json::parse(outcome.out);
     for (const auto& finding : json["findings"]) {

@@ -340,6 +340,18 @@ std::vector<Fault> ParameterFaults() {
        Verdict::kWrong, "param set MPC_XY_VEL_MAX 8"},
       {"dead sticks", Setup::kGuidedPx4, Parameter("MAN_OVERRIDE_SPD", -1), "MAN_OVERRIDE_SPD",
        Verdict::kDoubtful, "sticks"},
+      {"a return that searches", Setup::kPx4, Parameter("RTL_PLD_MD", 2), "RTL_PLD_MD",
+       Verdict::kDoubtful, "param set RTL_PLD_MD 1"},
+      {"no search", Setup::kPx4, Parameter("PLD_MAX_SRCH", 0), "PLD_MAX_SRCH", Verdict::kDoubtful,
+       "param set PLD_MAX_SRCH 3"},
+      {"a search above the range of sight", Setup::kPx4,
+       [](DoctorObservations* all) {
+         all->parameters["PLD_SRCH_ALT"] = {30, "PLD_SRCH_ALT", 1};
+         all->use.sight_range_m = 12.5;
+       },
+       "PLD_SRCH_ALT", Verdict::kDoubtful, "param set PLD_SRCH_ALT 12"},
+      {"an offset that is left over", Setup::kArduPilot, Parameter("PLND_LAND_OFS_X", 12),
+       "PLND_LAND_OFS_X", Verdict::kDoubtful, "param set PLND_LAND_OFS_X 0"},
       {"landing slower than allowed", Setup::kPx4, Parameter("MPC_Z_VEL_MAX_DN", 0.5),
        "MPC_Z_VEL_MAX_DN", Verdict::kWrong, "contact"},
   };
@@ -352,10 +364,31 @@ std::vector<Fault> ComputerFaults() {
        "detection time", Verdict::kWrong, "smaller images"},
       {"a busy computer", Setup::kPx4, [](DoctorObservations* all) { all->computer.load = 8; },
        "load", Verdict::kDoubtful, "top"},
-      {"throttled", Setup::kPx4, [](DoctorObservations* all) { all->computer.throttled = 0x5; },
-       "heat, power", Verdict::kWrong, "5 V"},
+      {"throttled", Setup::kPx4, [](DoctorObservations* all) { all->computer.throttled = 0x4; },
+       "heat", Verdict::kWrong, "slowed"},
       {"hot", Setup::kArduPilot, [](DoctorObservations* all) { all->computer.hottest_c = 83; },
-       "heat, power", Verdict::kDoubtful, "83"},
+       "heat", Verdict::kDoubtful, "83"},
+      {"undervoltage", Setup::kPx4, [](DoctorObservations* all) { all->computer.throttled = 0x1; },
+       "power", Verdict::kWrong, "5.1 V"},
+      {"undervoltage before", Setup::kPx4,
+       [](DoctorObservations* all) { all->computer.throttled = 0x10000; }, "power",
+       Verdict::kDoubtful, "since it was started"},
+      {"undervoltage by the kernel's alarm", Setup::kPx4,
+       [](DoctorObservations* all) { all->computer.has_low_voltage = true; }, "power",
+       Verdict::kWrong, "undervoltage now"},
+      {"a disk that can only be read", Setup::kPx4,
+       [](DoctorObservations* all) { all->computer.is_disk_read_only = true; }, "disk",
+       Verdict::kWrong, "fsck"},
+      {"a slow card", Setup::kPx4, [](DoctorObservations* all) { all->computer.disk_mb_per_s = 2; },
+       "disk", Verdict::kDoubtful, "too slow"},
+      {"a worn card", Setup::kPx4, [](DoctorObservations* all) { all->computer.disk_wear = 0.9; },
+       "disk", Verdict::kDoubtful, "90 % of the card's life"},
+      {"a clock that nobody sets", Setup::kPx4,
+       [](DoctorObservations* all) {
+         all->computer.is_time_synchronized = false;
+         all->computer.has_battery_clock = false;
+       },
+       "time of day", Verdict::kDoubtful, "no battery clock"},
       {"a full disk", Setup::kArduPilot,
        [](DoctorObservations* all) { all->computer.free_disk_mb = 100; }, "disk", Verdict::kWrong,
        "100 MB"},
@@ -445,7 +478,7 @@ TEST(DoctorTest, ImagesThatAreLeftOutAreNoJitter) {
 TEST(DoctorTest, NothingAtAllIsFoundWrongAndNotFatal) {
   const std::vector<Finding> findings = Check({});
   EXPECT_TRUE(AnyWrong(findings));
-  EXPECT_THAT(FindingsTable(findings, false), HasSubstr("none in 0 s"));
+  EXPECT_THAT(FindingsTable(findings, false), HasSubstr("not checked yet"));
 }
 
 }  // namespace

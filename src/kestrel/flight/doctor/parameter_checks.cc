@@ -17,18 +17,19 @@
 namespace kestrel {
 namespace {
 
-constexpr std::array<std::string_view, 21> kOfArduPilot = {
-    "PLND_ENABLED", "PLND_TYPE",     "PLND_EST_TYPE",  "PLND_OPTIONS",   "PLND_LAG",
-    "PLND_STRICT",  "PLND_RET_MAX",  "PLND_ORIENT",    "PLND_YAW_ALIGN", "PLND_XY_DIST_MAX",
-    "RNGFND1_TYPE", "EK3_SRC1_POSZ", "EK3_SRC1_VELXY", "WP_SPD",         "ATC_ANGLE_MAX",
-    "GUID_TIMEOUT", "MAV_GCS_SYSID", "MAV_OPTIONS",    "WP_ACC",         "PSC_JERK_NE",
-    "FS_GCS_ENABLE"};
+constexpr std::array<std::string_view, 23> kOfArduPilot = {
+    "PLND_ENABLED",  "PLND_TYPE",       "PLND_EST_TYPE",  "PLND_OPTIONS",   "PLND_LAG",
+    "PLND_STRICT",   "PLND_RET_MAX",    "PLND_ORIENT",    "PLND_YAW_ALIGN", "PLND_XY_DIST_MAX",
+    "RNGFND1_TYPE",  "EK3_SRC1_POSZ",   "EK3_SRC1_VELXY", "WP_SPD",         "ATC_ANGLE_MAX",
+    "GUID_TIMEOUT",  "MAV_GCS_SYSID",   "MAV_OPTIONS",    "WP_ACC",         "PSC_JERK_NE",
+    "FS_GCS_ENABLE", "PLND_LAND_OFS_X", "PLND_LAND_OFS_Y"};
 
-constexpr std::array<std::string_view, 18> kOfPx4 = {
-    "VTE_EN",          "VTE_AID_MASK",     "LTEST_MODE",      "PLD_HACC_RAD",   "EKF2_HGT_REF",
-    "EKF2_RNG_CTRL",   "EKF2_OF_CTRL",     "COM_DISARM_LAND", "MPC_LAND_SPEED", "MPC_Z_VEL_MAX_DN",
-    "MPC_XY_VEL_MAX",  "MPC_TILTMAX_AIR",  "COM_OF_LOSS_T",   "COM_OBL_RC_ACT", "NAV_RCL_ACT",
-    "COM_RC_OVERRIDE", "MAN_OVERRIDE_SPD", "LNDMC_XY_VEL_MAX"};
+constexpr std::array<std::string_view, 21> kOfPx4 = {
+    "VTE_EN",          "VTE_AID_MASK",     "LTEST_MODE",       "PLD_HACC_RAD",   "EKF2_HGT_REF",
+    "EKF2_RNG_CTRL",   "EKF2_OF_CTRL",     "COM_DISARM_LAND",  "MPC_LAND_SPEED", "MPC_Z_VEL_MAX_DN",
+    "MPC_XY_VEL_MAX",  "MPC_TILTMAX_AIR",  "COM_OF_LOSS_T",    "COM_OBL_RC_ACT", "NAV_RCL_ACT",
+    "COM_RC_OVERRIDE", "MAN_OVERRIDE_SPD", "LNDMC_XY_VEL_MAX", "RTL_PLD_MD",     "PLD_SRCH_ALT",
+    "PLD_MAX_SRCH"};
 
 // Speed of a vehicle when none is given, from the paper: 15 km/h.
 constexpr double kUsualSpeed_mps = 4.2;
@@ -139,6 +140,12 @@ void CheckPrecisionLandingOfArduPilot(ParameterRules* rules) {
                      {kDown, "targets are taken for ones in another direction", true});
   rules->WantExactly("PLND_YAW_ALIGN", rules->without_targets(),
                      {0, "Kestrel's targets are turned by it: it lands beside or flies away"});
+  for (const std::string_view name : {"PLND_LAND_OFS_X", "PLND_LAND_OFS_Y"}) {
+    rules->WantExactly(name, Verdict::kDoubtful,
+                       {0,
+                        "it lands so many centimetres beside the pattern's centre; left over "
+                        "from another camera?"});
+  }
   constexpr int kSupportedDistance = 10;
   if (rules->all().use.sends_distance) {
     rules->WantExactly("RNGFND1_TYPE", rules->without_targets(),
@@ -283,6 +290,29 @@ void CheckTargetsOfPx4(ParameterRules* rules) {
   }
 }
 
+// What PX4 does by itself around a precision landing. A pilot who does not know it takes the climb
+// of a search for a fly-away.
+void CheckSearchOfPx4(ParameterRules* rules) {
+  constexpr double kOpportunistic = 1;
+  constexpr double kRequired = 2;
+  constexpr double kUsualSearches = 3;
+  rules->Want("RTL_PLD_MD", Verdict::kDoubtful,
+              {kOpportunistic,
+               "each return, that of a failsafe too, searches for the pattern until it is found"},
+              [](double mode) { return mode != kRequired; });
+  rules->Want("PLD_MAX_SRCH", Verdict::kDoubtful,
+              {kUsualSearches, "a pattern that is lost once is not searched: it lands without it"},
+              [](double searches) { return searches > 0; });
+  const double range_m = rules->all().use.sight_range_m;
+  const double climb_m = rules->Find("PLD_SRCH_ALT").value_or(0);
+  const std::string why = fmt::format(
+      "when the pattern is lost it climbs to {:g} m, a surprise, and this camera sees the pattern "
+      "from {:.1f} m at most",
+      climb_m, range_m);
+  rules->Want("PLD_SRCH_ALT", Verdict::kDoubtful, {std::floor(range_m), why},
+              [&](double altitude_m) { return range_m == 0 || altitude_m <= range_m; });
+}
+
 void CheckLandingOfPx4(ParameterRules* rules) {
   constexpr double kUsualLanding_mps = 0.7;
   const double landing_mps = rules->Find("MPC_LAND_SPEED").value_or(kUsualLanding_mps);
@@ -361,7 +391,10 @@ void CheckGuidanceOfPx4(ParameterRules* rules) {
 }
 
 void CheckPx4(ParameterRules* rules) {
-  if (!rules->all().use.guides) CheckTargetsOfPx4(rules);
+  if (!rules->all().use.guides) {
+    CheckTargetsOfPx4(rules);
+    CheckSearchOfPx4(rules);
+  }
   CheckLandingOfPx4(rules);
   CheckEstimatorOfPx4(rules);
   if (rules->all().use.guides) CheckGuidanceOfPx4(rules);
