@@ -101,10 +101,20 @@ TEST_F(FlyCommandTest, PlaysARecordingInRealTime) {
   EXPECT_EQ(Lines(ReadFile(folder_ / "out/landing_detections.csv")), 11);
 }
 
+TEST_F(FlyCommandTest, WhatItWaitsForIsSaid) {
+  const std::string flight =
+      Simulate("landing", "--scenario calm --seed 2 --set frames=30 --set rate_hz=10");
+  const Outcome outcome = Succeed("fly " + flight + " --autopilot tcpout://127.0.0.1:1");
+  EXPECT_THAT(outcome.err,
+              AllOf(HasSubstr("runs until Ctrl-C, SIGTERM or the landing"),
+                    HasSubstr("waits for the autopilot: tcpout://127.0.0.1:1 refused")));
+}
+
 TEST_F(FlyCommandTest, FaultsAreNamed) {
   const std::string source = "fly sim:standing --autopilot ";
   ExpectInputError(source + "udp://127.0.0.1:14550", "udp");
-  ExpectInputError(source + "serial:///dev/no_such_line:57600", "/dev/no_such_line");
+  ExpectInputError(source + "serial:///dev/no_such_line:57600", "there is no /dev/no_such_line");
+  ExpectInputError(source + "/dev/ttyACM0", "did you mean serial:///dev/ttyACM0:57600?");
   ExpectInputError("fly sim:nowhere", "there is no scenario 'sim:nowhere'");
   ExpectInputError("fly 'videotestsrc is-live=true ! video/x-raw,width=64'", "no calibration");
   ExpectInputError("fly " + folder_ / "missing", "no such file or folder");

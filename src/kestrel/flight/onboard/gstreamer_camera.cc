@@ -79,8 +79,7 @@ void GstreamerCamera::StartPipeline(GstreamerPipeline* pipeline) const {
   try {
     pipeline->Start();
   } catch (const InputError&) {
-    const bool is_device = camera_.starts_with(kVideoDevice);
-    const std::string fault = is_device ? VideoDeviceFault(camera_) : "";
+    const std::string fault = CameraFault(camera_);
     if (fault.empty()) throw;
     throw InputError(fault);
   }

@@ -2,16 +2,35 @@
 #include "kestrel/io/recording/video_device.h"
 
 #include <cerrno>
+#include <cstddef>
 #include <fcntl.h>
 #include <linux/videodev2.h>
+#include <string_view>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
 #include "kestrel/core/base/device_fault.h"
 
 namespace kestrel {
+namespace {
 
-std::string VideoDeviceFault(const std::string& path) {
+// Empty: the camera names none.
+std::string DeviceOf(const std::string& camera) {
+  constexpr std::string_view kProperty = "device=";
+  if (camera.starts_with("/dev/")) return camera;
+  const std::size_t place = camera.find(kProperty);
+  if (place == std::string::npos || camera.find("v4l2") == std::string::npos) return "";
+  const std::size_t begin = camera.find_first_not_of('"', place + kProperty.size());
+  return begin == std::string::npos
+             ? ""
+             : camera.substr(begin, camera.find_first_of("\" !", begin) - begin);
+}
+
+}  // namespace
+
+std::string CameraFault(const std::string& camera) {
+  const std::string path = DeviceOf(camera);
+  if (path.empty()) return "";
   const int device = open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
   if (device < 0) return DeviceFault(path, errno);
   v4l2_capability capability{};

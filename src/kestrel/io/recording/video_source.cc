@@ -141,8 +141,7 @@ std::unique_ptr<FrameSource> OpenCamera(const std::string& camera) {
     return std::make_unique<VideoSource>(std::move(decoder), is_pipeline ? "gstreamer" : camera,
                                          VideoContainer());
   } catch (const InputError& error) {
-    const bool is_device = camera.starts_with(kVideoDevice) && !is_pipeline;
-    const std::string fault = is_device ? VideoDeviceFault(camera) : "";
+    const std::string fault = CameraFault(camera);
     if (!fault.empty()) throw InputError(fault);
     throw InputError(fmt::format(
         "{}: {}: {}", camera,
