@@ -175,6 +175,13 @@ void BindRayTable(py::module_& module) {
            "in order is read without a copy.");
 }
 
+// What of the file is not used becomes Python's warnings.
+CameraCalibration ReadWithWarnings(const std::filesystem::path& file, const std::string& camera) {
+  return ReadCalibration(file, camera, [](const std::string& text) {
+    if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+  });
+}
+
 }  // namespace
 
 void BindCameras(py::module_& module) {
@@ -194,10 +201,11 @@ void BindCameras(py::module_& module) {
   BindCalibration(calibration.py());
   BindModel(module);
   BindRayTable(module);
-  module.def("read_calibration", &ReadCalibration, py::arg("file"), py::arg("camera") = "",
-             "Reads the calibration of a camera: files of Kalibr, EuRoC, ROS and OpenCV. Returns a "
-             "CameraCalibration.\n\ncamera: which one of several in a file of Kalibr ('cam1').\n"
-             "Raises InputError that names file, line and key.");
+  module.def("read_calibration", &ReadWithWarnings, py::arg("file"), py::arg("camera") = "",
+             "Reads the calibration of a camera: files of Kalibr, EuRoC, ROS, OpenCV (YAML, XML), "
+             "camodocal, VINS and ORB-SLAM. Returns a CameraCalibration.\n\ncamera: which one of "
+             "several in a file of Kalibr ('cam1').\nWarns of keys that are not used. Raises "
+             "InputError that names file, line and key.");
   module.def("paper_calibration", &PaperCalibration,
              "Returns the calibration of the paper's fisheye camera, 752 x 480 px and 185 degrees, "
              "which looks down from the UAV: for trials.");

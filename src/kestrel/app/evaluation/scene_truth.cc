@@ -7,6 +7,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/base/load_yaml.h"
 #include "kestrel/core/base/parse_number.h"
 #include "kestrel/core/geometry/angles.h"
 
@@ -80,12 +81,7 @@ std::optional<double> SceneTruth::ExposureAt(Time time) const {
 }
 
 SceneTruth ParseSceneTruth(const std::string& text, const std::string& file) {
-  YAML::Node node;
-  try {
-    node = YAML::Load(text);
-  } catch (const YAML::Exception& error) {
-    throw InputError(fmt::format("{}:{}: is no YAML: {}", file, error.mark.line + 1, error.msg));
-  }
+  const YAML::Node node = LoadYaml(text, file);
   if (!node.IsMap()) throw InputError(file + ": expected a map of keys, as scene.yaml has");
   const Section root(node, file + ": ");
   SceneTruth scene;

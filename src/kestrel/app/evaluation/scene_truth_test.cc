@@ -56,7 +56,7 @@ TEST(SceneTruth, FaultsNameTheKey) {
   EXPECT_THAT(InputErrorOf([] { ParseSceneTruth("frames: {first: {}}\n", "scene.yaml"); }),
               HasSubstr("frames.first"));
   EXPECT_THAT(InputErrorOf([] { ParseSceneTruth("a: [1\n", "scene.yaml"); }),
-              HasSubstr("is no YAML"));
+              HasSubstr("is not YAML"));
   EXPECT_THAT(InputErrorOf([] { ParseSceneTruth("just words", "scene.yaml"); }),
               HasSubstr("expected a map"));
 }

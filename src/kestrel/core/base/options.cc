@@ -11,6 +11,7 @@
 
 #include "kestrel/core/base/edit_distance.h"
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/base/load_yaml.h"
 #include "kestrel/core/base/parse_number.h"
 #include "kestrel/core/base/read_file.h"
 
@@ -34,7 +35,7 @@ bool Assign(const std::optional<Value>& parsed, Value* value) {
 struct Assigner {
   const std::string& text;
   bool operator()(bool* value) const { return Assign(ParseBool(text), value); }
-  bool operator()(int* value) const { return Assign(ParseNumber<int>(text), value); }
+  bool operator()(int* value) const { return Assign(ParseWhole<int>(text), value); }
   bool operator()(double* value) const { return Assign(ParseNumber<double>(text), value); }
   bool operator()(std::string* value) const { return Assign(std::optional(text), value); }
 };
@@ -160,14 +161,10 @@ void ReadOptionFile(const std::string& path, const OptionFields& fields) {
 
 void ReadOptionFields(const std::string& yaml, const std::string& file,
                       const OptionFields& fields) {
-  try {
-    const YAML::Node root = YAML::Load(yaml);
-    if (root.IsNull()) return;
-    if (!root.IsMap()) throw InputError(file + ": expected 'name: value' lines (YAML)");
-    ReadGroup(root, "", file, fields);
-  } catch (const YAML::Exception& error) {
-    throw InputError(fmt::format("{}:{}: not YAML: {}", file, error.mark.line + 1, error.msg));
-  }
+  const YAML::Node root = LoadYaml(yaml, file);
+  if (root.IsNull()) return;
+  if (!root.IsMap()) throw InputError(file + ": expected 'name: value' lines (YAML)");
+  ReadGroup(root, "", file, fields);
 }
 
 void SetOptionField(const std::string& assignment, const OptionFields& fields) {

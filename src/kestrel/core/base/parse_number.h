@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <concepts>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -27,6 +29,17 @@ std::optional<Number> ParseNumber(std::string_view text) {
     if (!std::isfinite(number)) return std::nullopt;
   }
   return number;
+}
+
+// Parses a whole number that may be written as one with a fraction of zero: "320.0", as programs
+// write that keep all their numbers as floating-point ones.
+template <std::integral Number>
+std::optional<Number> ParseWhole(std::string_view text) {
+  if (const std::optional<Number> number = ParseNumber<Number>(text)) return number;
+  constexpr double kExact = 1LL << std::min(53, std::numeric_limits<Number>::digits);
+  const std::optional<double> number = ParseNumber<double>(text);
+  if (!number || *number != std::floor(*number) || std::abs(*number) >= kExact) return std::nullopt;
+  return static_cast<Number>(*number);
 }
 
 // Returns advice that follows "expected a number": for "8,5" that 8.5 is meant, else nothing.

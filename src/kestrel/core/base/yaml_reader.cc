@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/core/base/yaml_reader.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -10,31 +9,13 @@
 #include <yaml-cpp/yaml.h>
 
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/base/load_yaml.h"
 #include "kestrel/core/base/parse_number.h"
 #include "kestrel/core/base/shown.h"
 
 namespace kestrel {
-namespace {
-
-YAML::Node Load(const std::string& text, const std::string& file) {
-  try {
-    return YAML::Load(text);
-  } catch (const YAML::Exception& error) {
-    throw InputError(fmt::format("{}:{}: not YAML: {}", file, error.mark.line + 1, error.msg));
-  }
-}
-
-}  // namespace
-
-std::string WithoutYamlDirective(std::string_view text) {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-  if (text.starts_with("%YAML")) text.remove_prefix(std::min(text.find('\n'), text.size()));
-  return std::string(text);
-}
-
 YamlReader::YamlReader(const std::string& text, const std::string& file)
-    : YamlReader(Load(text, file), file, "") {}
+    : YamlReader(LoadYaml(text, file), file, "") {}
 
 YamlReader::YamlReader(const YAML::Node& node, std::string file, std::string key)
     : node_(std::make_shared<YAML::Node>(node)), file_(std::move(file)), key_(std::move(key)) {}
@@ -87,7 +68,7 @@ double YamlReader::Number() const {
 }
 
 std::int64_t YamlReader::Integer() const {
-  const auto number = node_->IsScalar() ? ParseNumber<std::int64_t>(node_->Scalar()) : std::nullopt;
+  const auto number = node_->IsScalar() ? ParseWhole<std::int64_t>(node_->Scalar()) : std::nullopt;
   if (!number) Fail("expected a whole number");
   return *number;
 }

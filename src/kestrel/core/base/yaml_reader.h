@@ -6,7 +6,6 @@
 #include <memory>
 #include <set>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace YAML {
@@ -15,16 +14,11 @@ class Node;
 
 namespace kestrel {
 
-// Returns a text without the "%YAML:1.0" that OpenCV starts its files with, which is not the
-// directive that YAML defines, and without a byte order mark. An empty line replaces it, so that
-// the line numbers of messages stay right.
-std::string WithoutYamlDirective(std::string_view text);
-
 // A value of a YAML (or JSON) text, for files that are not options. Every error is an InputError
 // that names file, line and key.
 class YamlReader {
  public:
-  // Reads a whole text. Throws InputError when it is not YAML. 'file' is for messages.
+  // Reads a whole text as LoadYaml does. 'file' is for messages.
   YamlReader(const std::string& text, const std::string& file);
 
   [[noreturn]] void Fail(const std::string& message) const;
@@ -39,7 +33,7 @@ class YamlReader {
   std::vector<YamlReader> Items() const;  // of a list
   std::string Text() const;               // not empty
   double Number() const;                  // finite
-  std::int64_t Integer() const;
+  std::int64_t Integer() const;           // also from 3.0
   bool Bool() const;
   // Returns a list of 'count' numbers.
   std::vector<double> Numbers(std::size_t count) const;

@@ -27,6 +27,13 @@ TEST(YamlReader, ReadsWhatIsThere) {
   EXPECT_FALSE(root.Has("other"));
 }
 
+TEST(YamlReader, WholeNumbersMayHaveAFractionOfZero) {
+  EXPECT_EQ(ReaderOf("id: 7.0\n")["id"].Integer(), 7);
+  EXPECT_EQ(ReaderOf("id: 9007199254740993\n")["id"].Integer(), 9007199254740993);
+  EXPECT_THAT(InputErrorOf([] { ReaderOf("id: 1e30\n")["id"].Integer(); }),
+              HasSubstr("a whole number"));
+}
+
 TEST(YamlReader, ReadsJson) { EXPECT_EQ(ReaderOf(R"({"a": {"b": 4}})")["a"]["b"].Integer(), 4); }
 
 TEST(YamlReader, ErrorsNameFileLineAndKey) {

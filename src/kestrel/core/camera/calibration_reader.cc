@@ -5,131 +5,33 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <initializer_list>
+#include <functional>
 #include <optional>
+#include <set>
+#include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
-#include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <yaml-cpp/yaml.h>
 
 #include "kestrel/core/base/error.h"
-#include "kestrel/core/base/parse_number.h"
+#include "kestrel/core/base/load_yaml.h"
 #include "kestrel/core/base/read_file.h"
 #include "kestrel/core/base/shown.h"
-#include "kestrel/core/base/yaml_reader.h"
+#include "kestrel/core/camera/calibration_entry.h"
+#include "kestrel/core/camera/calibration_mount.h"
+#include "kestrel/core/camera/opencv_xml.h"
 
 namespace kestrel {
 namespace {
 
-constexpr std::size_t kMaxBytes = 1 << 20;   // a calibration has a few kilobytes
-constexpr double kMaxClockOffset_s = 4e9;    // fits into a Duration and spans two epochs
-constexpr double kRotationTolerance = 1e-3;  // of matrices typed with four digits
+constexpr std::size_t kMaxBytes = 1 << 20;  // a calibration has a few kilobytes
 
-using Names = std::initializer_list<const char*>;
-
-// A value of the file with the path of its key, so that every message can name both.
-class Entry {
- public:
-  Entry(const std::string* file, const YAML::Node& node, std::string key)
-      : file_(file), node_(node), key_(std::move(key)) {}
-
-  const YAML::Node& node() const { return node_; }
-  const std::string& key() const { return key_; }
-
-  // 'what' continues the sentence that begins with the key.
-  [[noreturn]] void Fail(const std::string& what) const {
-    const std::string line =
-        node_.Mark().is_null() ? "" : fmt::format("{}:", node_.Mark().line + 1);
-    const std::string subject = key_.empty() ? "the file" : fmt::format("'{}'", key_);
-    throw InputError(fmt::format("{}:{} {} {}", *file_, line, subject, what));
-  }
-
-  // Returns the first of 'names' that this map has.
-  std::optional<Entry> Find(Names names) const {
-    if (!node_.IsMap()) Fail("is not a map of keys, expected one");
-    for (const char* name : names) {
-      const YAML::Node child = node_[name];
-      if (child) RequireOnce(name);
-      if (child) return Entry(file_, child, key_.empty() ? name : key_ + "." + name);
-    }
-    return std::nullopt;
-  }
-  Entry Get(Names names, const std::string& expected) const {
-    const std::optional<Entry> child = Find(names);
-    if (!child) {
-      Fail(fmt::format("has no key '{}', expected {}", fmt::join(names, "' or '"), expected));
-    }
-    return *child;
-  }
-
-  std::string Text() const {
-    if (!node_.IsScalar()) Fail("is not a text, expected one");
-    return node_.Scalar();
-  }
-  double Number() const { return NumberOf(node_); }
-  int Integer() const {
-    const std::optional<int> number =
-        node_.IsScalar() ? ParseNumber<int>(node_.Scalar()) : std::nullopt;
-    if (!number) Fail("is not an integer, expected one");
-    return *number;
-  }
-  // Reads a list, a list of rows, or a matrix with rows, cols and data: row by row.
-  std::vector<double> Numbers() const {
-    if (node_.IsMap()) return MatrixNumbers();
-    if (!node_.IsSequence()) Fail("is not a list of numbers, expected one");
-    std::vector<double> numbers;
-    for (const YAML::Node& row : node_) {
-      if (!row.IsSequence()) {
-        numbers.push_back(NumberOf(row));
-        continue;
-      }
-      for (const YAML::Node& number : row) numbers.push_back(NumberOf(number));
-    }
-    return numbers;
-  }
-  std::vector<double> Numbers(std::size_t count, const std::string& expected) const {
-    std::vector<double> numbers = Numbers();
-    if (numbers.size() != count) {
-      Fail(fmt::format("has {} numbers, expected {}: {}", numbers.size(), count, expected));
-    }
-    return numbers;
-  }
-
- private:
-  void RequireOnce(const char* name) const {
-    const auto count = std::count_if(node_.begin(), node_.end(), [&](const auto& pair) {
-      return pair.first.IsScalar() && pair.first.Scalar() == name;
-    });
-    if (count > 1) Fail(fmt::format("has '{}' {} times, expected it once", name, count));
-  }
-  double NumberOf(const YAML::Node& node) const {
-    if (!node.IsScalar()) Fail("holds something else than numbers, expected finite numbers");
-    const std::optional<double> number = ParseNumber<double>(node.Scalar());
-    if (!number) Fail(fmt::format("holds '{}', expected a finite number", Shown(node.Scalar())));
-    return *number;
-  }
-  std::vector<double> MatrixNumbers() const {
-    std::vector<double> numbers = Get({"data"}, "the numbers of the matrix").ListNumbers();
-    const std::int64_t rows = Get({"rows"}, "the number of rows").Integer();
-    const std::int64_t cols = Get({"cols"}, "the number of columns").Integer();
-    if (rows * cols != static_cast<std::int64_t>(numbers.size())) {
-      Fail(fmt::format("has {} numbers, expected {} rows of {}", numbers.size(), rows, cols));
-    }
-    return numbers;
-  }
-  std::vector<double> ListNumbers() const {
-    if (!node_.IsSequence()) Fail("is not a list of numbers, expected one");
-    return Numbers();
-  }
-
-  const std::string* file_;
-  YAML::Node node_;
-  std::string key_;
-};
+using Entry = CalibrationEntry;
+using Names = CalibrationEntry::Names;
 
 constexpr const char* kSupportedModels =
     "equidistant (fisheye, kannala_brandt, kb4), radial-tangential (radtan, plumb_bob, "
@@ -195,39 +97,6 @@ void SetDistortion(DistortionModel model, const Entry& entry, CameraIntrinsics* 
   }
 }
 
-RigidTransform RigidOf(const Entry& entry) {
-  const std::vector<double> m = entry.Numbers(16, "a 4x4 matrix, row by row");
-  const Eigen::Matrix4d matrix =
-      Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(m.data());
-  const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
-  const double error =
-      (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (!(error <= kRotationTolerance) || rotation.determinant() < 0) {
-    entry.Fail("is not a rigid transform, expected a right-handed orthonormal rotation");
-  }
-  if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
-    entry.Fail("is not a rigid transform, expected 0, 0, 0, 1 in the last row");
-  }
-  const Eigen::Vector3d translation = matrix.topRightCorner<3, 1>();
-  return {Eigen::Quaterniond(rotation).normalized(), translation};
-}
-
-void SetMount(const Entry& camera, CameraCalibration* calibration) {
-  if (const std::optional<Entry> pose = camera.Find({"T_BS"})) {
-    calibration->body_from_camera = RigidOf(*pose);
-  } else if (const std::optional<Entry> inverse = camera.Find({"T_cam_imu"})) {
-    calibration->body_from_camera = RigidOf(*inverse).Inverse();
-  }
-  const std::optional<Entry> shift = camera.Find({"timeshift_cam_imu"});
-  if (!shift) return;
-  const double shift_s = shift->Number();
-  if (std::abs(shift_s) > kMaxClockOffset_s) {
-    shift->Fail(
-        fmt::format("is {} s, expected at most {} s either way", shift_s, kMaxClockOffset_s));
-  }
-  calibration->clock_offset = DurationFromSeconds(shift_s);
-}
-
 int PixelCount(const Entry& entry, double number) {
   // Validate() checks the limits of an image; this one only keeps the conversion defined.
   if (number != std::floor(number) || std::abs(number) > 1e9) {
@@ -236,10 +105,34 @@ int PixelCount(const Entry& entry, double number) {
   return static_cast<int>(number);
 }
 
-void SetSize(const Entry& entry, CameraIntrinsics* intrinsics) {
-  const std::vector<double> size = entry.Numbers(2, "width, height");
-  intrinsics->width_px = PixelCount(entry, size[0]);
-  intrinsics->height_px = PixelCount(entry, size[1]);
+// Returns width and height; nothing where the file has no list of both.
+std::optional<std::pair<int, int>> ListedSize(const Entry& camera) {
+  const std::optional<Entry> size = camera.Find({"resolution", "image_size", "image_resolution"});
+  if (!size) return std::nullopt;
+  const std::vector<double> numbers = size->Numbers(2, "width, height");
+  return std::pair(PixelCount(*size, numbers[0]), PixelCount(*size, numbers[1]));
+}
+
+void SetSize(const Entry& camera, CameraIntrinsics* intrinsics) {
+  const auto listed = ListedSize(camera);
+  const std::optional<Entry> width = camera.Find({"image_width", "width", "Camera.width"});
+  const std::optional<Entry> height = camera.Find({"image_height", "height", "Camera.height"});
+  if (listed) std::tie(intrinsics->width_px, intrinsics->height_px) = *listed;
+  if (listed && !width && !height) return;
+  if (!width || !height) {
+    camera.Fail(
+        "has no size of the images in pixels, expected 'image_width' and 'image_height', or "
+        "'resolution: [width, height]'");
+  }
+  intrinsics->width_px = width->Integer();
+  intrinsics->height_px = height->Integer();
+  if (listed && *listed != std::pair(intrinsics->width_px, intrinsics->height_px)) {
+    camera.Fail(fmt::format(
+        "has images of {}x{} px ('image_size' or 'resolution') and of {}x{} px ('{}', '{}'), "
+        "expected one size",
+        listed->first, listed->second, intrinsics->width_px, intrinsics->height_px, width->key(),
+        height->key()));
+  }
 }
 
 void RequireCalibrated(const Entry& entry, const CameraIntrinsics& intrinsics) {
@@ -247,6 +140,10 @@ void RequireCalibrated(const Entry& entry, const CameraIntrinsics& intrinsics) {
     entry.Fail("has a focal length of 0: the camera is not calibrated");
   }
 }
+
+constexpr Names kMatrixNames{"camera_matrix", "K", "mtx", "intrinsic_matrix"};
+constexpr Names kCoefficientNames{
+    "distortion_coefficients", "distortion_coeffs", "dist_coeffs", "dist_coeff", "dist", "D"};
 
 // The form of EuRoC and Kalibr: a list of four intrinsics.
 CameraCalibration ReadListForm(const Entry& camera) {
@@ -260,7 +157,7 @@ CameraCalibration ReadListForm(const Entry& camera) {
   }
   CameraCalibration calibration;
   CameraIntrinsics& intrinsics = calibration.intrinsics;
-  SetSize(camera.Get({"resolution"}, "[width, height]"), &intrinsics);
+  SetSize(camera, &intrinsics);
   const Entry list = camera.Get({"intrinsics"}, "[fu, fv, cu, cv]");
   const std::vector<double> values = list.Numbers(4, "fu, fv, cu, cv");
   intrinsics.fx_px = values[0];
@@ -269,11 +166,10 @@ CameraCalibration ReadListForm(const Entry& camera) {
   intrinsics.cy_px = values[3];
   RequireCalibrated(list, intrinsics);
   const DistortionModel model = ModelOf(camera.Get({"distortion_model"}, kSupportedModels));
-  const Names names{"distortion_coefficients", "distortion_coeffs"};
-  if (model != DistortionModel::kNone || camera.Find(names)) {
-    SetDistortion(model, camera.Get(names, "the coefficients of the lens"), &intrinsics);
+  if (model != DistortionModel::kNone || camera.Find(kCoefficientNames)) {
+    SetDistortion(model, camera.Get(kCoefficientNames, "the coefficients of the lens"),
+                  &intrinsics);
   }
-  SetMount(camera, &calibration);
   return calibration;
 }
 
@@ -288,7 +184,9 @@ DistortionModel MatrixFormModel(const Entry& camera, const Entry& coefficients) 
   }
   if (const std::optional<Entry> name = camera.Find({"distortion_model"})) return ModelOf(*name);
   const std::size_t count = coefficients.Numbers().size();
-  if (const std::optional<Entry> name = camera.Find({"model", "camera_model", "camera_type"})) {
+  for (const char* key : {"model", "camera_model", "camera_type"}) {
+    const std::optional<Entry> name = camera.Find({key});
+    if (!name) continue;
     // "pinhole" as the kind of camera leaves the distortion open.
     const DistortionModel model = ModelOf(*name);
     if (model != DistortionModel::kNone || count == 0) return model;
@@ -301,27 +199,11 @@ DistortionModel MatrixFormModel(const Entry& camera, const Entry& coefficients) 
   return count == 0 ? DistortionModel::kNone : DistortionModel::kRadialTangential;
 }
 
-void SetMatrixFormSize(const Entry& camera, CameraIntrinsics* intrinsics) {
-  if (const std::optional<Entry> size = camera.Find({"image_size"})) {
-    SetSize(*size, intrinsics);
-    return;
-  }
-  intrinsics->width_px =
-      camera.Get({"image_width", "image_Width", "width"}, "the image's width in pixels").Integer();
-  intrinsics->height_px =
-      camera.Get({"image_height", "image_Height", "height"}, "the image's height in pixels")
-          .Integer();
-}
-
-const Names kMatrixNames{"camera_matrix", "Camera_Matrix", "cameraMatrix", "K", "k"};
-const Names kCoefficientNames{
-    "distortion_coefficients", "Distortion_Coefficients", "distCoeffs", "dist_coeffs", "D", "d"};
-
 // The form of ROS and OpenCV: a 3x3 camera matrix.
 CameraCalibration ReadMatrixForm(const Entry& camera) {
   CameraCalibration calibration;
   CameraIntrinsics& intrinsics = calibration.intrinsics;
-  SetMatrixFormSize(camera, &intrinsics);
+  SetSize(camera, &intrinsics);
   const Entry matrix = camera.Get(kMatrixNames, "a 3x3 matrix");
   const std::vector<double> k = matrix.Numbers(9, "a 3x3 matrix, row by row");
   intrinsics.fx_px = k[0];
@@ -334,11 +216,182 @@ CameraCalibration ReadMatrixForm(const Entry& camera) {
   }
   const Entry coefficients = camera.Get(kCoefficientNames, "the coefficients of the lens");
   SetDistortion(MatrixFormModel(camera, coefficients), coefficients, &intrinsics);
-  SetMount(camera, &calibration);
-  if (const std::optional<Entry> name = camera.Find({"camera_name"})) {
-    calibration.name = name->Text();
-  }
   return calibration;
+}
+
+// A lens whose parameters have a key each.
+struct NamedLens {
+  const char* type;
+  DistortionModel model;
+  std::array<const char*, 4> pinhole;  // keys of fx, fy, cx, cy
+  std::vector<const char*> coefficients;
+};
+
+// Returns the value of a parameter.
+using Parameter = std::function<std::optional<Entry>(const char* name)>;
+
+CameraCalibration ReadNamedForm(const Entry& camera, const Entry& type,
+                                const std::vector<NamedLens>& lenses, const Parameter& find) {
+  const auto lens = std::find_if(lenses.begin(), lenses.end(), [&](const NamedLens& each) {
+    return PlainKey(each.type) == PlainKey(type.Text());
+  });
+  if (lens == lenses.end()) {
+    std::vector<std::string> types;
+    for (const NamedLens& each : lenses) types.emplace_back(each.type);
+    type.Fail(fmt::format("is '{}', which is not supported, expected {}", Shown(type.Text()),
+                          fmt::join(types, " or ")));
+  }
+  const auto number = [&](const char* name) {
+    const std::optional<Entry> entry = find(name);
+    if (!entry) {
+      camera.Fail(
+          fmt::format("has no parameter '{}', expected it for the lens {}", name, lens->type));
+    }
+    return entry->Number();
+  };
+  CameraCalibration calibration;
+  CameraIntrinsics& intrinsics = calibration.intrinsics;
+  SetSize(camera, &intrinsics);
+  intrinsics.fx_px = number(lens->pinhole[0]);
+  intrinsics.fy_px = number(lens->pinhole[1]);
+  intrinsics.cx_px = number(lens->pinhole[2]);
+  intrinsics.cy_px = number(lens->pinhole[3]);
+  RequireCalibrated(type, intrinsics);
+  intrinsics.distortion_model = lens->model;
+  for (const char* name : lens->coefficients) intrinsics.distortion.push_back(number(name));
+  const bool may_have_k3 = lens->model == DistortionModel::kRadialTangential &&
+                           lens->coefficients.size() == 4 && find("k3").has_value();
+  if (may_have_k3) intrinsics.distortion.push_back(number("k3"));
+  return calibration;
+}
+
+// The form of camodocal and VINS.
+CameraCalibration ReadCamodocalForm(const Entry& camera, const Entry& type) {
+  static const std::vector<NamedLens> kLenses{{"PINHOLE",
+                                               DistortionModel::kRadialTangential,
+                                               {"fx", "fy", "cx", "cy"},
+                                               {"k1", "k2", "p1", "p2"}},
+                                              {"PINHOLE_FULL",
+                                               DistortionModel::kRadialTangential,
+                                               {"fx", "fy", "cx", "cy"},
+                                               {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"}},
+                                              {"KANNALA_BRANDT",
+                                               DistortionModel::kEquidistant,
+                                               {"mu", "mv", "u0", "v0"},
+                                               {"k2", "k3", "k4", "k5"}}};
+  return ReadNamedForm(camera, type, kLenses, [&](const char* name) -> std::optional<Entry> {
+    for (const char* group : {"projection_parameters", "distortion_parameters"}) {
+      const std::optional<Entry> parameters = camera.Find({group});
+      if (!parameters) continue;
+      if (const std::optional<Entry> entry = parameters->Find({name})) return entry;
+    }
+    return std::nullopt;
+  });
+}
+
+// The form of ORB-SLAM: "Camera.fx", since version 3 also "Camera1.fx".
+CameraCalibration ReadOrbSlamForm(const Entry& camera, const Entry& type) {
+  static const std::vector<NamedLens> kLenses{{"PinHole",
+                                               DistortionModel::kRadialTangential,
+                                               {"fx", "fy", "cx", "cy"},
+                                               {"k1", "k2", "p1", "p2"}},
+                                              {"KannalaBrandt8",
+                                               DistortionModel::kEquidistant,
+                                               {"fx", "fy", "cx", "cy"},
+                                               {"k1", "k2", "k3", "k4"}}};
+  return ReadNamedForm(camera, type, kLenses, [&](const std::string& name) {
+    return camera.Find({("Camera." + name).c_str(), ("Camera1." + name).c_str()});
+  });
+}
+
+// A calibration holds for whole images. That of a driver which bins or crops is of other images
+// than it sends.
+void RequireWholeImages(const Entry& camera, const CameraIntrinsics& intrinsics) {
+  const auto require = [](const Entry& map, const char* name, int most, int whole) {
+    const std::optional<Entry> entry = map.Find({name});
+    if (!entry || entry->Integer() <= most || entry->Integer() == whole) return;
+    entry->Fail(fmt::format(
+        "is {}: tells of binning or a region of interest, expected whole images, or a calibration "
+        "of the images as they are, without this key",
+        entry->Integer()));
+  };
+  require(camera, "binning_x", 1, 1);
+  require(camera, "binning_y", 1, 1);
+  const std::optional<Entry> roi = camera.Find({"roi"});
+  if (!roi) return;
+  require(*roi, "x_offset", 0, 0);
+  require(*roi, "y_offset", 0, 0);
+  require(*roi, "width", 0, intrinsics.width_px);
+  require(*roi, "height", 0, intrinsics.height_px);
+}
+
+// Returns the lens of a map that is of any of the forms; nothing when it is of none.
+std::optional<CameraCalibration> ReadLens(const Entry& camera) {
+  if (camera.Find({"intrinsics"})) return ReadListForm(camera);
+  if (camera.Find(kMatrixNames)) return ReadMatrixForm(camera);
+  if (const auto type = camera.Find({"model_type"})) return ReadCamodocalForm(camera, *type);
+  if (const auto type = camera.Find({"Camera.type"})) return ReadOrbSlamForm(camera, *type);
+  return std::nullopt;
+}
+
+// Keys that say nothing about lens, mount and clock, as PlainKey has them.
+bool IsIrrelevant(const std::string& key) {
+  static const std::set<std::string> kKeys{
+      // Kestrel, EuRoC
+      "sensortype", "comment", "ratehz", "timeoffsets", "tgs", "gimbal", "sensorname", "sensorid",
+      // Kalibr
+      "cameramodel", "camoverlaps", "rostopic", "tcncnm1", "linedelay",
+      // ROS; the rectified image's matrices are not the camera's
+      "header", "r", "p", "rectificationmatrix", "projectionmatrix", "cameraname", "seq",
+      // OpenCV
+      "calibrationtime", "nrofframes", "nframes", "boardwidth", "boardheight", "squaresize",
+      "markersize", "fixaspectratio", "aspectratio", "flags", "calibrationflags", "fisheyemodel",
+      "avgreprojectionerror", "perviewreprojectionerrors", "extrinsicparameters", "gridpoints",
+      "imagepoints", "reprojectionerror", "rms", "model", "cameratype", "patterntype",
+      "calibrationpattern"};
+  return kKeys.contains(PlainKey(key));
+}
+
+// Returns which keys of a map were not used.
+std::vector<std::string> UnusedKeys(const Entry& map) {
+  std::vector<std::string> unused;
+  for (const std::string& key : map.Keys()) {
+    if (!map.IsUsed(key) && !IsIrrelevant(key)) unused.push_back(fmt::format("'{}'", Shown(key)));
+  }
+  return unused;
+}
+
+// What the functions below need of a file to tell of it.
+struct Teller {
+  const std::string& file;
+  const std::function<void(const std::string&)>& tell;
+};
+
+void TellUnusedKeys(const Entry& map, const Teller& teller) {
+  constexpr std::size_t kMost = 8;
+  std::vector<std::string> unused = UnusedKeys(map);
+  if (unused.empty() || !teller.tell) return;
+  const std::size_t more = unused.size() - std::min(unused.size(), kMost);
+  unused.resize(unused.size() - more);
+  teller.tell(fmt::format("{}: not used, as not known here: {}{}", teller.file,
+                          fmt::join(unused, ", "),
+                          more == 0 ? "" : fmt::format(" and {} more", more)));
+}
+
+CameraCalibration ReadCamera(const Entry& camera, const Teller& teller) {
+  std::optional<CameraCalibration> calibration = ReadLens(camera);
+  if (!calibration) {
+    camera.Fail(
+        "has no key 'intrinsics' (EuRoC), 'cam0' (Kalibr), 'camera_matrix' (ROS, OpenCV), "
+        "'model_type' (camodocal, VINS) or 'Camera.type' (ORB-SLAM), expected one of them");
+  }
+  RequireWholeImages(camera, calibration->intrinsics);
+  ReadMountAndClock(camera, &*calibration);
+  if (const std::optional<Entry> name = camera.Find({"camera_name"})) {
+    calibration->name = name->Text();
+  }
+  TellUnusedKeys(camera, teller);
+  return *calibration;
 }
 
 bool IsCameraKey(const std::string& key) {
@@ -358,30 +411,27 @@ std::vector<std::string> ChainCameras(const Entry& root) {
 }
 
 CameraCalibration ReadChain(const Entry& root, const std::vector<std::string>& names,
-                            const std::string& camera) {
+                            const std::string& camera, const Teller& teller) {
   const std::string& name = camera.empty() ? names.front() : camera;
   if (std::find(names.begin(), names.end(), name) == names.end()) {
     root.Fail(fmt::format("has no camera '{}', expected one of {}", name, fmt::join(names, ", ")));
   }
   CameraCalibration calibration =
-      ReadListForm(root.Get({name.c_str()}, "the camera's calibration"));
+      ReadCamera(root.Get({name.c_str()}, "the camera's calibration"), teller);
   calibration.name = name;
+  for (const std::string& other : names) root.Find({other.c_str()});  // of no concern
+  TellUnusedKeys(root, teller);
   return calibration;
 }
 
-CameraCalibration ReadRoot(const Entry& root, const std::string& camera) {
+CameraCalibration ReadRoot(const Entry& root, const std::string& camera, const Teller& teller) {
   if (!root.node().IsMap()) {
     root.Fail(
         "is not a camera calibration, expected EuRoC sensor.yaml, Kalibr camchain.yaml, ROS "
-        "camera_info or OpenCV YAML");
+        "camera_info, OpenCV YAML or XML, or that of camodocal, VINS or ORB-SLAM");
   }
   const std::vector<std::string> chain = ChainCameras(root);
-  if (!chain.empty()) return ReadChain(root, chain, camera);
-  if (root.Find({"intrinsics"})) return ReadListForm(root);
-  if (root.Find(kMatrixNames)) return ReadMatrixForm(root);
-  root.Fail(
-      "has no key 'intrinsics' (EuRoC), 'cam0' (Kalibr) or 'camera_matrix' (ROS, OpenCV), expected "
-      "one of them");
+  return chain.empty() ? ReadCamera(root, teller) : ReadChain(root, chain, camera, teller);
 }
 
 void RequireSmall(std::string_view text, const std::string& file) {
@@ -393,20 +443,17 @@ void RequireSmall(std::string_view text, const std::string& file) {
 
 }  // namespace
 
-CameraCalibration ReadCalibration(const std::filesystem::path& file, const std::string& camera) {
-  return ParseCalibration(ReadFile(file.string()), file.string(), camera);
+CameraCalibration ReadCalibration(const std::filesystem::path& file, const std::string& camera,
+                                  const std::function<void(const std::string&)>& tell) {
+  return ParseCalibration(ReadFile(file.string()), file.string(), camera, tell);
 }
 
 CameraCalibration ParseCalibration(std::string_view text, const std::string& file,
-                                   const std::string& camera) {
+                                   const std::string& camera,
+                                   const std::function<void(const std::string&)>& tell) {
   RequireSmall(text, file);
-  CameraCalibration calibration;
-  try {
-    calibration = ReadRoot(Entry(&file, YAML::Load(WithoutYamlDirective(text)), ""), camera);
-  } catch (const YAML::Exception& error) {
-    throw InputError(fmt::format("{}:{}: the file is not YAML or is truncated: {}", file,
-                                 error.mark.line + 1, Shown(error.msg)));
-  }
+  const YAML::Node root = IsXml(text) ? LoadOpenCvXml(text, file) : LoadYaml(text, file);
+  CameraCalibration calibration = ReadRoot(Entry(root, file), camera, {file, tell});
   const std::vector<std::string> violations = calibration.intrinsics.Validate();
   if (!violations.empty()) {
     throw InputError(fmt::format("{}: {}", file, fmt::join(violations, "; ")));

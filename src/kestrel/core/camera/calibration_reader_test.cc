@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/core/camera/calibration_reader.h"
 
+#include <chrono>
+
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -125,6 +127,13 @@ std::string Refusal(const std::string& text, const std::string& camera = "") {
   }
   ADD_FAILURE() << "not refused";
   return "";
+}
+
+// Returns what is told of a text that is read.
+std::string ToldOf(const std::string& text) {
+  std::string told;
+  ParseCalibration(text, "lens.yaml", "", [&](const std::string& line) { told += line; });
+  return told;
 }
 
 TEST(CalibrationReader, ReadsEuroc) {
@@ -280,17 +289,17 @@ TEST(CalibrationReader, BadEurocFilesAreRefusedInWords) {
   ExpectRefusals(
       kEuroc,
       {{"resolution: [752, 480]\n", "",
-        "lens.yaml:1: the file has no key 'resolution', expected [width, height]"},
+        "lens.yaml:1: the file has no size of the images in pixels, expected 'image_width' and"},
        {"intrinsics: [458.654,", "intrinsic: [458.654,",
-        "has no key 'intrinsics' (EuRoC), 'cam0' (Kalibr) or 'camera_matrix' (ROS, OpenCV)"},
+        "has no key 'intrinsics' (EuRoC), 'cam0' (Kalibr), 'camera_matrix' (ROS, OpenCV), "},
        {"distortion_model: radial-tangential\n", "",
         "the file has no key 'distortion_model', expected equidistant"},
        {"distortion_coefficients:", "coefficients:",
-        "the file has no key 'distortion_coefficients' or 'distortion_coeffs', expected"},
+        "the file has no key 'distortion_coefficients' or 'distortion_coeffs' or "},
        {"[458.654, 457.296, 367.215, 248.375]", "[458.654, 457.296, 367.215]",
         "lens.yaml:13: 'intrinsics' has 3 numbers, expected 4: fu, fv, cu, cv"},
        {"resolution: [752, 480]\n", "resolution: [752, 480]\nresolution: [640, 480]\n",
-        "lens.yaml:1: the file has 'resolution' 2 times, expected it once"},
+        "lens.yaml:1: the file has 'resolution' twice, expected it once"},
        {"[458.654,", "[.nan,", "'intrinsics' holds '.nan', expected a finite number"},
        {"[458.654,", "[nan,", "'intrinsics' holds 'nan', expected a finite number"},
        {"[458.654,", "[wide,", "'intrinsics' holds 'wide', expected a finite number"},
@@ -326,7 +335,7 @@ TEST(CalibrationReader, BadKalibrFilesAreRefusedInWords) {
        {"-0.00012", "1e12", "'cam0.timeshift_cam_imu' is 1000000000000 s, expected at most"},
        {"  - [0.0, 0.0, 0.0, 1.0]\n", "",
         "'cam0.T_cam_imu' has 12 numbers, expected 16: a 4x4 matrix"},
-       {"  resolution: [512, 512]\n", "", "'cam0' has no key 'resolution'"}});
+       {"  resolution: [512, 512]\n", "", "'cam0' has no size of the images"}});
 }
 
 TEST(CalibrationReader, BadMatrixFilesAreRefusedInWords) {
@@ -335,7 +344,8 @@ TEST(CalibrationReader, BadMatrixFilesAreRefusedInWords) {
       {{"[438.783367,", "[0.0,", "'camera_matrix' has a focal length of 0: the camera is not"},
        {"[438.783367, 0.000000,", "[438.783367, 0.1,",
         "'camera_matrix' is not a camera matrix without skew"},
-       {"image_width: 640\n", "", "the file has no key 'image_width' or 'image_Width' or 'width'"},
+       {"image_width: 640\n", "",
+        "the file has no size of the images in pixels, expected 'image_width' and"},
        {"image_width: 640", "image_width: 640.5", "'image_width' is not an integer"},
        {"image_width: 640", "image_width: 99999999999", "'image_width' is not an integer"},
        {"cols: 5", "cols: 4", "'distortion_coefficients' has 5 numbers, expected 1 rows of 4"},
@@ -343,12 +353,193 @@ TEST(CalibrationReader, BadMatrixFilesAreRefusedInWords) {
        {"camera_name: belly", "camera_name: [1]", "'camera_name' is not a text"}});
 }
 
+// The same lens in the words of other tools.
+constexpr const char* kCamodocal = R"(%YAML:1.0
+---
+model_type: KANNALA_BRANDT
+camera_name: front
+image_width: 320
+image_height: 240
+projection_parameters:
+   k2: 0.01
+   k3: -0.02
+   k4: 0.03
+   k5: -0.04
+   mu: 300.5
+   mv: 301.0
+   u0: 159.5
+   v0: 119.5
+)";
+
+constexpr const char* kVins = R"(%YAML:1.0
+imu_topic: /imu0
+model_type: PINHOLE
+camera_name: camera
+image_width: 320
+image_height: 240
+distortion_parameters:
+   k1: -0.1
+   k2: 0.02
+   p1: 0.001
+   p2: -0.001
+projection_parameters:
+   fx: 300.5
+   fy: 301.0
+   cx: 159.5
+   cy: 119.5
+extrinsicRotation: !!opencv-matrix
+   rows: 3
+   cols: 3
+   dt: d
+   data: [0, -1, 0, -1, 0, 0, 0, 0, -1]
+extrinsicTranslation: !!opencv-matrix
+   rows: 3
+   cols: 1
+   dt: d
+   data: [0.1, 0.2, -0.05]
+td: 0.02
+)";
+
+constexpr const char* kOrbSlam = R"(%YAML:1.0
+Camera.type: "KannalaBrandt8"
+Camera1.fx: 300.5
+Camera1.fy: 301.0
+Camera1.cx: 159.5
+Camera1.cy: 119.5
+Camera1.k1: 0.01
+Camera1.k2: -0.02
+Camera1.k3: 0.03
+Camera1.k4: -0.04
+Camera.width: 320
+Camera.height: 240
+Camera.fps: 30
+)";
+
+TEST(CalibrationReader, ReadsCamodocal) {
+  const CameraCalibration read = ParseCalibration(kCamodocal, "front.yaml");
+  EXPECT_EQ(read.name, "front");
+  EXPECT_EQ(read.intrinsics.distortion_model, DistortionModel::kEquidistant);
+  EXPECT_EQ(read.intrinsics.fx_px, 300.5);
+  EXPECT_EQ(read.intrinsics.fy_px, 301);
+  EXPECT_EQ(read.intrinsics.cy_px, 119.5);
+  EXPECT_THAT(read.intrinsics.distortion, ElementsAre(0.01, -0.02, 0.03, -0.04));
+  ExpectRefusals(
+      kCamodocal,
+      {{"KANNALA_BRANDT", "MEI",
+        "lens.yaml:3: 'model_type' is 'MEI', which is not supported, expected PINHOLE or"},
+       {"   mu: 300.5\n", "", "has no parameter 'mu', expected it for the lens KANNALA_BRANDT"},
+       {"mu: 300.5", "mu: 0", "has a focal length of 0"}});
+}
+
+TEST(CalibrationReader, ReadsVins) {
+  const CameraCalibration read = ParseCalibration(kVins, "config.yaml");
+  EXPECT_EQ(read.intrinsics.distortion_model, DistortionModel::kRadialTangential);
+  EXPECT_THAT(read.intrinsics.distortion, ElementsAre(-0.1, 0.02, 0.001, -0.001));
+  ASSERT_TRUE(read.body_from_camera && read.clock_offset);
+  EXPECT_TRUE((*read.body_from_camera * Eigen::Vector3d(0, -1, 0))
+                  .isApprox(Eigen::Vector3d(1.1, 0.2, -0.05), 1e-12));
+  EXPECT_EQ(*read.clock_offset, std::chrono::milliseconds(20));
+  EXPECT_EQ(ToldOf(kVins), "lens.yaml: not used, as not known here: 'imu_topic'");
+  EXPECT_THAT(ParseCalibration(Replaced(kVins, "p2: -0.001", "p2: -0.001\n   k3: 0.5"), "")
+                  .intrinsics.distortion,
+              ElementsAre(-0.1, 0.02, 0.001, -0.001, 0.5));
+}
+
+TEST(CalibrationReader, ReadsOrbSlam) {
+  const CameraIntrinsics read = ParseCalibration(kOrbSlam, "orb.yaml").intrinsics;
+  EXPECT_EQ(read.distortion_model, DistortionModel::kEquidistant);
+  EXPECT_EQ(read.width_px, 320);
+  EXPECT_EQ(read.fy_px, 301);
+  EXPECT_THAT(read.distortion, ElementsAre(0.01, -0.02, 0.03, -0.04));
+}
+
+TEST(CalibrationReader, ReadsOpenCvXml) {
+  cv::FileStorage storage("lens.xml", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
+  storage << "image_width" << 320 << "image_height" << 240;
+  storage << "camera_matrix" << (cv::Mat_<double>(3, 3) << 300.1, 0, 159.5, 0, 301, 119.5, 0, 0, 1);
+  storage << "distortion_coefficients" << (cv::Mat_<double>(5, 1) << -0.01, 1. / 3, 0, 0, 0);
+  storage << "camera_name"
+          << "a camera"
+          << "image_size" << cv::Size(320, 240);
+  const std::string xml = storage.releaseAndGetString();
+  const CameraCalibration read = ParseCalibration(xml, "lens.xml");
+  EXPECT_EQ(read.name, "a camera");
+  EXPECT_EQ(read.intrinsics.width_px, 320);
+  EXPECT_EQ(read.intrinsics.fx_px, 300.1);
+  EXPECT_THAT(read.intrinsics.distortion, ElementsAre(-0.01, 1. / 3, 0, 0, 0));
+  for (std::size_t length = 1; length + 20 < xml.size(); length += 7) {
+    EXPECT_THROW(ParseCalibration(xml.substr(0, length), "lens.xml"), InputError) << length;
+  }
+}
+
+// What Python's tutorials write: nested lists, floating-point sizes, names of the author.
+TEST(CalibrationReader, KeysAreReadInEverySpelling) {
+  for (const char* matrix : {"camera_matrix", "mtx", "cameraMatrix", "CameraMatrix", "K"}) {
+    for (const char* coefficients :
+         {"dist_coeff", "dist_coeffs", "distCoeffs", "dist", "distortion_coefficients", "D"}) {
+      const std::string text = fmt::format(
+          "{{\"image_width\": 320.0, \"image_height\": 2.4e2,\n"
+          "\"{}\": [[300.0, 0.0, 159.5], [0.0, 300.0, 119.5], [0.0, 0.0, 1.0]],\n"
+          "\"{}\": [[-0.01, 0.002, 0.0, 0.0, 0.0]]}}\n",
+          matrix, coefficients);
+      const CameraIntrinsics read = ParseCalibration(text, "lens.json").intrinsics;
+      EXPECT_EQ(read.width_px, 320);
+      EXPECT_EQ(read.height_px, 240);
+      EXPECT_THAT(read.distortion, ElementsAre(-0.01, 0.002, 0, 0, 0));
+    }
+  }
+}
+
+TEST(CalibrationReader, KeysThatContradictEachOtherAreNamed) {
+  const std::string both = Replaced(kRos, "camera_name", "image_size: [480, 640]\ncamera_name");
+  EXPECT_THAT(Refusal(both), AllOf(HasSubstr("'image_size'"), HasSubstr("480x640"),
+                                   HasSubstr("'image_width', 'image_height'")));
+  EXPECT_EQ(ParseCalibration(Replaced(both, "[480, 640]", "[640, 480]"), "").intrinsics.width_px,
+            640);
+  EXPECT_THAT(Refusal(std::string(kRos) + "D: [0, 0, 0, 0, 0]\n"),
+              HasSubstr("'D' contradicts 'distortion_coefficients', expected one of them"));
+  EXPECT_THAT(Refusal(std::string(kRos) + "imageWidth: 641\n"),
+              HasSubstr("'imageWidth' contradicts 'image_width'"));
+}
+
+TEST(CalibrationReader, BinningAndRegionsOfInterestAreRefused) {
+  const std::string message = Replaced(kRosMessage, "---\n", "");
+  const auto refusal = [&](const std::string& more) { return Refusal(message + more); };
+  EXPECT_THAT(refusal("binning_x: 2\n"),
+              HasSubstr("'binning_x' is 2: tells of binning or a region of interest"));
+  EXPECT_THAT(refusal("binning_x: 1\nbinning_y: 4\n"), HasSubstr("'binning_y' is 4"));
+  EXPECT_THAT(refusal("roi: {x_offset: 8, y_offset: 0, width: 0, height: 0}\n"),
+              HasSubstr("'roi.x_offset' is 8: tells of binning or a region of interest"));
+  EXPECT_THAT(refusal("roi: {x_offset: 0, y_offset: 0, width: 376, height: 480}\n"),
+              HasSubstr("'roi.width' is 376"));
+  for (const char* whole : {"binning_x: 0\nbinning_y: 1\n",
+                            "roi: {x_offset: 0, y_offset: 0, width: 752, height: 480}\n",
+                            "roi: {x_offset: 0, y_offset: 0, width: 0, height: 0}\n"}) {
+    EXPECT_EQ(ParseCalibration(message + whole, "").intrinsics.width_px, 752) << whole;
+  }
+}
+
+TEST(CalibrationReader, KeysThatAreNotUsedAreNamed) {
+  for (const char* text : {kEuroc, kKalibr, kRos, kRosMessage, kOpenCv, kCamodocal}) {
+    EXPECT_EQ(ToldOf(text), "") << text;
+  }
+  EXPECT_EQ(ToldOf(std::string(kEuroc) + "T_BX: 3\nlens_shift: 2\n"),
+            "lens.yaml: not used, as not known here: 'T_BX', 'lens_shift'");
+  EXPECT_EQ(ToldOf(std::string(kKalibr) + "T_imu_body: []\n"),
+            "lens.yaml: not used, as not known here: 'T_imu_body'");
+  std::string many = kRos;
+  for (int i = 0; i < 20; ++i) many += fmt::format("key{}: {}\n", i, i);
+  EXPECT_THAT(ToldOf(many), HasSubstr("'key7' and 12 more"));
+}
+
 TEST(CalibrationReader, WhatIsNotACalibrationIsRefused) {
   EXPECT_THAT(Refusal(""), HasSubstr("is not a camera calibration, expected EuRoC"));
   EXPECT_THAT(Refusal("just words"), HasSubstr("is not a camera calibration"));
   EXPECT_THAT(Refusal("[1, 2]"), HasSubstr("is not a camera calibration"));
   EXPECT_THAT(Refusal("<?xml version=\"1.0\"?>\n<opencv_storage>\n"),
-              HasSubstr("is not a camera calibration"));
+              HasSubstr("is not OpenCV's XML (<opencv_storage>) or is truncated"));
+  EXPECT_THAT(Refusal("<html><body>404</body></html>\n"), HasSubstr("is not OpenCV's XML"));
+  EXPECT_THAT(Refusal(std::string("PK\x03\x04\0\0mtx.npy", 13)), HasSubstr("the file is binary"));
   EXPECT_THAT(Refusal("a: [1, 2\nb: 3\n"), HasSubstr("the file is not YAML or is truncated"));
   EXPECT_THAT(Refusal(std::string(2 << 20, ' ')), HasSubstr("has 2097152 bytes, expected"));
 }

@@ -8,6 +8,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/base/load_yaml.h"
 #include "kestrel/core/base/read_file.h"
 #include "kestrel/core/base/shown.h"
 #include "kestrel/io/recording/file_kind.h"
@@ -52,7 +53,7 @@ std::string Scalar(const YAML::Node& node, const char* key) {
 
 BagFolder ParseMetadata(const std::string& text, const fs::path& folder) {
   const std::string file = (folder / kMetadata).string();
-  const YAML::Node root = YAML::Load(text);
+  const YAML::Node root = LoadYaml(text, file);
   const YAML::Node bag = root.IsMap() ? root[kRoot] : YAML::Node();
   if (!bag || !bag.IsMap()) {
     throw InputError(fmt::format("{}: has no key '{}', expected it", file, kRoot));
@@ -111,12 +112,7 @@ BagFolder ReadBagFolder(const fs::path& folder) {
   const fs::path metadata = folder / kMetadata;
   std::error_code ignored;
   if (!fs::exists(metadata, ignored)) return {StorageFilesIn(folder), false};
-  try {
-    return ParseMetadata(ReadFile(metadata.string()), folder);
-  } catch (const YAML::Exception& error) {
-    throw InputError(fmt::format("{}:{}: the file is not YAML or is truncated", metadata.string(),
-                                 error.mark.line + 1));
-  }
+  return ParseMetadata(ReadFile(metadata.string()), folder);
 }
 
 }  // namespace kestrel

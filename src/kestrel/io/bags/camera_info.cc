@@ -20,31 +20,24 @@ std::string PlainName(std::string name) {
   return name.substr(0, 60);
 }
 
-void RequireWholeImage(const CameraInfoMessage& message, const std::string& name) {
-  const RegionOfInterestMessage& roi = message.roi;
-  const bool is_cropped = roi.x_offset != 0 || roi.y_offset != 0 ||
-                          (roi.width != 0 && roi.width != message.width) ||
-                          (roi.height != 0 && roi.height != message.height);
-  if (is_cropped || message.binning_x > 1 || message.binning_y > 1) {
-    throw InputError(name + ": tells of binning or a region of interest, expected whole images");
-  }
-}
-
 }  // namespace
 
 CameraCalibration CalibrationOf(const CameraInfoMessage& message, bool is_rectified,
                                 const std::string& name) {
-  RequireWholeImage(message, name);
   const auto& p = message.p;
   const std::array<double, 9> k =
       is_rectified ? std::array<double, 9>{p[0], p[1], p[2], p[4], p[5], p[6], p[8], p[9], p[10]}
                    : message.k;
   const bool is_distorted = !is_rectified && !message.d.empty();
-  const std::string text =
-      fmt::format("width: {}\nheight: {}\nK: [{}]\ndistortion_model: {}\nD: [{}]\n", message.width,
-                  message.height, fmt::join(k, ", "),
-                  is_distorted ? PlainName(message.distortion_model) : "none",
-                  fmt::join(is_distorted ? message.d : std::vector<double>(), ", "));
+  const std::string text = fmt::format(
+      "width: {}\nheight: {}\nK: [{}]\ndistortion_model: {}\nD: [{}]\n"
+      "binning_x: {}\nbinning_y: {}\n"
+      "roi: {{x_offset: {}, y_offset: {}, width: {}, height: {}}}\n",
+      message.width, message.height, fmt::join(k, ", "),
+      is_distorted ? PlainName(message.distortion_model) : "none",
+      fmt::join(is_distorted ? message.d : std::vector<double>(), ", "), message.binning_x,
+      message.binning_y, message.roi.x_offset, message.roi.y_offset, message.roi.width,
+      message.roi.height);
   return ParseCalibration(text, name);
 }
 

@@ -39,12 +39,12 @@ void TellAssumption(const RecordingChoice& choice) {
 // 'first_image': see OpenedSource.
 CameraCalibration KnownCalibration(const FrameSource& source, const RecordingChoice& choice,
                                    std::string* first_image) {
-  if (!choice.camera.empty()) return ReadCalibration(choice.camera);
+  if (!choice.camera.empty()) return ReadCalibration(choice.camera, "", choice.bag.tell);
   if (const std::optional<CameraCalibration> own = source.calibration()) return *own;
   if (!choice.may_assume_lens && !choice.fov_deg) {
     throw InputError(
         "no calibration: the source has none, give one (--camera FILE, camera= in Python: EuRoC "
-        "sensor.yaml, Kalibr camchain.yaml, ROS camera_info YAML or OpenCV YAML); `kestrel "
+        "sensor.yaml, Kalibr camchain.yaml, ROS camera_info YAML, OpenCV YAML or XML); `kestrel "
         "calibrate lens` makes one");
   }
   TellAssumption(choice);

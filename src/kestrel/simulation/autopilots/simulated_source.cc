@@ -52,7 +52,7 @@ std::vector<std::string> Split(std::string_view text) {
 
 CameraCalibration CalibrationFor(const RecordingChoice& choice, const CameraCalibration& own) {
   if (choice.camera.empty()) return own;
-  CameraCalibration calibration = ReadCalibration(choice.camera);
+  CameraCalibration calibration = ReadCalibration(choice.camera, "", choice.bag.tell);
   CheckImageSize(calibration.intrinsics, own.intrinsics.width_px, own.intrinsics.height_px,
                  choice.sources.front());
   if (!calibration.body_from_camera) calibration.body_from_camera = own.body_from_camera;

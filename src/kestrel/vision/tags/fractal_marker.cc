@@ -134,7 +134,7 @@ bool IsFractalMarker(std::string_view text) {
 }
 
 TagBoard ParseFractalMarker(const std::string& text, const std::string& file, double size_m) {
-  const YamlReader root(WithSpaces(WithoutYamlDirective(text)), file);
+  const YamlReader root(WithSpaces(text), file);
   root.RequireKeys({"codeid", "mInfoType", "fractal_levels", "fractal_external_id", "markers"});
   std::vector<FractalLevel> markers;
   for (const YamlReader& item : root["markers"].Items()) markers.push_back(ReadLevel(item));

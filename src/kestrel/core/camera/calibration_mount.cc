@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/core/camera/calibration_mount.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <fmt/format.h>
+
+namespace kestrel {
+namespace {
+
+constexpr double kMaxClockOffset_s = 4e9;    // fits into a Duration and spans two epochs
+constexpr double kRotationTolerance = 1e-3;  // of matrices typed with four digits
+
+RigidTransform RigidOf(const CalibrationEntry& entry, const Eigen::Matrix3d& rotation,
+                       const Eigen::Vector3d& translation) {
+  const double error =
+      (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (!(error <= kRotationTolerance) || rotation.determinant() < 0) {
+    entry.Fail("is not a rigid transform, expected a right-handed orthonormal rotation");
+  }
+  return {Eigen::Quaterniond(rotation).normalized(), translation};
+}
+
+template <int kRows>
+Eigen::Matrix<double, kRows, kRows> SquareOf(const CalibrationEntry& entry) {
+  const std::vector<double> m =
+      entry.Numbers(kRows * kRows, fmt::format("a {0}x{0} matrix, row by row", kRows));
+  return Eigen::Map<const Eigen::Matrix<double, kRows, kRows, Eigen::RowMajor>>(m.data());
+}
+
+RigidTransform TransformOf(const CalibrationEntry& entry) {
+  const Eigen::Matrix4d matrix = SquareOf<4>(entry);
+  const Eigen::Vector3d translation = matrix.topRightCorner<3, 1>();
+  RigidTransform transform = RigidOf(entry, matrix.topLeftCorner<3, 3>(), translation);
+  if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
+    entry.Fail("is not a rigid transform, expected 0, 0, 0, 1 in the last row");
+  }
+  return transform;
+}
+
+// What a key says about the mount.
+enum class MountKey { kNone, kBodyFromCamera, kCameraFromBody };
+
+// The tools agree that T_AB, T_A_B or A_T_B maps coordinates in B to coordinates in A. They differ
+// in their names of the body, which is the IMU for most, and of the first camera.
+MountKey MountKeyOf(const std::string& key) {
+  static constexpr std::array<std::string_view, 7> kBodies{"b", "body", "base", "baselink",
+                                                           "i", "imu",  "s"};
+  static constexpr std::array<std::string_view, 3> kCameras{"c", "cam", "camera"};
+  std::string plain = PlainKey(key.substr(key.rfind('.') + 1));
+  if (plain == "tbs") return MountKey::kBodyFromCamera;  // EuRoC: the sensor is the camera
+  if (plain == "tsb") return MountKey::kCameraFromBody;
+  std::erase(plain, '0');
+  if (key.starts_with("IMU.")) std::erase(plain, '1');  // ORB-SLAM3 counts from 1
+  const auto maps = [&](std::string_view to, std::string_view from) {
+    return plain == fmt::format("t{}{}", to, from) || plain == fmt::format("{}t{}", to, from);
+  };
+  for (const std::string_view body : kBodies) {
+    for (const std::string_view camera : kCameras) {
+      if (maps(body, camera)) return MountKey::kBodyFromCamera;
+      if (maps(camera, body)) return MountKey::kCameraFromBody;
+    }
+  }
+  return MountKey::kNone;
+}
+
+struct Mount {
+  CalibrationEntry entry;
+  RigidTransform body_from_camera;
+};
+
+// The mount of VINS-Mono: rotation and translation from the camera to the IMU.
+std::optional<Mount> SplitMount(const CalibrationEntry& camera) {
+  const auto rotation = camera.Find({"extrinsicRotation"});
+  if (!rotation) return std::nullopt;
+  const std::vector<double> t =
+      camera.Get({"extrinsicTranslation"}, "the place of the camera in the IMU's frame")
+          .Numbers(3, "x, y, z");
+  return Mount{*rotation, RigidOf(*rotation, SquareOf<3>(*rotation), {t[0], t[1], t[2]})};
+}
+
+std::vector<Mount> MountsOf(const CalibrationEntry& camera) {
+  std::vector<Mount> mounts;
+  for (const std::string& key : camera.Keys()) {
+    const MountKey meaning = MountKeyOf(key);
+    if (meaning == MountKey::kNone) continue;
+    const CalibrationEntry entry = camera.Get({key.c_str()}, "the mount");
+    const RigidTransform transform = TransformOf(entry);
+    mounts.push_back(
+        {entry, meaning == MountKey::kBodyFromCamera ? transform : transform.Inverse()});
+  }
+  if (const std::optional<Mount> split = SplitMount(camera)) mounts.push_back(*split);
+  return mounts;
+}
+
+bool Agree(const RigidTransform& a, const RigidTransform& b) {
+  return a.rotation.angularDistance(b.rotation) < 10 * kRotationTolerance &&
+         (a.translation - b.translation).norm() < 10 * kRotationTolerance;
+}
+
+void SetMount(const CalibrationEntry& camera, CameraCalibration* calibration) {
+  const std::vector<Mount> mounts = MountsOf(camera);
+  if (mounts.empty()) return;
+  const Mount& first = mounts.front();
+  for (const Mount& other : mounts) {
+    if (Agree(first.body_from_camera, other.body_from_camera)) continue;
+    other.entry.Fail(
+        fmt::format("is another mount than '{}', expected one of them", first.entry.key()));
+  }
+  calibration->body_from_camera = first.body_from_camera;
+}
+
+}  // namespace
+
+void ReadMountAndClock(const CalibrationEntry& camera, CameraCalibration* calibration) {
+  SetMount(camera, calibration);
+  const auto shift = camera.Find({"timeshift_cam_imu", "td"});  // Kalibr, VINS: the same sign
+  if (!shift) return;
+  const double shift_s = shift->Number();
+  if (std::abs(shift_s) > kMaxClockOffset_s) {
+    shift->Fail(
+        fmt::format("is {} s, expected at most {} s either way", shift_s, kMaxClockOffset_s));
+  }
+  calibration->clock_offset = DurationFromSeconds(shift_s);
+}
+
+}  // namespace kestrel

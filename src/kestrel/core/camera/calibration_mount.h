@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "kestrel/core/camera/calibration.h"
+#include "kestrel/core/camera/calibration_entry.h"
+
+namespace kestrel {
+
+// Sets mount and clock offset from the keys of 'camera' that say them. Throws InputError as
+// ReadCalibration does.
+void ReadMountAndClock(const CalibrationEntry& camera, CameraCalibration* calibration);
+
+}  // namespace kestrel

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/core/camera/calibration_mount.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/load_yaml.h"
+#include "kestrel/core/base/test_folder.h"
+
+namespace kestrel {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+// A camera that looks down, 0.1 m before the middle of the body and 0.05 m below it.
+constexpr const char* kBodyFromCamera =
+    "[[0, -1, 0, 0.1], [-1, 0, 0, 0], [0, 0, -1, -0.05], [0, 0, 0, 1]]";
+constexpr const char* kCameraFromBody =
+    "[[0, -1, 0, 0], [-1, 0, 0, 0.1], [0, 0, -1, -0.05], [0, 0, 0, 1]]";
+
+CameraCalibration Read(const std::string& yaml) {
+  CameraCalibration calibration;
+  ReadMountAndClock(CalibrationEntry(LoadYaml(yaml, "lens.yaml"), "lens.yaml"), &calibration);
+  return calibration;
+}
+
+void ExpectMount(const std::string& yaml) {
+  const CameraCalibration read = Read(yaml);
+  ASSERT_TRUE(read.body_from_camera) << yaml;
+  EXPECT_TRUE((*read.body_from_camera * Eigen::Vector3d(0, -1, 2))
+                  .isApprox(Eigen::Vector3d(1.1, 0, -2.05), 1e-9))
+      << yaml;
+}
+
+TEST(CalibrationMount, EveryNameOfAMountIsRead) {
+  for (const char* name : {"T_BS", "T_imu_cam", "T_BC", "T_B_C", "T_SC", "T_ic", "T_i_c",
+                           "body_T_cam0", "Tbc", "IMU.T_b_c1", "imu_T_cam", "T_body_camera"}) {
+    ExpectMount(fmt::format("{}: {}\n", name, kBodyFromCamera));
+  }
+  for (const char* name : {"T_cam_imu", "T_CB", "T_C_B", "T_ci", "T_cam0_imu0", "cam_T_body", "Tcb",
+                           "T_SB", "T_cam_body"}) {
+    ExpectMount(fmt::format("{}: {}\n", name, kCameraFromBody));
+  }
+}
+
+// A camera of another number, another camera, another sensor.
+TEST(CalibrationMount, OtherTransformsAreNoMount) {
+  for (const char* name : {"body_T_cam1", "T_cn_cnm1", "T_imu_body", "T_BX", "T_WB", "T_GS"}) {
+    EXPECT_FALSE(Read(fmt::format("{}: {}\n", name, kBodyFromCamera)).body_from_camera) << name;
+  }
+}
+
+TEST(CalibrationMount, TwoMountsAgreeOrAreRefused) {
+  ExpectMount(fmt::format("T_cam_imu: {}\nT_imu_cam: {}\n", kCameraFromBody, kBodyFromCamera));
+  EXPECT_THAT(
+      InputErrorOf([] { Read(fmt::format("T_cam_imu: {0}\nT_imu_cam: {0}\n", kCameraFromBody)); }),
+      AllOf(HasSubstr("lens.yaml:2: 'T_imu_cam' is another mount than 'T_cam_imu'")));
+}
+
+TEST(CalibrationMount, RotationAndTranslationOfVinsAreTheMount) {
+  ExpectMount(
+      "extrinsicRotation: [[0, -1, 0], [-1, 0, 0], [0, 0, -1]]\n"
+      "extrinsicTranslation: [0.1, 0, -0.05]\n");
+  EXPECT_THAT(InputErrorOf([] { Read("extrinsicRotation: [1, 0, 0, 0, 1, 0, 0, 0, 1]\n"); }),
+              HasSubstr("has no key 'extrinsicTranslation'"));
+}
+
+TEST(CalibrationMount, ClockOffsetIsThatOfKalibrAndVins) {
+  EXPECT_EQ(Read("timeshift_cam_imu: -0.5\n").clock_offset, DurationFromSeconds(-0.5));
+  EXPECT_EQ(Read("td: 0.25\n").clock_offset, DurationFromSeconds(0.25));
+}
+
+}  // namespace
+}  // namespace kestrel
