@@ -166,6 +166,23 @@ BoardTag ReadBundleTag(const YamlReader& item, const std::string& family) {
   return tag;
 }
 
+// A tag by itself needs no file.
+constexpr const char* kOneTagAdvice =
+    ": a tag by itself is no board: give its id (--target-id ID) and its size (size_m, in metres) "
+    "instead of the file";
+
+// Refuses the files of apriltag_ros that hold no board.
+void RequireBoard(const YamlReader& root) {
+  if (root.Has("standalone_tags") && !root.Has("tag_bundles")) {
+    root["standalone_tags"].Fail(fmt::format("expected 'tags' or 'tag_bundles'{}", kOneTagAdvice));
+  }
+  for (const char* node : {"/**", "apriltag", "ros__parameters"}) {
+    if (!root.Has(node)) continue;
+    root[node].Fail(fmt::format("parameters of a ROS 2 node, expected 'tags' or 'tag_bundles'{}",
+                                kOneTagAdvice));
+  }
+}
+
 }  // namespace
 
 TagGrid BoardTag::Grid() const { return IsOfFamily() ? TagFamily(family).Grid(id, inverted) : own; }
@@ -230,12 +247,14 @@ TagBoard ParseTagBoard(const std::string& yaml, const std::string& file, const s
                        double size_m) {
   if (IsFractalMarker(yaml)) return ParseFractalMarker(yaml, file, size_m);
   const YamlReader root(yaml, file);
+  RequireBoard(root);
   TagBoard board;
   if (root.Has("tag_bundles")) {
     root.RequireKeys({"standalone_tags", "tag_bundles"});
     const std::vector<YamlReader> bundles = root["tag_bundles"].Items();
     if (bundles.size() != 1) {
-      root["tag_bundles"].Fail(fmt::format("has {} bundles, expected one", bundles.size()));
+      root["tag_bundles"].Fail(fmt::format("has {} bundles, expected one{}", bundles.size(),
+                                           bundles.empty() ? kOneTagAdvice : ""));
     }
     bundles[0].RequireKeys({"name", "layout"});
     for (const YamlReader& item : bundles[0]["layout"].Items()) {
@@ -258,11 +277,17 @@ TagBoard TagTargetOptions::Board() const {
 }
 
 std::vector<std::string> TagTargetOptions::Validate() const {
+  std::vector<std::string> violations;
   try {
-    return Board().Validate();
+    violations = Board().Validate();
+    if (board.empty()) return violations;
+    for (std::string& violation : violations) violation = board + ": " + violation;
   } catch (const InputError& error) {
-    return {error.what()};
+    violations = {error.what()};
   }
+  // The key, apart from the path that follows it.
+  for (std::string& violation : violations) violation = "board: " + violation;
+  return violations;
 }
 
 }  // namespace kestrel

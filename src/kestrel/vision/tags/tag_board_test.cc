@@ -10,14 +10,17 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/options.h"
+#include "kestrel/core/base/test_folder.h"
 #include "kestrel/core/geometry/angles.h"
 
 namespace kestrel {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::StartsWith;
 using ::testing::ThrowsMessage;
 
 BoardTag Tag(const std::string& family, int id, double size_m, double x_m = 0, double y_m = 0) {
@@ -85,6 +88,29 @@ TEST(TagBoardTest, ErrorsOfAFileNameTheKey) {
   TagTargetOptions options;
   options.board = "/nowhere/board.yaml";
   EXPECT_THAT(options.Validate(), ElementsAre(HasSubstr("/nowhere/board.yaml")));
+}
+
+TEST(TagBoardTest, FilesWithoutABoardAreRefusedWithTheWayOut) {
+  const auto refusal = [](const std::string& yaml) {
+    return InputErrorOf([&] { ParseTagBoard(yaml, "/a/tags.yaml", "tag36h11", 0.5); });
+  };
+  for (const char* yaml : {"standalone_tags: [{id: 7, size: 0.3}]\ntag_bundles: []\n",
+                           "standalone_tags: [{id: 7, size: 0.3}]\n",
+                           "/**:\n  ros__parameters:\n    family: 36h11\n    tag: {ids: [7]}\n"}) {
+    EXPECT_THAT(refusal(yaml),
+                AllOf(StartsWith("/a/tags.yaml:"), HasSubstr("--target-id"), HasSubstr("size_m")))
+        << yaml;
+  }
+}
+
+TEST(TagBoardTest, ViolationsOfAFileNameItAsAPathThatExists) {
+  const TestFolder folder;
+  TagTargetOptions options;
+  options.board = folder.Write("board.yaml", "tags:\n  - {id: 7, size: 0.3}\n");
+  EXPECT_THAT(options.Validate(), ElementsAre(StartsWith("board: " + options.board + ":2: ")));
+  options.board = folder.Write("board.yaml", "tags:\n  - {id: 7, size_m: 300}\n");
+  EXPECT_THAT(options.Validate(),
+              ElementsAre(StartsWith("board: " + options.board + ": tag36h11")));
 }
 
 TEST(TagBoardTest, EachViolationIsALine) {

@@ -82,6 +82,10 @@ TagTargetOptions Nested(const TargetOptions& target) {
 
 using TagsOf = TagTargetOptions (*)(const TargetOptions&);
 
+const char* GroupOf(TagsOf tags) {
+  return tags == Nested ? "nested" : tags == Aruco ? "aruco" : "apriltag";
+}
+
 template <TagsOf kTagsOf>
 TagBoard BoardOf(const TargetOptions& target) {
   const TagBoard board = kTagsOf(target).Board();
@@ -101,7 +105,12 @@ TargetShape ShapeOfTags(const KindOptions& options) {
 template <TagsOf kTagsOf>
 std::vector<std::string> ValidateTags(const TargetOptions& target) {
   const TagTargetOptions tags = kTagsOf(target);
-  std::vector<std::string> violations = tags.Validate();
+  std::vector<std::string> violations;
+  if (tags.board.empty()) {
+    violations = tags.Validate();
+  } else {
+    AddViolations(GroupOf(kTagsOf), tags.Validate(), &violations);
+  }
   if (target.id != TargetOptions::kOwnId && !tags.board.empty()) {
     violations.push_back(fmt::format(
         "id is {}, but the ids of the tags are those of the board '{}'", target.id, tags.board));
