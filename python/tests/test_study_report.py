@@ -47,6 +47,24 @@ def test_what_got_worse_is_named(worse, capsys):
     assert values["position error, m", "altitude 9 to 14"]["verdict"] == "other images"
 
 
+@pytest.mark.parametrize("count, said", [
+    (1, "Worse in the one recording, too few to prove (1 recording, 8 are the least): "),
+    (2, "Worse in both, too few to prove (2 recordings, 8 are the least): "),
+    (5, "Worse in all 5, too few to prove (5 recordings, 8 are the least): ")])
+def test_too_few_recordings_are_not_judged(tmp_path, capsys, count, said):
+    flights = fleet(count=count)
+    lossy = {name: study_results.lose(scores, 2, 14, 0.5, k)
+             for k, (name, scores) in enumerate(flights.items())}
+    folder = study_results.write(tmp_path / "few", {"b": flights, "a": lossy})
+    assert report.main([str(folder)]) == 0
+    assert capsys.readouterr().out.startswith(said)
+    assert report.main([str(folder), "--gate", "nothing worse"]) == 1
+    told = capsys.readouterr().out
+    assert f"gate 'nothing worse': NOT met (not judged: {said.split('(')[1].split(')')[0]})" in told
+    page = (folder / "report" / "report.md").read_text()
+    assert "Not judged: b -> a" in page and "Nothing significant" not in page
+
+
 def test_lost_frames_are_named(worse, before):
     report.main([str(worse)])
     lost = rows_of(worse, "lost")
@@ -132,15 +150,6 @@ def test_failures_are_told_and_counted(tmp_path, before, capsys):
     assert "1 units failed" in said and "NOT met (1)" in said
     assert rows_of(folder, "failed") == [{"configuration": "b", "recording": "flight03",
                                           "reason": "mav0/cam0/data.csv: not there"}]
-
-
-def test_few_recordings_say_so(tmp_path, capsys):
-    flights = fleet(count=3)
-    folder = study_results.write(tmp_path / "study", {
-        "a": flights, "b": {name: study_results.lose(scores, 0, 20, 0.9)
-                            for name, scores in flights.items()}})
-    report.main([str(folder)])
-    assert capsys.readouterr().out.startswith("Too few recordings to say")
 
 
 def test_slower_is_not_worse(tmp_path, before, capsys):

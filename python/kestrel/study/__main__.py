@@ -9,7 +9,7 @@ from pathlib import Path
 
 from .errors import StudyError
 
-_DONE, _INPUT_AT_FAULT = 0, 1
+_DONE, _INPUT_AT_FAULT, _INTERRUPTED = 0, 1, 130
 _SHOW_S = 10  # between two lines of progress where there is no terminal
 
 
@@ -109,6 +109,7 @@ def main(arguments=None):
         _say(error)
     except KeyboardInterrupt:
         _say("interrupted; what is done is kept, the same command goes on")
+        return _INTERRUPTED
     return _INPUT_AT_FAULT
 
 

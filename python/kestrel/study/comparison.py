@@ -116,6 +116,12 @@ class Comparison:
         """Returns whether there are enough recordings to tell a difference from chance."""
         return self.recordings >= _MIN_RECORDINGS
 
+    @property
+    def too_few(self) -> str:
+        """Returns why it is not judged, in words."""
+        some = "1 recording" if self.recordings == 1 else f"{self.recordings} recordings"
+        return f"{some}, {_MIN_RECORDINGS} are the least"
+
 
 def compare_variants(before: tuple[Results, Variant], after: tuple[Results, Variant], seed: int,
                      comparisons: int = 1, frame_runs: int = 20) -> Comparison:

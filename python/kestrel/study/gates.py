@@ -94,6 +94,8 @@ def check(gate: Gate, comparison: Comparison, failed: int) -> Outcome:
     that recordings with and without truth have, both count.
     """
     if gate.measure == _NOTHING_WORSE:
+        if not comparison.is_enough and not comparison.is_single:
+            return Outcome(gate.text, False, f"not judged: {comparison.too_few}")
         worse = len(comparison.of("worse"))
         return Outcome(gate.text, worse == 0, f"{worse} worse")
     if gate.measure == "failed":

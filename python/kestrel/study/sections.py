@@ -55,7 +55,9 @@ def _comparison(study: Study, comparison: Comparison, suffix: str) -> list[Secti
     pair = f"{study.name(comparison.before)} -> {study.name(comparison.after)}"
     significant = comparison.of("worse") + comparison.of("better")
     changed = [Table(f"changed{suffix}", _VALUES, [_change_row(one) for one in significant])]
-    parts = [Section(f"What changed: {pair}" if significant else f"Nothing significant: {pair}",
+    heading = "What changed" if significant else \
+        "Nothing significant" if comparison.is_enough else "Not judged"
+    parts = [Section(f"{heading}: {pair}",
                      _how(study, comparison), changed if significant else [],
                      f"changes{suffix}.png")]
     frames = _frame_tables(comparison, suffix)

@@ -20,7 +20,7 @@ def verdict(study: Study, comparison: Comparison) -> tuple[str, str]:
     pair = f"{study.name(comparison.before)} -> {after}"
     worse, better = comparison.of("worse"), comparison.of("better")
     if not comparison.is_enough:
-        return "", (f"Too few recordings to say (8 are the least): {pair}: "
+        return "", (f"{_tendency(comparison)}, too few to prove ({comparison.too_few}): {pair}: "
                     f"{_overview(comparison)}")
     if not worse and not better:
         return "", f"No difference: {pair}: {_overview(comparison)}{_doubt(comparison)}"
@@ -30,6 +30,23 @@ def verdict(study: Study, comparison: Comparison) -> tuple[str, str]:
     named = "; ".join(f"{kind}: {_named(rows)}" for kind, rows in (("worse", worse),
                                                                   ("better", better)) if rows)
     return ("worse" if worse else "better"), f"{word}: {pair}: {_overview(comparison)}; {named}"
+
+
+def _tendency(comparison: Comparison) -> str:
+    """In how many recordings more, or less, was found: what few recordings show."""
+    changes = [after - before for before, after, _ in comparison.shares.values()]
+    counts = {"Worse": sum(change < 0 for change in changes),
+              "Better": sum(change > 0 for change in changes)}
+    told = [f"{word} in {_of(count, len(changes))}" for word, count in counts.items() if count]
+    if not told:
+        return "No difference"
+    return " and ".join([told[0], *(word.lower() for word in told[1:])])
+
+
+def _of(count: int, whole: int) -> str:
+    if count < whole:
+        return f"{count} of {whole}"
+    return {1: "the one recording", 2: "both"}.get(whole, f"all {whole}")
 
 
 def _doubt(comparison: Comparison) -> str:
