@@ -106,7 +106,11 @@ void BindFlight(py::module_& module) {
       .def_readonly("rms_after_m", &Flight::rms_after_m, "The same with the estimate, m.")
       .def_readonly("sightings", &Flight::sightings, "Number of sightings used.")
       .def_readonly("outliers", &Flight::outliers, "Number of sightings left out.")
-      .def_readonly("warnings", &Flight::warnings, "What the flight does not determine, in words.")
+      .def_readonly("warnings", &Flight::warnings, "What the flight determines poorly, in words.")
+      .def_property_readonly("no_use", &WhyOfNoUse,
+                             "Why the estimate is not to be used, in words: what the flight does "
+                             "not determine, and what it lacks; empty: it may be used. The same "
+                             "for which `kestrel calibrate` writes no file.")
       .def("__repr__", [](const Flight& self) {
         return fmt::format("<FlightCalibration: clock offset {:.4f} s, {:.3f} m left of {:.3f} m>",
                            self.estimate.clock_offset_s, self.rms_after_m, self.rms_before_m);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/app/cli/bag_arguments.h"
+#include "kestrel/app/cli/camera_file.h"
 #include "kestrel/app/cli/commands.h"
 #include "kestrel/app/cli/interrupt.h"
 #include "kestrel/app/cli/option_arguments.h"
@@ -14,7 +15,6 @@
 #include "kestrel/calibration/mount/flight_calibration.h"
 #include "kestrel/calibration/mount/flight_sightings.h"
 #include "kestrel/core/base/error.h"
-#include "kestrel/core/camera/calibration_reader.h"
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/io/recording/calibration_output.h"
 
@@ -35,7 +35,7 @@ struct CalibrateArguments {
 CameraCalibration ReadGiven(const CalibrateArguments& arguments, const FrameSource& source) {
   const std::string& file = arguments.camera.empty() ? arguments.recording : arguments.camera;
   const std::optional<CameraCalibration> calibration =
-      arguments.camera.empty() ? source.calibration() : ReadCalibration(arguments.camera);
+      arguments.camera.empty() ? source.calibration() : ReadCameraFile(arguments.camera);
   if (!calibration) throw InputError(file + ": has no calibration, give one by --camera FILE");
   return *calibration;
 }
@@ -62,6 +62,14 @@ void PrintResult(const FlightCalibration& result, const FlightCalibrationOptions
   }
 }
 
+// A calibration that the flight does not determine would be believed by the next flight.
+void RequireUse(const FlightCalibration& result, bool force) {
+  const std::string why = WhyOfNoUse(result);
+  if (why.empty()) return;
+  if (!force) throw InputError(why + "; no calibration is written (--force writes it)");
+  fmt::print(stderr, "kestrel: warning: {}\n", why);
+}
+
 void RunCalibrate(const CalibrateArguments& arguments, FlightCalibrationOptions options) {
   RequireFreeForCalibration(arguments.output, arguments.force);
   const LandingPipelineOptions landing = arguments.options.Read().landing;
@@ -82,8 +90,13 @@ void RunCalibrate(const CalibrateArguments& arguments, FlightCalibrationOptions 
     CheckImageSize(calibration.intrinsics, image.cols, image.rows, frame.name);
     flight.Add(image, frame.time);
   }
+  if (WasInterrupted()) {
+    throw Interrupted(fmt::format(
+        "interrupted after {} images: no calibration is made from a part of a flight", done));
+  }
   const FlightCalibration result = CalibrateFlight(flight.sightings(), poses, given, options);
   PrintResult(result, options);
+  RequireUse(result, arguments.force);
   SetMountAndClock(result.estimate, &calibration);
   WriteCalibration(calibration, source->rate_hz(), arguments.output, arguments.force);
 }
@@ -109,7 +122,8 @@ void AddFlightCalibration(CLI::App* parent, const std::string& name, const std::
       ->type_name("FILE");
   command->add_flag("--both", arguments->both, "Estimate mount and clock together");
   command->add_flag("--moving", arguments->moving, "The pattern moves, on a smooth path");
-  command->add_flag("--force", arguments->force, "Replace a file that exists");
+  command->add_flag("--force", arguments->force,
+                    "Replace a file that exists; write also what the flight does not determine");
   command->callback([arguments, options] { RunCalibrate(*arguments, options); });
 }
 

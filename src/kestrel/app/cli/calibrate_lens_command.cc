@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/app/cli/bag_arguments.h"
+#include "kestrel/app/cli/camera_file.h"
 #include "kestrel/app/cli/commands.h"
 #include "kestrel/app/cli/interrupt.h"
 #include "kestrel/app/cli/option_arguments.h"
@@ -16,7 +17,6 @@
 #include "kestrel/app/evaluation/lens_plots.h"
 #include "kestrel/calibration/lens/even_sample.h"
 #include "kestrel/calibration/lens/lens_calibration.h"
-#include "kestrel/core/camera/calibration_reader.h"
 #include "kestrel/io/recording/calibration_output.h"
 #include "kestrel/io/recording/euroc_text.h"
 #include "kestrel/io/recording/output_folder.h"
@@ -108,11 +108,14 @@ void RunLens(const LensArguments& arguments) {
   if (!arguments.model.empty()) options.model = Models().at(arguments.model);
   CameraCalibration calibration;
   if (!arguments.camera.empty()) {
-    calibration = ReadCalibration(arguments.camera);
+    calibration = ReadCameraFile(arguments.camera);
     options.start = calibration.intrinsics;
   }
   CatchInterrupts();
   const LensSources sources = ReadSources(arguments.sources, arguments.bag);
+  if (WasInterrupted()) {
+    throw Interrupted("interrupted: no calibration is made from a part of the views");
+  }
   if (arguments.camera.empty()) {
     calibration.body_from_camera = sources.mount.body_from_camera;
     calibration.clock_offset = sources.mount.clock_offset;

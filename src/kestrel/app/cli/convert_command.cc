@@ -10,13 +10,13 @@
 #include <fmt/format.h>
 
 #include "kestrel/app/cli/bag_arguments.h"
+#include "kestrel/app/cli/camera_file.h"
 #include "kestrel/app/cli/commands.h"
 #include "kestrel/app/cli/interrupt.h"
 #include "kestrel/app/cli/progress_bar.h"
 #include "kestrel/app/cli/source_arguments.h"
 #include "kestrel/app/foxglove/foxglove_recording.h"
 #include "kestrel/core/base/error.h"
-#include "kestrel/core/camera/calibration_reader.h"
 #include "kestrel/io/bags/bag_writer.h"
 #include "kestrel/io/bags/recording_sink.h"
 #include "kestrel/io/recording/euroc_layout.h"
@@ -41,7 +41,7 @@ struct ConvertArguments {
 std::optional<CameraCalibration> CalibrationFor(const ConvertArguments& arguments,
                                                 const FrameSource& source) {
   std::optional<CameraCalibration> calibration =
-      arguments.camera.empty() ? source.calibration() : ReadCalibration(arguments.camera);
+      arguments.camera.empty() ? source.calibration() : ReadCameraFile(arguments.camera);
   if (calibration && !calibration->body_from_camera) {
     calibration->body_from_camera = source.mount().body_from_camera;
   }
@@ -116,8 +116,8 @@ void RunConvert(const ConvertArguments& arguments) {
     recording->AddFrame(frame);
   }
   if (WasInterrupted()) {
-    throw InputError(fmt::format("interrupted after {} frames: {} is not written", frames,
-                                 arguments.destination));
+    throw Interrupted(fmt::format("interrupted after {} frames: {} is not written", frames,
+                                  arguments.destination));
   }
   for (; pose != poses.end(); ++pose) recording->AddPose(*pose);
   recording->Close();

@@ -38,7 +38,7 @@ void RunCommand(const std::string& words) {
   AddHuntCommand(&app);
   AddSimulateCommand(&app);
   app.parse(words);
-  if (WasInterrupted()) throw InputError("interrupted");
+  if (WasInterrupted()) throw Interrupted("interrupted");
 }
 
 // Returns the cell of a table's last row, which is that of all rows; "-" where there is none.

@@ -67,7 +67,13 @@ class DoctorVisit {
   std::vector<Finding> Look() {
     CatchInterrupts();
     if (simulated_) simulated_->Start();
+    const Time start = Now();
     examination_->Run(DurationFromSeconds(arguments_.duration_s), WasInterrupted, &observations_);
+    // The checks would judge what could not yet be seen.
+    if (WasInterrupted()) {
+      throw Interrupted(fmt::format("interrupted: not checked: {:.1f} s of flight, expected {:g} s",
+                                    ToSeconds(Now() - start), arguments_.duration_s));
+    }
     ComputerObservations computer = ObserveComputer(observations_.use.record);
     computer.frame_mb = observations_.computer.frame_mb;
     computer.least_disk_mb = options_.fly.recorder.free_space_mb;

@@ -8,6 +8,7 @@
 
 #include "kestrel/app/cli/commands.h"
 #include "kestrel/app/cli/fly_command.h"
+#include "kestrel/app/cli/interrupt.h"
 #include "kestrel/app/cli/terminal.h"
 #include "kestrel/app/cli/usage_error.h"
 #include "kestrel/io/recording/silence_gstreamer.h"
@@ -68,6 +69,9 @@ int main(int argc, char** argv) {
   } catch (const kestrel::BadFlightEnd& end) {
     kestrel::Tell(fmt::format("kestrel: {}\n", end.what()));
     return end.status();
+  } catch (const kestrel::Interrupted& end) {
+    fmt::print(stderr, "kestrel: {}\n", end.what());
+    return kestrel::kInterruptedStatus;
   } catch (const std::exception& error) {
     fmt::print(stderr, "kestrel: {}\n", error.what());
     return kInputAtFault;

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/app/cli/camera_file.h"
 #include "kestrel/app/cli/commands.h"
 #include "kestrel/app/cli/option_arguments.h"
 #include "kestrel/app/cli/source_arguments.h"
@@ -15,7 +16,6 @@
 #include "kestrel/calibration/print/print_check.h"
 #include "kestrel/calibration/print/print_measurement.h"
 #include "kestrel/core/base/error.h"
-#include "kestrel/core/camera/calibration_reader.h"
 #include "kestrel/io/recording/image_file.h"
 #include "kestrel/io/recording/output_folder.h"
 #include "kestrel/vision/targets/make_target_detector.h"
@@ -103,7 +103,7 @@ PrintMeasurement Measure(const PrintArguments& arguments,
   const cv::Mat photo = ReadGrayImage(arguments.photo);
   std::optional<CameraIntrinsics> camera;
   if (!arguments.camera.empty()) {
-    camera = ReadCalibration(arguments.camera).intrinsics;
+    camera = ReadCameraFile(arguments.camera).intrinsics;
     CheckImageSize(*camera, photo.cols, photo.rows, arguments.photo);
   }
   const std::optional<PrintMeasurement> print = MeasurePrint(photo, camera, detector);

@@ -66,11 +66,14 @@ void PrintSummary(const DetectTimes& times, const Vision& vision) {
              vision.Found(), times.InWords(), times.Faults(), vision.Remarks());
 }
 
-// A session over a recording that Ctrl-C has ended is not taken for a whole one.
-void SayInterruption(const OpenedSource& opened, std::size_t frames) {
+// What Ctrl-C has left of a recording is not taken for the whole.
+void RequireWhole(const OpenedSource& opened, std::size_t frames) {
   const auto all = opened.source->frame_count();
-  if (!WasInterrupted() || !all || frames == *all) return;
-  fmt::print(stderr, "kestrel: interrupted after {} of {} frames\n", frames, *all);
+  if (!WasInterrupted() || frames == all) return;
+  throw Interrupted(
+      fmt::format("interrupted after {}{} frames: all that is above and in the files "
+                  "is of this part",
+                  frames, all ? fmt::format(" of {}", *all) : ""));
 }
 
 // Shows the progress and, as soon as there is one, the first warning.
@@ -139,7 +142,7 @@ void RunToEnd(const OpenedSource& opened, Vision* vision, ObservationSinks* sink
   }
   sinks->Finish();
   PrintSummary(*times, *vision);
-  SayInterruption(opened, times->count() + times->broken());
+  RequireWhole(opened, times->count() + times->broken());
 }
 
 }  // namespace kestrel

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "kestrel/core/camera/calibration_reader.h"
+#include "kestrel/app/cli/camera_file.h"
 
 namespace kestrel {
 
@@ -43,7 +43,7 @@ std::vector<std::string> SimulateArguments::AllSettings() const {
 
 CameraCalibration SimulateArguments::FindCamera(const CameraCalibration& by_default) const {
   if (camera.empty()) return by_default;
-  CameraCalibration calibration = ReadCalibration(camera);
+  CameraCalibration calibration = ReadCameraFile(camera);
   if (!calibration.body_from_camera) calibration.body_from_camera = by_default.body_from_camera;
   return calibration;
 }

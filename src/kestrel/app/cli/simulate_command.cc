@@ -40,8 +40,8 @@ void Render(const RecordingPlan& plan, const SimulateArguments& arguments, int w
         return !WasInterrupted();
       });
   if (!complete) {
-    throw InputError(fmt::format("interrupted after {} of {} images; the same command goes on",
-                                 rendered, plan.times.size()));
+    throw Interrupted(fmt::format("interrupted after {} of {} images; the same command goes on",
+                                  rendered, plan.times.size()));
   }
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   fmt::print(stderr, "{}: {} images in {:.1f} s\n", arguments.output, plan.times.size(),

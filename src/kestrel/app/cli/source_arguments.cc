@@ -55,7 +55,7 @@ void SourceArguments::AddReadingTo(CLI::App* command) {
   command
       ->add_option("--camera", camera,
                    "Calibration: EuRoC sensor.yaml, Kalibr camchain.yaml, ROS camera_info YAML or "
-                   "OpenCV YAML; overrides the source's")
+                   "OpenCV YAML or XML, camodocal, ORB-SLAM; overrides the source's")
       ->type_name("FILE");
   command
       ->add_option("--fov", fov_deg,

@@ -67,7 +67,7 @@ void Simulate(const TouchdownSimulationOptions& options, const TouchdownArgument
   TouchdownSimulation simulation(options, shared.FindCamera(PaperCalibration()), shared.seed);
   const RecordingWriter writer(shared.output, shared.force, simulation.SceneText());
   const auto result = FlyInto(writer, arguments.annotate, options.recording.rate_hz, &simulation);
-  if (!result) throw InputError("interrupted; the same command starts anew");
+  if (!result) throw Interrupted("interrupted; the same command starts anew");
   WriteResult(*result, shared.seed, OutputFolder(writer.part(), /*replace_files=*/true));
   std::vector<Time> times;
   for (const TouchdownMoment& moment : result->path) times.push_back(moment.time);

@@ -2,6 +2,7 @@
 #include "kestrel/app/cli/usage_error.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <optional>
 #include <string_view>
 
@@ -61,6 +62,15 @@ std::optional<std::string> UnknownCommand(const Parsed& parsed) {
   return word.starts_with("-") ? std::nullopt : std::optional(word);
 }
 
+// A file whose name an option hides: "-x.png".
+std::optional<std::string> HiddenFile(const std::vector<std::string>& words) {
+  std::error_code ignored;
+  for (const std::string& word : words) {
+    if (word.starts_with("-") && std::filesystem::exists(word, ignored)) return word;
+  }
+  return std::nullopt;
+}
+
 // The first option among the words that were not expected.
 std::optional<std::string> UnknownOption(const CLI::App& app) {
   for (const std::string& word : app.remaining(/*recurse=*/true)) {
@@ -114,7 +124,9 @@ std::string UsageErrorInWords(const CLI::App& app, const CLI::ParseError& error,
                               const std::vector<std::string>& words) {
   const Parsed parsed = ParseCommands(app, words);
   std::string what = Reworded(error.what());
-  if (const auto word = UnknownCommand(parsed)) {
+  if (const auto file = HiddenFile(parsed.rest)) {
+    what = fmt::format("'{0}' is read as an option: write ./{0} for the file", *file);
+  } else if (const auto word = UnknownCommand(parsed)) {
     what = fmt::format("there is no command '{}'{}", *word,
                        Suggestion(*word, NamesOfCommands(*parsed.command)));
   } else if (const auto option = UnknownOption(app)) {

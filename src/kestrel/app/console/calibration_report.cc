@@ -29,24 +29,6 @@ void Thin(std::vector<T>* values) {
   values->resize(kept);
 }
 
-// Returns why a calibration of mount and clock says nothing; empty where it says something.
-std::string NoUseOf(const FlightCalibration& result, const FlightCalibrationOptions& options) {
-  // A mount is known better from how it is screwed on, a clock from when its images arrive.
-  constexpr double kMaxAngleSigma = Radians(3.0);
-  constexpr double kMaxClockSigma_s = 0.1;
-  if (options.estimate_mount && result.angle_sigmas.maxCoeff() > kMaxAngleSigma) {
-    return fmt::format("the flight leaves the mount uncertain by {:.0f} degrees",
-                       Degrees(result.angle_sigmas.maxCoeff()));
-  }
-  if (options.estimate_clock && result.clock_sigma_s > kMaxClockSigma_s) {
-    return fmt::format("the flight leaves the clock uncertain by {:.2g} s", result.clock_sigma_s);
-  }
-  if (result.rms_after_m > 1.01 * result.rms_before_m) {
-    return "the positions agree less than before";
-  }
-  return "";
-}
-
 // Number of cells of LensCoverage's grid over the image that contain points.
 std::size_t CoveredFields(const std::vector<cv::Point2f>& points, const cv::Size& image) {
   std::set<int> fields;
@@ -196,7 +178,7 @@ void AddFlight(const FlightCalibration& result, const FlightCalibrationOptions& 
   }
   Thin(&report->residuals.points);
   report->warnings = result.warnings;
-  report->no_use = NoUseOf(result, options);
+  report->no_use = WhyOfNoUse(result);
 }
 
 ConsoleCalibration LensReport(const LensCalibration& lens, const CameraIntrinsics& given,

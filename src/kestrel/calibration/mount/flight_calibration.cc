@@ -5,11 +5,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <Eigen/LU>
 #include <ceres/ceres.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "kestrel/calibration/mount/pose_smoothing.h"
 #include "kestrel/calibration/mount/target_path.h"
@@ -31,6 +33,13 @@ constexpr int kClock = 3;
 constexpr int kScale = 4;
 constexpr int kParameters = 5;
 constexpr double kScaleSigma = 0.005;
+// A mount is known better from how it is screwed on, a clock from when its images arrive.
+constexpr double kUselessAngleSigma = Radians(3.0);
+constexpr double kUselessClockSigma_s = 0.1;
+constexpr const char* kMountAdvice =
+    "fly slowly around a standing pattern, at several heights and headings";
+constexpr const char* kClockAdvice =
+    "tilt and turn the UAV quickly, and say so when the pattern moves (--moving)";
 
 // Roll, pitch, yaw of the mount's error (rad), clock offset (s), and the relative amount by which
 // all distances are too short: an error of the pattern's size with the standard deviation
@@ -261,25 +270,49 @@ Parameters Sigmas(const FlightFit& fit, const Parameters& parameters,
   return sigmas;
 }
 
+constexpr std::array<const char*, kAngles> kAngleNames = {"roll", "pitch", "yaw"};
+
 std::vector<std::string> Warnings(const Parameters& sigmas) {
   constexpr double kMaxAngleSigma = Radians(0.1);
   constexpr double kMaxClockSigma_s = 0.005;
-  constexpr std::array<const char*, kAngles> kNames = {"roll", "pitch", "yaw"};
   std::vector<std::string> warnings;
   for (int i = 0; i < kAngles; ++i) {
-    if (sigmas(i) <= kMaxAngleSigma) continue;
+    if (sigmas(i) <= kMaxAngleSigma || sigmas(i) > kUselessAngleSigma) continue;
     warnings.push_back(fmt::format(
-        "the flight cannot tell the {} of the mount (standard deviation {:.2g} degrees): fly "
-        "slowly around a standing pattern, at several heights and headings",
-        kNames[i], Degrees(sigmas(i))));
+        "the flight hardly tells the {} of the mount (standard deviation {:.2g} degrees): {}",
+        kAngleNames[i], Degrees(sigmas(i)), kMountAdvice));
   }
-  if (sigmas(kClock) > kMaxClockSigma_s) {
-    warnings.push_back(fmt::format(
-        "the flight cannot tell the clock offset (standard deviation {:.2g} s): tilt and turn the "
-        "UAV quickly, and say so when the pattern moves (--moving)",
-        sigmas(kClock)));
+  if (sigmas(kClock) > kMaxClockSigma_s && sigmas(kClock) <= kUselessClockSigma_s) {
+    warnings.push_back(
+        fmt::format("the flight hardly tells the clock offset (standard deviation {:.2g} s): {}",
+                    sigmas(kClock), kClockAdvice));
   }
   return warnings;
+}
+
+// Returns how the UAV moved from sighting to sighting.
+FlightMotion MotionOver(const std::vector<TargetSighting>& sightings, const PoseHistory& poses,
+                        double clock_offset_s) {
+  FlightMotion motion;
+  std::optional<RigidTransform> first;
+  double least_turn = 0, most_turn = 0;
+  double lowest_m = 0, highest_m = 0;
+  for (const TargetSighting& sighting : sightings) {
+    const auto pose = poses.Lookup(sighting.time + DurationFromSeconds(clock_offset_s));
+    if (!first) first = *pose;
+    const double turn =
+        std::remainder(HeadingOf(pose->rotation) - HeadingOf(first->rotation), 2 * kPi);
+    const double height_m = pose->translation.z() - first->translation.z();
+    least_turn = std::min(least_turn, turn);
+    most_turn = std::max(most_turn, turn);
+    lowest_m = std::min(lowest_m, height_m);
+    highest_m = std::max(highest_m, height_m);
+    const Eigen::Vector3d up = pose->rotation * Eigen::Vector3d::UnitZ();
+    motion.tilt = std::max(motion.tilt, std::acos(std::clamp(up.z(), -1.0, 1.0)));
+  }
+  motion.turn = std::min(most_turn - least_turn, kPi);
+  motion.height_span_m = highest_m - lowest_m;
+  return motion;
 }
 
 double RootMeanSquare(const Eigen::VectorXd& values) {
@@ -352,8 +385,36 @@ FlightCalibration CalibrateFlight(const std::vector<TargetSighting>& sightings,
   calibration.rms_after_m = RootMeanSquare(after);
   calibration.sightings = static_cast<int>(fit.sightings().size());
   calibration.outliers = static_cast<int>(usable.size() - fit.sightings().size());
+  calibration.motion = MotionOver(fit.sightings(), history, calibration.estimate.clock_offset_s);
   calibration.warnings = Warnings(sigmas);
   return calibration;
+}
+
+std::string WhyOfNoUse(const FlightCalibration& result) {
+  std::vector<std::string> angles;
+  for (int i = 0; i < kAngles; ++i) {
+    if (result.angle_sigmas(i) <= kUselessAngleSigma) continue;
+    angles.push_back(fmt::format("{} (+- {:.1f} degrees)", kAngleNames[i],
+                                 std::min(Degrees(result.angle_sigmas(i)), 180.0)));
+  }
+  const FlightMotion& motion = result.motion;
+  std::vector<std::string> reasons;
+  if (!angles.empty()) {
+    reasons.push_back(fmt::format(
+        "the flight does not determine the mount's {}: over the pattern the UAV turned by {:.0f} "
+        "degrees and changed its height by {:.1f} m; {}",
+        fmt::join(angles, ", "), Degrees(motion.turn), motion.height_span_m, kMountAdvice));
+  }
+  if (result.clock_sigma_s > kUselessClockSigma_s) {
+    reasons.push_back(fmt::format(
+        "the flight does not determine the clock offset (+- {:.2g} s): over the pattern the UAV "
+        "tilted by {:.0f} degrees at most and turned by {:.0f}; {}",
+        result.clock_sigma_s, Degrees(motion.tilt), Degrees(motion.turn), kClockAdvice));
+  }
+  if (reasons.empty() && result.rms_after_m > 1.01 * result.rms_before_m) {
+    reasons.emplace_back("the positions agree less than before");
+  }
+  return fmt::format("{}", fmt::join(reasons, "; "));
 }
 
 }  // namespace kestrel

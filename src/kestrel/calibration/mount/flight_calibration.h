@@ -46,6 +46,14 @@ struct SightingResidual {
   double after_m = 0;   // with the estimate
 };
 
+// How the UAV moved while it saw the target: what tells mount and clock apart from the place of the
+// target.
+struct FlightMotion {
+  double turn = 0;           // largest difference of two headings, rad, to pi
+  double tilt = 0;           // largest angle between the body's z axis and the vertical, rad
+  double height_span_m = 0;  // largest difference of two heights
+};
+
 struct FlightCalibration {
   MountAndClock estimate;
   // Roll, pitch, yaw (rad) of the mount relative to the given one: Rz Ry Rx, in the body's frame.
@@ -59,7 +67,8 @@ struct FlightCalibration {
   std::vector<SightingResidual> residuals;  // for the sightings that were used
   int sightings = 0;                        // number used
   int outliers = 0;                         // number left out
-  // Quantities that the flight does not determine, in words.
+  FlightMotion motion;
+  // Quantities that the flight determines poorly, in words.
   std::vector<std::string> warnings;
 };
 
@@ -70,5 +79,10 @@ struct FlightCalibration {
 FlightCalibration CalibrateFlight(const std::vector<TargetSighting>& sightings,
                                   const std::vector<PoseSample>& poses, const MountAndClock& given,
                                   const FlightCalibrationOptions& options);
+
+// Returns why a calibration is not to be used, in words: a quantity that the flight does not
+// determine and what the flight lacks, or positions that agree less than before. Empty: it may be
+// used.
+std::string WhyOfNoUse(const FlightCalibration& result);
 
 }  // namespace kestrel

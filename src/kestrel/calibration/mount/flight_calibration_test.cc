@@ -13,8 +13,11 @@
 namespace kestrel {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Le;
+using ::testing::Not;
 
 constexpr double kDegree = kPi / 180;
 
@@ -142,9 +145,30 @@ TEST(CalibrateFlight, SaysWhatTheFlightCannotTell) {
   for (PoseSample& pose : poses) pose.world_from_body = poses.front().world_from_body;
   const FlightCalibration calibration =
       CalibrateFlight(flight.Sightings(), poses, {flight.NominalMount(), 0}, {});
-  ASSERT_EQ(calibration.warnings.size(), 4u);
-  EXPECT_THAT(calibration.warnings[2], HasSubstr("cannot tell the yaw"));
-  EXPECT_THAT(calibration.warnings[3], HasSubstr("cannot tell the clock offset"));
+  EXPECT_THAT(WhyOfNoUse(calibration),
+              AllOf(HasSubstr("does not determine the mount's roll (+- "), HasSubstr("yaw (+- "),
+                    HasSubstr("the UAV turned by 0 degrees and changed its height by 0.0 m"),
+                    HasSubstr("does not determine the clock offset"), Not(HasSubstr("\n"))));
+  EXPECT_THAT(calibration.motion.tilt, Le(0.2));
+}
+
+TEST(CalibrateFlight, AFlightThatTellsAllIsOfUse) {
+  const Flight flight{.sway = 0.3, .climb_m = 6};
+  const FlightCalibration calibration = flight.Calibrate({});
+  EXPECT_EQ(WhyOfNoUse(calibration), "");
+  EXPECT_NEAR(calibration.motion.height_span_m, 6, 1);
+  EXPECT_GT(calibration.motion.turn, 0.5);
+}
+
+TEST(CalibrateFlight, QuantitiesThatAreUncertainAreOfNoUse) {
+  FlightCalibration result;
+  result.rms_before_m = result.rms_after_m = 0.1;
+  EXPECT_EQ(WhyOfNoUse(result), "");
+  result.angle_sigmas.y() = Radians(13.5);
+  EXPECT_THAT(WhyOfNoUse(result), HasSubstr("the mount's pitch (+- 13.5 degrees): over the"));
+  result.angle_sigmas.setZero();
+  result.rms_after_m = 0.2;
+  EXPECT_EQ(WhyOfNoUse(result), "the positions agree less than before");
 }
 
 TEST(CalibrateFlight, TooFewSightingsAreRefused) {
