@@ -29,6 +29,10 @@ CameraAutomatics ReadCameraAutomatics(const std::string& device) {
   if (const auto exposure = ReadControl(opened, V4L2_CID_EXPOSURE_AUTO)) {
     automatics.exposure = *exposure != V4L2_EXPOSURE_MANUAL;
   }
+  constexpr double kExposureUnit_s = 1e-4;
+  if (const auto exposure = ReadControl(opened, V4L2_CID_EXPOSURE_ABSOLUTE)) {
+    automatics.exposure_s = kExposureUnit_s * *exposure;
+  }
   close(opened);
   return automatics;
 }

@@ -25,6 +25,7 @@ constexpr std::size_t kPooledImages = 64;  // that vision and the recorder's que
 // Returns the caps to request from a device.
 std::string DeviceCaps(const CameraIntrinsics& calibration, const GstreamerCameraOptions& options) {
   if (!options.device_caps.empty()) return options.device_caps;
+  if (calibration.width_px == 0) return "video/x-raw";
   return fmt::format("video/x-raw,width={},height={}", calibration.width_px, calibration.height_px);
 }
 
@@ -145,7 +146,9 @@ std::optional<Event> GstreamerCamera::TakeFrame(Duration timeout) {
   if (gst_video_info_from_caps(&info, gst_sample_get_caps(sample.get())) == FALSE) {
     throw InputError(camera_ + ": no images received");
   }
-  CheckImageSize(calibration_, info.width, info.height, camera_);
+  if (calibration_.width_px > 0) {
+    CheckImageSize(calibration_, info.width, info.height, camera_);
+  }
   const std::uint64_t missed = pipeline_->MissedBefore(sample.get());
   Frame frame;
   frame.image =

@@ -63,7 +63,8 @@ struct GstreamerCameraOptions {
 class GstreamerCamera : public LiveSource, public ExposureActuator {
  public:
   // 'camera': "/dev/video0", "rtsp://..." or a pipeline ("videotestsrc is-live=true ! ..."), with
-  // or without an appsink at its end. Waits for the first frame, up to 10 s. Throws InputError with
+  // or without an appsink at its end. 'calibration': of width 0 where the camera has none; frames
+  // of any size are then given out. Waits for the first frame, up to 10 s. Throws InputError with
   // one line: no such device, a pipeline that does not parse or start, frames of another size than
   // the calibration's, options that are not valid.
   GstreamerCamera(const std::string& camera, const CameraIntrinsics& calibration,

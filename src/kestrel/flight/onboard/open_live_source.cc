@@ -12,13 +12,13 @@ namespace kestrel {
 namespace {
 
 OpenedLiveSource OpenCamera(const RecordingChoice& choice, const GstreamerCameraOptions& options) {
-  if (choice.camera.empty()) {
+  if (choice.camera.empty() && !choice.may_assume_lens) {
     throw InputError(
         "no calibration: a camera needs one, give it by --camera FILE (kestrel calibrate lens "
         "makes one)");
   }
   OpenedLiveSource opened;
-  opened.calibration = ChosenCalibration(choice);
+  if (!choice.camera.empty()) opened.calibration = ChosenCalibration(choice);
   auto camera = std::make_unique<GstreamerCamera>(
       choice.sources.front(), opened.calibration.intrinsics, choice.format, options);
   opened.actuator = camera.get();

@@ -41,7 +41,9 @@ struct SourceScheme {
 // Opens what the URI names: a source of a scheme ("dds:/camera/image_raw", "sim:straight"), a
 // camera
 // (/dev/video0, rtsp://..., a GStreamer pipeline), or a recording, which is played in real time.
-// Throws InputError that says what is wrong with the source.
+// A camera without a calibration file is opened where the recording's choice says
+// 'may_assume_lens': its calibration then has width 0. Throws InputError that says what is wrong
+// with the source.
 OpenedLiveSource OpenLiveSource(const LiveSourceChoice& choice,
                                 const GstreamerCameraOptions& camera,
                                 const std::vector<SourceScheme>& schemes = {});
