@@ -41,6 +41,7 @@ struct LensArguments {
   std::string output;
   std::string plots;
   std::string model;
+  std::string board;
   OptionArguments options;
   bool force = false;
 };
@@ -105,6 +106,7 @@ void RunLens(const LensArguments& arguments) {
   RequireFreeForCalibration(arguments.output, arguments.force);
   LensCalibrationOptions options;
   options.detector = arguments.options.Read().landing.detector;
+  if (!arguments.board.empty()) options.board = ParseLensBoard(arguments.board);
   if (!arguments.model.empty()) options.model = Models().at(arguments.model);
   CameraCalibration calibration;
   if (!arguments.camera.empty()) {
@@ -131,7 +133,9 @@ void RunLens(const LensArguments& arguments) {
 
 void AddCalibrateLensCommand(CLI::App* calibrate) {
   CLI::App* command = calibrate->add_subcommand(
-      "lens", "Focal length, principal point and distortion from views of the landing pattern");
+      "lens",
+      "Focal length, principal point and distortion from views of the landing pattern, a "
+      "chessboard, a ChArUco board or an AprilGrid");
   const auto arguments = std::make_shared<LensArguments>();
   command
       ->add_option("SOURCE", arguments->sources,
@@ -148,6 +152,12 @@ void AddCalibrateLensCommand(CLI::App* calibrate) {
                    "Distortion model (default: the one that fits the views best)")
       ->type_name("NAME")
       ->check(CLI::IsMember(Models()));
+  command
+      ->add_option("--board", arguments->board,
+                   "In place of the landing pattern: chessboard:9x6:0.025 (inner corners, square), "
+                   "charuco:7x5:0.04:0.03 (squares, square, marker; :DICT_5X5_100), "
+                   "aprilgrid:6x6:0.088:0.3 (tags, tag, gap over tag); lengths in m")
+      ->type_name("BOARD");
   arguments->options.AddTo(command);
   command
       ->add_option("--output", arguments->output,

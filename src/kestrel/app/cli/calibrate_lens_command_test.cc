@@ -9,6 +9,7 @@
 
 #include "kestrel/app/cli/test_command.h"
 #include "kestrel/calibration/lens/lens_difference.h"
+#include "kestrel/calibration/lens/test_board_images.h"
 #include "kestrel/core/camera/calibration_reader.h"
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/io/recording/test_files.h"
@@ -35,6 +36,20 @@ class CalibrateLensCommandTest : public CommandTest {
     }
   }
 };
+
+TEST_F(CalibrateLensCommandTest, AChessboardTellsTheLens) {
+  const CameraModel truth({400, 300, 330, 330, 203, 147, DistortionModel::kNone, {}});
+  const std::string board = "chessboard:8x5:0.03";
+  for (const LensImage& view : RenderBoard(truth, ParseLensBoard(board), 24, 0.6, 2)) {
+    WriteTestImage(folder_, "views/" + view.name + ".png", view.image);
+  }
+  const std::string views = folder_ / "views";
+  const std::string camera = folder_ / "camera.yaml";
+  Succeed("calibrate lens " + views + " --board " + board + " --output " + camera);
+  EXPECT_NEAR(ReadCalibration(camera).intrinsics.fx_px, 330, 2);
+  ExpectInputError("calibrate lens " + views + " --board chessboard:8x5",
+                   "expected chessboard:COLUMNSxROWS:SQUARE");
+}
 
 TEST_F(CalibrateLensCommandTest, FindsTheFisheyeFromNothingButImages) {
   const CameraIntrinsics truth = PaperCamera();

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/calibration/lens/board_view.h"
 #include "kestrel/calibration/lens/lens_choice.h"
 #include "kestrel/calibration/lens/unlike_views.h"
 #include "kestrel/core/base/error.h"
@@ -99,28 +100,6 @@ std::vector<std::string> Warnings(const LensCalibration& calibration) {
   return warnings;
 }
 
-// Possible lenses of an image of this size: fields of view across it from 35 to 190 degrees, in
-// steps of a third of the focal length.
-std::vector<CameraIntrinsics> Guesses(const cv::Size& size) {
-  constexpr std::array<double, 5> kPinholes{0.45, 0.6, 0.8, 1.1, 1.5};  // focal length over width
-  constexpr std::array<double, 4> kFisheyes{0.25, 0.33, 0.43, 0.57};
-  std::vector<CameraIntrinsics> guesses;
-  const auto guess = [&](double focal, DistortionModel model) {
-    guesses.push_back({size.width,
-                       size.height,
-                       focal * size.width,
-                       focal * size.width,
-                       0.5 * (size.width - 1),
-                       0.5 * (size.height - 1),
-                       model,
-                       {}});
-    if (model == DistortionModel::kEquidistant) guesses.back().distortion.resize(4);
-  };
-  for (const double focal : kPinholes) guess(focal, DistortionModel::kNone);
-  for (const double focal : kFisheyes) guess(focal, DistortionModel::kEquidistant);
-  return guesses;
-}
-
 std::vector<LensView> FindViews(std::span<const LensImage> images, std::size_t stride,
                                 const CameraIntrinsics& camera,
                                 const LensCalibrationOptions& options) {
@@ -141,7 +120,7 @@ CameraIntrinsics BestGuess(std::span<const LensImage> images,
   const std::size_t stride = std::max<std::size_t>(1, images.size() / kSample);
   CameraIntrinsics best;
   std::size_t most_edges = 0;
-  for (const CameraIntrinsics& guess : Guesses(images.front().image.size())) {
+  for (const CameraIntrinsics& guess : LensGuesses(images.front().image.size())) {
     std::size_t edges = 0;
     for (const LensView& view : FindViews(images, stride, guess, options)) {
       edges += view.edges.size();
@@ -189,7 +168,40 @@ LensCalibration Estimate(const std::vector<LensView>& views, const CameraIntrins
   return calibration;
 }
 
+// The corners of the board in all images. Their poses are by a guess.
+std::vector<LensView> FindBoards(std::span<const LensImage> images,
+                                 const LensCalibrationOptions& options) {
+  const CameraIntrinsics guess = LensGuesses(images.front().image.size()).front();
+  std::vector<LensView> views;
+  for (const LensImage& image : images) {
+    if (options.before_image) options.before_image();
+    std::optional<LensView> view = FindBoard(image.name, image.image, *options.board, guess);
+    if (view) views.push_back(std::move(*view));
+  }
+  return views;
+}
+
 }  // namespace
+
+std::vector<CameraIntrinsics> LensGuesses(const cv::Size& size) {
+  constexpr std::array<double, 5> kPinholes{0.45, 0.6, 0.8, 1.1, 1.5};  // focal length over width
+  constexpr std::array<double, 4> kFisheyes{0.25, 0.33, 0.43, 0.57};
+  std::vector<CameraIntrinsics> guesses;
+  const auto guess = [&](double focal, DistortionModel model) {
+    guesses.push_back({size.width,
+                       size.height,
+                       focal * size.width,
+                       focal * size.width,
+                       0.5 * (size.width - 1),
+                       0.5 * (size.height - 1),
+                       model,
+                       {}});
+    if (model == DistortionModel::kEquidistant) guesses.back().distortion.resize(4);
+  };
+  for (const double focal : kPinholes) guess(focal, DistortionModel::kNone);
+  for (const double focal : kFisheyes) guess(focal, DistortionModel::kEquidistant);
+  return guesses;
+}
 
 LensCalibration EstimateLens(const std::vector<LensView>& views, const CameraIntrinsics& start,
                              std::optional<DistortionModel> model) {
@@ -198,12 +210,26 @@ LensCalibration EstimateLens(const std::vector<LensView>& views, const CameraInt
   return calibration;
 }
 
+LensCalibration EstimateBoardLens(const std::vector<LensView>& views, const cv::Size& size,
+                                  std::optional<DistortionModel> model) {
+  RequireViews(views.size());
+  const CameraIntrinsics start = LikeliestLens(LensGuesses(size), views);
+  return EstimateLens(PosedBy(start, views), start, model);
+}
+
 LensCalibration CalibrateLens(std::span<const LensImage> images,
                               const LensCalibrationOptions& options) {
   RequireOneSize(images);
   if (options.start) {
     const LensImage& first = images.front();
     CheckImageSize(*options.start, first.image.cols, first.image.rows, first.name);
+  }
+  if (options.board) {
+    const std::vector<LensView> views = FindBoards(images, options);
+    if (!options.start) {
+      return EstimateBoardLens(views, images.front().image.size(), options.model);
+    }
+    return EstimateLens(PosedBy(*options.start, views), *options.start, options.model);
   }
   CameraIntrinsics camera = options.start ? *options.start : BestGuess(images, options);
   std::vector<LensView> views = FindViews(images, 1, camera, options);

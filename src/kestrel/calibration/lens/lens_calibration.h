@@ -9,6 +9,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "kestrel/calibration/lens/lens_board.h"
 #include "kestrel/calibration/lens/lens_coverage.h"
 #include "kestrel/calibration/lens/lens_fit.h"
 #include "kestrel/calibration/lens/lens_view.h"
@@ -47,15 +48,26 @@ struct LensCalibrationOptions {
   std::optional<DistortionModel> model;   // as in EstimateLens
   std::optional<CameraIntrinsics> start;  // a guess of the lens; without it several are tried
   LandingPatternDetectorOptions detector;
+  std::optional<LensBoard> board = {};  // what the images show in place of the landing pattern
   // Called before each image is searched for the pattern; an exception from it ends the
   // calibration. May be empty.
   std::function<void()> before_image = {};
 };
 
+// Possible lenses of images of this size: fields of view across it from 35 to 190 degrees, in steps
+// of a third of the focal length.
+std::vector<CameraIntrinsics> LensGuesses(const cv::Size& size);
+
+// Estimates the lens as EstimateLens does, from views of a board in images of this size, starting
+// from the guess that explains them best.
+LensCalibration EstimateBoardLens(const std::vector<LensView>& views, const cv::Size& size,
+                                  std::optional<DistortionModel> model = {});
+
 // Calibrates a camera from images of one size, in any order: it detects the pattern with guesses of
 // the lens, estimates the lens from the pattern's edges, and detects the pattern again with that
-// lens. Throws InputError as EstimateLens does, and when the sizes of the images differ from each
-// other or from that of 'start'.
+// lens. A board's corners are found once, as no lens is needed for that. Throws InputError as
+// EstimateLens does, and when the sizes of the images differ from each other or from that of
+// 'start'.
 LensCalibration CalibrateLens(std::span<const LensImage> images,
                               const LensCalibrationOptions& options);
 

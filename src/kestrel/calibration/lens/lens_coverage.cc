@@ -26,26 +26,26 @@ int FieldOf(double coordinate, int size_px, int count) {
   return std::clamp(static_cast<int>((coordinate + 0.5) * count / size_px), 0, count - 1);
 }
 
-// The empty parts at the border of the image: corners, and sides that are otherwise empty.
-std::vector<std::string> EmptyParts(const LensCoverage& coverage) {
-  constexpr int kRight = LensCoverage::kColumns - 1, kBottom = LensCoverage::kRows - 1;
+}  // namespace
+
+std::vector<std::string> LensCoverage::EmptyParts() const {
+  constexpr int kRight = kColumns - 1, kBottom = kRows - 1;
   std::vector<std::string> parts;
   const auto corner = [&](int column, int row, const char* name) {
-    if (coverage.EdgesAt(column, row) == 0) parts.push_back(name);
+    if (EdgesAt(column, row) == 0) parts.push_back(name);
   };
   corner(0, 0, "upper left corner");
   corner(kRight, 0, "upper right corner");
   corner(0, kBottom, "lower left corner");
   corner(kRight, kBottom, "lower right corner");
-  if (parts.size() == 4) parts = {"corners"};
   int left = 0, right = 0, top = 0, bottom = 0;
   for (int row = 1; row < kBottom; ++row) {
-    left += coverage.EdgesAt(0, row);
-    right += coverage.EdgesAt(kRight, row);
+    left += EdgesAt(0, row);
+    right += EdgesAt(kRight, row);
   }
   for (int column = 1; column < kRight; ++column) {
-    top += coverage.EdgesAt(column, 0);
-    bottom += coverage.EdgesAt(column, kBottom);
+    top += EdgesAt(column, 0);
+    bottom += EdgesAt(column, kBottom);
   }
   if (left == 0) parts.push_back("left side");
   if (right == 0) parts.push_back("right side");
@@ -53,8 +53,6 @@ std::vector<std::string> EmptyParts(const LensCoverage& coverage) {
   if (bottom == 0) parts.push_back("bottom");
   return parts;
 }
-
-}  // namespace
 
 int LensCoverage::fields() const {
   return static_cast<int>(edges.size() - std::count(edges.begin(), edges.end(), 0));
@@ -64,8 +62,13 @@ std::string LensCoverage::InWords() const {
   std::string words = fmt::format(
       "edges lie in {} of {} fields of the image, to {:.0f} degrees from the optical axis",
       fields(), edges.size(), max_angle_deg);
-  const std::vector<std::string> empty = EmptyParts(*this);
+  std::vector<std::string> empty = EmptyParts();
   if (empty.empty()) return words;
+  constexpr int kCorners = 4;
+  if (empty.size() >= kCorners && empty[kCorners - 1].ends_with("corner")) {
+    empty.erase(empty.begin() + 1, empty.begin() + kCorners);
+    empty.front() = "corners";
+  }
   const bool is_one = empty.size() == 1 && empty.front() != "corners";
   return words + fmt::format(
                      "; the {} of the image hold{} no edges: distortion beyond {:.0f} "

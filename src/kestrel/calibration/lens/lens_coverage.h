@@ -4,6 +4,7 @@
 #include <array>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "kestrel/calibration/lens/lens_view.h"
 #include "kestrel/core/camera/camera_model.h"
@@ -21,6 +22,10 @@ struct LensCoverage {
 
   int fields() const;  // number of fields with edges
   int EdgesAt(int column, int row) const { return edges[row * kColumns + column]; }
+
+  // Returns the parts at the border of the image without edges, in words: corners, and sides that
+  // are otherwise empty.
+  std::vector<std::string> EmptyParts() const;
 
   // Returns a sentence on how far the edges reach, and one on the parts without any.
   std::string InWords() const;

@@ -26,6 +26,10 @@ ViewFeatures FeaturesOf(const LensView& view, int width_px) {
 
 }  // namespace
 
+double DifferenceOf(const LensView& view, const LensView& other, int width_px) {
+  return (FeaturesOf(view, width_px) - FeaturesOf(other, width_px)).norm();
+}
+
 std::vector<LensView> UnlikeViews(const std::vector<LensView>& views, std::size_t max_views,
                                   int width_px) {
   if (views.size() <= max_views) return views;

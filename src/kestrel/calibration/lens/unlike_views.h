@@ -15,4 +15,8 @@ namespace kestrel {
 std::vector<LensView> UnlikeViews(const std::vector<LensView>& views, std::size_t max_views,
                                   int width_px);
 
+// Returns how much two views differ in the print's place, distance and tilt: 0.1 for a tenth of the
+// image's width, or a tilt by 6 degrees.
+double DifferenceOf(const LensView& view, const LensView& other, int width_px);
+
 }  // namespace kestrel
