@@ -4,6 +4,7 @@
 import type { Calibration } from "./calibration";
 
 import type { Colors, ColorScores } from "./color_protocol";
+import type { Lens } from "./lens";
 import type { Study, StudyReplay } from "./study";
 
 export const layers = ["detection", "prediction", "rejected", "truth", "second"] as const;
@@ -57,7 +58,10 @@ export type CommandName =
   | "calibrate-cancel"
   | "calibrate-save"
   | "compare"
-  | "open";
+  | "open"
+  | "lens"
+  | "lens-stop"
+  | "lens-save";
 
 export interface Hello {
   kind: "hello";
@@ -265,6 +269,7 @@ export type ServerMessage =
   | Calibration
   | Study
   | StudyReplay
+  | Lens
   | LinkReport;
 
 export interface ImageMessage {

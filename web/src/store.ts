@@ -4,6 +4,7 @@ import { firstColorView, viewAfter, type ColorView } from "./color_view";
 import type { Calibration } from "./calibration";
 import type { FrameRange } from "./clip";
 import { Freshness, type Staleness } from "./freshness";
+import type { Lens } from "./lens";
 import type {
   ClipProgress,
   Doctor,
@@ -66,6 +67,7 @@ export interface State {
   calibration: Calibration | null;
   study: Study | null;
   studyReplay: StudyReplay | null;
+  lens: Lens | null;
   link: LinkReport | null;
   /** Changed in place, by every message. */
   freshness: Freshness;
@@ -119,6 +121,7 @@ export function initialState(): State {
     calibration: null,
     study: null,
     studyReplay: null,
+    lens: null,
     link: null,
     freshness: new Freshness(),
     staleness: unknown,
@@ -167,6 +170,7 @@ export function withMessage(state: State, message: ServerMessage): State {
         studyReplay: null,
         freshness: new Freshness(),
         staleness: unknown,
+        lens: null,
         series: new SeriesBuffer(message.series.length),
         flight: null,
       };
@@ -215,6 +219,8 @@ export function withMessage(state: State, message: ServerMessage): State {
       return { ...state, study: message };
     case "study-replay":
       return withReplay(state, message);
+    case "lens":
+      return { ...state, lens: message };
     case "link":
       return { ...state, link: message };
   }

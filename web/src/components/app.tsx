@@ -4,6 +4,7 @@ import { isOffered } from "../actions";
 import { panels, type PanelName } from "../store";
 import { useStore } from "../use_store";
 import { CalibrationPage } from "./calibration_page";
+import { CameraPage } from "./camera_page";
 import { Charts } from "./charts";
 import { ColorPage } from "./color_page";
 import { EventsPanel } from "./events_panel";
@@ -35,7 +36,7 @@ export function App() {
       {isOnColors && <ColorPage />}
       {isOnCalibration && <CalibrationPage />}
       {isOnStudy && <StudyPage />}
-      {!isOnColors && !isOnCalibration && !isOnStudy && <WatchPage />}
+      {!isOnColors && !isOnCalibration && !isOnStudy && (isOffered("lens") ? <CameraPage /> : <WatchPage />)}
       <HelpDialog />
     </>
   );

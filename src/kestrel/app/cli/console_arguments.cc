@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/app/cli/console_arguments.h"
 
+#include "kestrel/app/cli/console_camera.h"
 #include "kestrel/app/console/hunt_replay.h"
 #include "kestrel/app/console/landing_replay.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/options.h"
-#include "kestrel/io/recording/open_source.h"
 #include "kestrel/vision/objects/object_model.h"
 
 namespace kestrel {
@@ -21,9 +21,13 @@ LandingPipelineOptions ConsoleArguments::LandingOptions(const KestrelOptions& op
   return landing;
 }
 
+bool ConsoleArguments::IsLive() const {
+  return source.sources.size() == 1 && !is_hunt && IsLiveSource(source.sources.front());
+}
+
 void ConsoleArguments::RequireEnd() const {
   for (const std::string& name : source.sources) {
-    if (!IsCamera(name)) continue;
+    if (!IsLiveSource(name)) continue;
     throw InputError(name +
                      ": the page needs any frame at any time, expected a recording, a bag, images "
                      "or a video; `kestrel fly --console` shows a camera");

@@ -18,7 +18,7 @@ struct ConsoleArguments {
   SourceArguments source;
   std::string address;
   std::string model;
-  std::string output = "taught";  // folder for the files that the page saves
+  std::string output;  // folder for the files that the page saves; empty: OutputFolder
   bool is_hunt = false;
   bool is_demo = false;
   // Result of `kestrel land` or `hunt` that is shown instead of a new run; empty: none.
@@ -28,6 +28,10 @@ struct ConsoleArguments {
   ConsoleOptions PageOptions(const KestrelOptions& options) const;
   LandingPipelineOptions LandingOptions(const KestrelOptions& options) const;
 
+  // The folder for what the page saves of a recording.
+  std::string OutputFolder() const { return output.empty() ? "taught" : output; }
+  // True when the source is one camera.
+  bool IsLive() const;
   // Throws InputError when a source is a camera.
   void RequireEnd() const;
 };

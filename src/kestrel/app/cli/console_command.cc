@@ -10,6 +10,7 @@
 
 #include "kestrel/app/cli/commands.h"
 #include "kestrel/app/cli/console_arguments.h"
+#include "kestrel/app/cli/console_camera.h"
 #include "kestrel/app/cli/console_study.h"
 #include "kestrel/app/cli/fly_arguments.h"
 #include "kestrel/app/cli/fly_command.h"
@@ -36,14 +37,14 @@ void RunConsole(const ConsoleArguments& arguments) {
   const RecordingChoice choice = arguments.source.Recording(search->format());
   const OpenedSource opened = OpenRecording(choice);
   const std::string& name = arguments.source.sources.front();
-  std::optional<ColorSource> colors = FindColors(choice, arguments.model, arguments.output);
+  std::optional<ColorSource> colors = FindColors(choice, arguments.model, arguments.OutputFolder());
   const bool has_colors = colors.has_value();
   if (!has_colors && !arguments.model.empty() && !arguments.is_hunt) {
     throw InputError("--model: " + name + " has no images in color to teach it by");
   }
   ReplayConsole console(arguments.PageOptions(options), name, search->Subject(), std::move(colors));
   PrintLinks(console.urls());
-  if (has_colors) fmt::print(stderr, "folder for taught colors: {}\n", arguments.output);
+  if (has_colors) fmt::print(stderr, "folder for taught colors: {}\n", arguments.OutputFolder());
   const auto start = arguments.result.empty() ? search->Detect({}) : search->Show(arguments.result);
   ObservationSinks sinks(SinkErrors::kThrow);
   ReplayRun* const run = sinks.Add(start(opened));
@@ -55,7 +56,8 @@ void RunConsole(const ConsoleArguments& arguments) {
   if (WasInterrupted()) return;
   if (run->done() == 0) throw InputError(name + ": has no images to show");
   console.OfferCalibration(CalibrationTools(arguments.source.Recording(PixelFormat::kGray),
-                                            arguments.LandingOptions(options), arguments.output));
+                                            arguments.LandingOptions(options),
+                                            arguments.OutputFolder()));
   console.Play(run->TakeResult(), RecordingOf(choice, *search), WasInterrupted);
 }
 
@@ -75,8 +77,10 @@ void RunConsoleDemo(const ConsoleArguments& arguments) {
 void AddConsoleCommand(CLI::App* app) {
   CLI::App* command = app->add_subcommand(
       "console",
-      "Serve the web page for a recording (replay, calibration, teaching of colours) or for the "
-      "folder of `kestrel study run` (what got worst)");
+      "Serve the web page for a camera (picture, focus, guided calibration of its lens), a "
+      "recording "
+      "(replay, calibration, teaching of colours) or the folder of `kestrel study run` (what got "
+      "worst)");
   const auto arguments = std::make_shared<ConsoleArguments>();
   arguments->source.AddReadingTo(command);
   CLI::Option* const source = command->get_option("SOURCE")->required(false);
@@ -99,12 +103,13 @@ void AddConsoleCommand(CLI::App* app) {
   command
       ->add_option("--output", arguments->output,
                    "Folder for what the page saves: calibrations, and the model that it teaches "
-                   "(objects.yaml), its versions and the draft (taught)")
+                   "(objects.yaml), its versions and the draft (taught; of a camera: this folder)")
       ->type_name("DIR");
   command->callback([arguments] {
     if (arguments->is_demo) return RunConsoleDemo(*arguments);
     if (arguments->source.sources.empty()) throw CLI::RequiredError("SOURCE, or --demo,");
     if (IsStudy(*arguments)) return RunStudyConsole(*arguments);
+    if (arguments->IsLive()) return RunCameraConsole(*arguments);
     const char* const table =
         arguments->is_hunt ? "object_detections.csv" : "landing_detections.csv";
     arguments->result = TakeResult(table, &arguments->source.sources).value_or("");

@@ -46,6 +46,29 @@ TEST_F(ConsoleCommandTest, AFlightIsSeen) {
   EXPECT_EQ(fly.End(), 0) << fly.Log();
 }
 
+TEST_F(ConsoleCommandTest, ACameraNeedsNeitherCalibrationNorAutopilot) {
+  for (const char* camera : {"'videotestsrc is-live=true ! video/x-raw,width=320,height=240'",
+                             "sim:standing --set fly.sim_camera.scale=0.4"}) {
+    RunningCommand console(fmt::format("console {} --address 127.0.0.1:0", camera), folder_);
+    TestSocket socket(console.Port());
+    socket.Send(R"({"images": true})");
+    EXPECT_EQ(socket.Await("hello")["offers"].back(), "lens");
+    EXPECT_GT(socket.Await("image")["width"], 100) << camera;
+    EXPECT_GT(socket.Await("sample")["values"][2], 0);
+    EXPECT_EQ(console.End(), 0) << console.Log();
+  }
+}
+
+TEST_F(ConsoleCommandTest, ACameraThatIsMissingIsSaidAndTriedAgain) {
+  RunningCommand console("console /dev/video63 --address 127.0.0.1:0", folder_);
+  TestSocket socket(console.Port());
+  nlohmann::json status = socket.Await("status");
+  while (status["state"] != "no picture") status = socket.Await("status");
+  EXPECT_THAT(status["reason"].get<std::string>(), HasSubstr("/dev/video63: "));
+  EXPECT_EQ(console.End(), 0);
+  EXPECT_THAT(console.Log(), HasSubstr("it is tried again"));
+}
+
 TEST_F(ConsoleCommandTest, AFlightIsRecordedWhenThePageAsks) {
   const std::string kept = folder_ / "kept";
   RunningCommand fly(
@@ -265,7 +288,7 @@ TEST_F(ConsoleCommandTest, FaultsAreNamed) {
   const std::string flight = Recording();
   ExpectInputError("console " + flight + " --address nowhere:1", "--address 'nowhere:1'");
   ExpectInputError("console " + flight + " --model any.yaml", "has no images in color");
-  ExpectInputError("console /dev/video0", "`kestrel fly --console` shows a camera");
+  ExpectInputError("console --hunt /dev/video0", "`kestrel fly --console` shows a camera");
   ExpectInputError("console " + folder_ / "missing", "no such file or folder");
   RunningCommand first("console " + flight + " --address 127.0.0.1:0", folder_);
   ExpectInputError(fmt::format("{}127.0.0.1:{}", fly, first.Port()), "expected a free port");

@@ -23,13 +23,17 @@ constexpr std::array kCommands = {ConsoleCommandKind::kRecord,
                                   ConsoleCommandKind::kCalibrateCancel,
                                   ConsoleCommandKind::kCalibrateSave,
                                   ConsoleCommandKind::kCompare,
-                                  ConsoleCommandKind::kOpen};
+                                  ConsoleCommandKind::kOpen,
+                                  ConsoleCommandKind::kLens,
+                                  ConsoleCommandKind::kLensStop,
+                                  ConsoleCommandKind::kLensSave};
 // A list in an object. Deeper text would use up the parser's stack.
 constexpr int kMaxDepth = 2;
 // True for the commands with a list of settings.
 bool HasSettings(ConsoleCommandKind kind) {
   return kind == ConsoleCommandKind::kDetect || kind == ConsoleCommandKind::kCalibrate ||
-         kind == ConsoleCommandKind::kCompare;
+         kind == ConsoleCommandKind::kCompare || kind == ConsoleCommandKind::kLens ||
+         kind == ConsoleCommandKind::kLensSave;
 }
 constexpr std::size_t kMaxSettings = 32, kMaxSettingBytes = 128;
 
@@ -115,6 +119,12 @@ const char* ToString(ConsoleCommandKind kind) {
       return "compare";
     case ConsoleCommandKind::kOpen:
       return "open";
+    case ConsoleCommandKind::kLens:
+      return "lens";
+    case ConsoleCommandKind::kLensStop:
+      return "lens-stop";
+    case ConsoleCommandKind::kLensSave:
+      return "lens-save";
   }
   return "";
 }

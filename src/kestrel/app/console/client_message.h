@@ -40,9 +40,12 @@ enum class ConsoleCommandKind {
   kCalibrateSave,    // save its result
   kCompare,          // compare the two variants of a study with these numbers
   kOpen,             // value: number of the row of a study's table to replay, from 0
+  kLens,             // calibrate the lens of a live camera by a board and a distortion model
+  kLensStop,         // stop that
+  kLensSave,         // save its result: a name, and "replace" to replace a file
 };
 // Returns "record", "snapshot", "play", "seek", "step", "detect", "cancel", "calibrate",
-// "calibrate-cancel", "calibrate-save", "compare" or "open".
+// "calibrate-cancel", "calibrate-save", "compare", "open", "lens", "lens-stop" or "lens-save".
 const char* ToString(ConsoleCommandKind kind);
 struct ConsoleCommand {
   ConsoleCommandKind kind = ConsoleCommandKind::kSnapshot;

@@ -8,6 +8,7 @@
 
 #include "kestrel/app/console/calibration_json.h"
 #include "kestrel/app/console/color_json.h"
+#include "kestrel/app/console/lens_json.h"
 #include "kestrel/app/console/study_json.h"
 
 namespace kestrel {
