@@ -59,7 +59,7 @@ function render({ place, distance, tilt }) {
 
 /** Writes the frames to a file; returns the pipeline that plays it as a camera would. */
 export function writeChessboardVideo(path) {
-  const still = 12; // frames
+  const still = 10; // frames
   const file = openSync(path, "w");
   for (const pose of poses()) {
     const frame = render(pose);

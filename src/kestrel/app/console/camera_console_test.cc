@@ -27,7 +27,7 @@ class PlayedCamera : public LiveSource {
   explicit PlayedCamera(const std::vector<LensImage>* images) : images_(images) {}
 
   std::optional<Event> Next(Duration) override {
-    constexpr int kFrames = 6;
+    constexpr int kFrames = 40;
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
     if (is_gone) return std::nullopt;
     Frame frame;
