@@ -72,7 +72,7 @@ class CalibrationPageTest : public testing::Test {
   }
 
   int port() const {
-    const std::string url = console_->url();
+    const std::string url = console_->urls().front();
     return std::stoi(url.substr(url.rfind(':') + 1));
   }
   static nlohmann::json Next(TestSocket* socket, const std::string& state) {

@@ -40,7 +40,7 @@ class StudyConsoleTest : public testing::Test {
     thread_.join();
   }
   int port() const {
-    const std::string url = console_->url();
+    const std::string url = console_->urls().front();
     return std::stoi(url.substr(url.rfind(':') + 1));
   }
 
