@@ -21,7 +21,7 @@ FlySource::FlySource(const KestrelOptions& options, DdsSource::OpenNode open_nod
 
 void FlySource::Open(const RecordingChoice& recording, bool is_looped) {
   const std::string& source = recording.sources.front();
-  if (IsCamera(source) && recording.camera.empty()) {
+  if (IsCamera(source) && recording.camera.empty() && !recording.may_assume_lens) {
     throw InputError(fmt::format(
         "{}: no calibration: nothing can be measured, and no autopilot be told anything, without "
         "one: --camera FILE (kestrel calibrate lens makes one)",
