@@ -9,9 +9,9 @@ namespace kestrel {
 
 // Adjustments of a camera; nothing where its driver does not report them.
 struct CameraAutomatics {
-  std::optional<bool> white_balance;  // is automatic
-  std::optional<bool> exposure;       // is automatic
-  std::optional<double> exposure_s;   // length of the exposure
+  std::optional<bool> white_balance;      // is automatic
+  std::optional<bool> exposure;           // is automatic
+  std::optional<double> exposure_s = {};  // length of the exposure
 };
 
 // Reads them from a V4L2 device, as "/dev/video0". Nothing is known of another kind of device, or
