@@ -123,11 +123,11 @@ struct ComputerObservations {
   double least_disk_mb = 0;                  // room that the recorder leaves free
   double frame_mb = 0;                       // size of a frame, uncompressed
   bool is_disk_read_only = false;            // the disk of the recording
-  std::optional<double> disk_mb_per_s;       // at which it can be written
-  std::optional<double> disk_wear;           // used share of its life, by its own account; 0 to 1
+  std::optional<double> disk_mb_per_s = {};  // at which it can be written
+  std::optional<double> disk_wear = {};      // used share of its life, by its own account; 0 to 1
   bool has_low_voltage = false;              // the alarm of a Raspberry Pi's supply
-  std::optional<bool> is_time_synchronized;  // the time of day, by NTP, GNSS or another source
-  bool has_battery_clock = true;             // keeps the time of day while it is off
+  std::optional<bool> is_time_synchronized = {};  // the time of day, by NTP, GNSS or another source
+  bool has_battery_clock = true;                  // keeps the time of day while it is off
 };
 
 struct DoctorObservations {
