@@ -218,7 +218,7 @@ TEST_F(FailingSink, ABrowserVanishes) {
   FlightConsole* const console = sinks_.Add(std::make_unique<FlightConsole>(
       AnyPort(), "a flight", ViewOf(SmallCamera(), LandingPipelineOptions()),
       FlightExamination(SmallCamera(), ".", 0)));
-  const std::string url = console->url();
+  const std::string url = console->urls().front();
   const int port = std::stoi(url.substr(url.rfind(':') + 1));
   auto leaving = std::make_unique<TestSocket>(port);
   TestSocket staying(port);

@@ -56,7 +56,7 @@ class AllSinks {
   }
 
   int port() const {
-    const std::string url = console->url();
+    const std::string url = console->urls().front();
     return std::stoi(url.substr(url.rfind(':') + 1));
   }
 
