@@ -87,7 +87,8 @@ TEST_F(FlightConsoleTest, ShowsWhatTheVisionSees) {
   EXPECT_TRUE((*sources)["sources"][1]["age_ms"].is_null());
   const auto status = socket.Next("status");
   ASSERT_TRUE(status);
-  EXPECT_THAT((*status)["reason"].get<std::string>(), testing::HasSubstr("no ring"));
+  EXPECT_THAT((*status)["reason"].get<std::string>(),
+              testing::HasSubstr("no heartbeat of the autopilot"));
 }
 
 // A page that is opened later shows it as well.

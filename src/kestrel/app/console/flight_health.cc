@@ -187,7 +187,8 @@ ConsoleStatus FlightStatus(const FlightReport& report, const ConsoleStatus& visi
     status.state = "on the pattern";
     status.reason = "";
   } else if (report.autopilot && !report.autopilot->is_here) {
-    status.reason = "no heartbeat of the autopilot";
+    const std::string& waits = report.autopilot->waits;
+    status.reason = waits.empty() ? "no heartbeat of the autopilot" : waits;
   } else if (report.autopilot &&
              report.autopilot->guidance.value_or(GuidancePhase::kIdle) != GuidancePhase::kIdle) {
     status.state = fmt::format("{}, {}", ToString(*report.autopilot->guidance), vision.state);

@@ -53,10 +53,9 @@ std::string GroupOf(const std::string& path) {
 
 std::string Missing(const std::string& path) {
   const std::vector<std::string> others = Others(path);
-  return fmt::format("there is no {}: {}; is it plugged in?", path,
-                     others.empty() ? "and no other device of its kind"
-                                    : fmt::format("there {} {}", others.size() == 1 ? "is" : "are",
-                                                  fmt::join(others, ", ")));
+  return fmt::format("there is no {}, {}; is it plugged in?", path,
+                     others.empty() ? "nor another device of its kind"
+                                    : fmt::format("but {}", fmt::join(others, ", ")));
 }
 
 }  // namespace

@@ -19,8 +19,8 @@ using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 TEST(DeviceFaultTest, SaysCauseAndRemedyOfEachErrorAndKind) {
-  EXPECT_THAT(DeviceFault("/dev/video987", ENOENT), StartsWith("there is no /dev/video987: "));
-  EXPECT_THAT(DeviceFault("/dev/ttyTHS9", ENOENT), StartsWith("there is no /dev/ttyTHS9: "));
+  EXPECT_THAT(DeviceFault("/dev/video987", ENOENT), StartsWith("there is no /dev/video987, "));
+  EXPECT_THAT(DeviceFault("/dev/ttyTHS9", ENOENT), StartsWith("there is no /dev/ttyTHS9, "));
   EXPECT_THAT(DeviceFault("/dev/video987", EACCES),
               AllOf(StartsWith("/dev/video987: no permission"), HasSubstr("-aG video $USER")));
   EXPECT_THAT(DeviceFault("/dev/ttyAMA9", EACCES), HasSubstr("-aG dialout $USER"));

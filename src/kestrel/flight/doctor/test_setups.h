@@ -129,6 +129,7 @@ inline DoctorObservations GoodSetup(AutopilotKind kind) {
   all.link = GoodLink(kind);
   all.parameters = DefaultParameters(kind);
   all.computer = {4, 1.5, 55, 0, 20'000, 200, 0.36};
+  all.computer.is_time_synchronized = true;
   all.use.record = "flight";
   return all;
 }

@@ -79,7 +79,7 @@ TEST_F(LandingWatchTest, LandedBesideIt) {
   ComeDown(10.8, 1.5);
   Disarm();
   ASSERT_TRUE(watch_.end());
-  EXPECT_EQ(InWords(*watch_.end()), "landed 10.8 m beside the pattern");
+  EXPECT_EQ(InWords(*watch_.end()), "landed 10.8 m beside the pattern (estimated)");
 }
 
 // The pattern drives on below a UAV that stands beside it, and is not seen any more.
@@ -146,7 +146,7 @@ TEST_F(LandingWatchTest, GuidanceThatGaveUpIsTheReasonUnlessItStandsOnThePattern
   ComeDown(3);
   Disarm();
   EXPECT_EQ(InWords(*watch_.end()),
-            "guidance gave up (no new images); down 3.0 m from the pattern");
+            "guidance gave up (no new images); down 3.0 m from the pattern (estimated)");
   watch_ = LandingWatch(kRadius_m);
   ComeDown(0.1);
   Disarm();

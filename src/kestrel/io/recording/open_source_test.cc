@@ -38,8 +38,8 @@ TEST(OpenSource, SaysWhatIsWrong) {
   EXPECT_THAT(ErrorOf({image, text}), HasSubstr("notes.txt: is no image"));
   EXPECT_THAT(ErrorOf({image, folder.path()}), HasSubstr(folder.path() + ": is no image"));
   EXPECT_THAT(ErrorOf({folder.Write("v.mp4", "no video")}), HasSubstr("v.mp4: cannot be opened"));
-  EXPECT_THAT(ErrorOf({"/dev/video9999"}), HasSubstr("/dev/video9999: no such camera"));
-  EXPECT_THAT(ErrorOf({"/dev/videos"}), HasSubstr("no such camera"));
+  EXPECT_THAT(ErrorOf({"/dev/video9999"}), HasSubstr("there is no /dev/video9999, "));
+  EXPECT_THAT(ErrorOf({"/dev/videos"}), HasSubstr("there is no /dev/videos, "));
   EXPECT_THAT(ErrorOf({"nosuchelement ! appsink"}), HasSubstr("GStreamer: no element"));
 }
 

@@ -13,7 +13,7 @@ TEST(VideoDeviceTest, ExplainsTheDeviceThatACameraOrAPipelineNames) {
   for (const char* const camera : {"/dev/video987", "v4l2src device=/dev/video987 ! videoconvert",
                                    "v4l2src device=\"/dev/video987\" io-mode=2 ! video/x-raw",
                                    "v4l2src device=/dev/video987"}) {
-    EXPECT_THAT(CameraFault(camera), StartsWith("there is no /dev/video987: ")) << camera;
+    EXPECT_THAT(CameraFault(camera), StartsWith("there is no /dev/video987, ")) << camera;
   }
   EXPECT_EQ(CameraFault("/dev/null"), "/dev/null: is no video device");
 }

@@ -27,7 +27,8 @@ class VideoSource : public FrameSource {
         rate_hz_(RateOf(decoder_->rate_hz())) {}
 
   std::optional<std::size_t> frame_count() const override {
-    if (decoder_->frame_count() == 0) return std::nullopt;
+    const bool is_file = container_.file_bytes > 0;
+    if (!is_file || decoder_->frame_count() == 0) return std::nullopt;
     return decoder_->frame_count();
   }
   double rate_hz() const override { return rate_hz_; }
