@@ -191,6 +191,7 @@ TEST_F(ConsoleCommandTest, ColoursAreTaughtInFlightAndAfterIt) {
   const nlohmann::json state = socket.Await("colors");
   EXPECT_EQ(state["frames"], 1);
   EXPECT_EQ(state["strokes"], 1) << "goes on with the marks of the flight";
+  socket.Await("timeline");  // before it, Ctrl-C would end the detection, not the page
   EXPECT_EQ(console.End(), 0) << console.Log();
 }
 
@@ -281,7 +282,6 @@ TEST_F(ConsoleCommandTest, AResultIsShownOverItsRecording) {
 TEST_F(ConsoleCommandTest, FaultsAreNamed) {
   const std::string fly = "fly sim:standing --autopilot sim:px4 --console ";
   ExpectInputError(fly + "8080", "--console '8080': expected ADDRESS:PORT");
-  ExpectInputError(fly + "0.0.0.0:8080", "token is empty, expected one");
   ExpectInputError(fly + "192.0.2.1:8080 --set console.token=0123456789abcdef",
                    "cannot listen at 192.0.2.1 port 8080");
   ExpectInputError(fly + "--set console.token=short", "console.token is not 16 to 128");

@@ -111,7 +111,7 @@ std::string LensGuide::Missing() const {
 }
 
 std::string LensGuide::Advice() const {
-  const std::string missing = Missing();
+  std::string missing = Missing();
   if (sight_ == Sight::kNone) {
     const std::string show = "the board is not found: show it to the camera";
     return missing.empty() || views_.empty() ? show : show + ", then " + missing;
