@@ -335,7 +335,7 @@ TEST_F(KestrelCommandTest, VideoThatEndsEarlyGivesItsFramesAndSaysSo) {
   TestFolder::CutOff(video, 0.5);
   const Outcome outcome = Run("land " + video + camera);
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("flight.avi: the video ends after"));
+  EXPECT_THAT(outcome.err, HasSubstr("flight.avi: the video is cut off after"));
   EXPECT_GT(Lines(outcome.out), 5);
 }
 

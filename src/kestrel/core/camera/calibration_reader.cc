@@ -283,7 +283,7 @@ CameraCalibration ReadCamodocalForm(const Entry& camera, const Entry& type) {
     for (const char* group : {"projection_parameters", "distortion_parameters"}) {
       const std::optional<Entry> parameters = camera.Find({group});
       if (!parameters) continue;
-      if (const std::optional<Entry> entry = parameters->Find({name})) return entry;
+      if (std::optional<Entry> entry = parameters->Find({name})) return entry;
     }
     return std::nullopt;
   });
