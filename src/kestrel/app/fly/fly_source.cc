@@ -23,7 +23,7 @@ void FlySource::Open(const RecordingChoice& recording, bool is_looped) {
   const std::string& source = recording.sources.front();
   if (IsCamera(source) && recording.camera.empty() && !recording.may_assume_lens) {
     throw InputError(fmt::format(
-        "{}: no calibration: nothing can be measured, and no autopilot be told anything, without "
+        "{}: no calibration: nothing can be measured, and nothing sent to an autopilot, without "
         "one: --camera FILE (kestrel calibrate lens makes one)",
         source));
   }
