@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/app/cli/fly_command.h"
 
+#include <chrono>
+#include <condition_variable>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <stop_token>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -70,8 +75,7 @@ class Flight {
         options_(arguments.ReadOptions()),
         source_(options_, arguments_.source.dds.NodeOpener(options_.dds)) {
     const PixelFormat format = arguments.hunt ? PixelFormat::kBgr : PixelFormat::kGray;
-    SayThatItWaits();
-    source_.Open(arguments_.source.Recording(format), arguments.loop);
+    OpenSource(format);
     RequireAutopilot();
     log_ = sinks_.Add(std::make_unique<FlightLog>());
     OpenConsole();
@@ -127,9 +131,17 @@ class Flight {
   }
 
   // A camera that is slow, or delivers nothing, must not look like a program that hangs.
-  void SayThatItWaits() const {
+  void OpenSource(PixelFormat format) {
     const std::string& source = arguments_.source.sources.front();
-    if (IsCamera(source)) Tell("waits for the camera: the first image of " + source + "\n");
+    const std::jthread notice([&source](const std::stop_token& is_open) {
+      constexpr Duration kQuiet = std::chrono::seconds(1);
+      std::mutex mutex;
+      std::unique_lock lock(mutex);
+      std::condition_variable_any().wait_for(lock, is_open, kQuiet, [] { return false; });
+      if (is_open.stop_requested() || !IsCamera(source)) return;
+      Tell("waits for the camera: the first image of " + source + "\n");
+    });
+    source_.Open(arguments_.source.Recording(format), arguments_.loop);
   }
 
   void Say(const std::string& text, EventLevel level = EventLevel::kInfo) {
