@@ -64,7 +64,7 @@ TEST_F(ConsoleCommandTest, ACameraThatIsMissingIsSaidAndTriedAgain) {
   TestSocket socket(console.Port());
   nlohmann::json status = socket.Await("status");
   while (status["state"] != "no picture") status = socket.Await("status");
-  EXPECT_THAT(status["reason"].get<std::string>(), HasSubstr("/dev/video63: "));
+  EXPECT_THAT(status["reason"].get<std::string>(), HasSubstr("/dev/video63, "));
   EXPECT_EQ(console.End(), 0);
   EXPECT_THAT(console.Log(), HasSubstr("it is tried again"));
 }
