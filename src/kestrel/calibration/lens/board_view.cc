@@ -140,10 +140,36 @@ std::vector<BoardCorner> Paired(const std::vector<Eigen::Vector2d>& on_board,
   return corners;
 }
 
-std::vector<BoardCorner> FindChessboard(const cv::Mat& image, const LensBoard& board) {
+// Distance of neighbouring corners where they are closest, px.
+double LeastSpacing(const std::vector<cv::Point2f>& corners, int columns) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    if (i % columns != 0) least = std::min(least, cv::norm(corners[i] - corners[i - 1]));
+  }
+  return least;
+}
+
+// The quick finder of OpenCV (1 to 20 ms), and where it fails, as in a bent or blurred image, the
+// sector based one in a small image: it takes 0.1 s there, in an image of 1280 x 960 up to 6 s.
+std::vector<cv::Point2f> FindSquareCorners(const cv::Mat& image, const cv::Size& corners) {
   std::vector<cv::Point2f> pixels;
-  constexpr int kFlags = cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_ACCURACY;
-  if (!cv::findChessboardCornersSB(image, {board.columns, board.rows}, pixels, kFlags)) return {};
+  constexpr int kQuick =
+      cv::CALIB_CB_FAST_CHECK | cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE;
+  if (cv::findChessboardCorners(image, corners, pixels, kQuick)) return pixels;
+  constexpr double kWidth = 640;
+  const double scale = std::max(1.0, image.cols / kWidth);
+  cv::Mat small = image;
+  if (scale > 1) cv::resize(image, small, {}, 1 / scale, 1 / scale, cv::INTER_AREA);
+  if (!cv::findChessboardCornersSB(small, corners, pixels, cv::CALIB_CB_NORMALIZE_IMAGE)) return {};
+  const cv::Point2f middle(0.5F, 0.5F);  // of a pixel
+  for (cv::Point2f& pixel : pixels) pixel = (pixel + middle) * scale - middle;
+  return pixels;
+}
+
+std::vector<BoardCorner> FindChessboard(const cv::Mat& image, const LensBoard& board) {
+  std::vector<cv::Point2f> pixels = FindSquareCorners(image, {board.columns, board.rows});
+  constexpr double kReach = 0.4;  // of a square
+  if (!pixels.empty()) Refine(image, kReach * LeastSpacing(pixels, board.columns), &pixels);
   return Paired(board.Corners(), pixels);
 }
 

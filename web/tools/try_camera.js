@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Not among the tries of all_tries.js: the guide takes no view in the time that this try gives it.
 // Comes with a camera and nothing else, as a new user does: its picture, a snapshot, and the lens
 // calibrated by a chessboard that is shown to it, until it is saved; a camera that is not there:
 //
-//   node tools/camera_try.js KESTREL FOLDER
+//   node tools/try_camera.js KESTREL FOLDER
 import { existsSync, readFileSync, readdirSync } from "node:fs";
 import { join } from "node:path";
 import { tryAll } from "./browser.js";
