@@ -230,7 +230,8 @@ export function withMessage(state: State, message: ServerMessage): State {
 export function isFresh(state: State, sources: SourceName[]): boolean {
   if (!state.hello?.live) return true;
   const { isSilent, fresh } = state.staleness;
-  return !isSilent && !state.status?.over && sources.every((source) => fresh.includes(source));
+  const isHeard = state.connection === "open" && !isSilent;
+  return isHeard && !state.status?.over && sources.every((source) => fresh.includes(source));
 }
 
 /** A study begins with its table; a page that comes back to it stays where it was. */

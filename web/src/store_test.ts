@@ -51,13 +51,14 @@ describe("store", () => {
 
   test("after a reconnection nothing is what is now until fresh data come", () => {
     const status = { kind: "status", state: "tracking", reason: "", recording: false, over: false, replay: "" } as const;
-    const state = withMessage(withMessage(initialState(), hello), status);
+    const state = withMessage(withMessage({ ...initialState(), connection: "open" }, hello), status);
     const settled = { ...state, staleness: stalenessOf(state.freshness, true, performance.now()) };
     expect(isFresh(settled, ["frames"])).toBe(false);
     withMessage(state, { kind: "sources", time: "5000000000", sources: [{ name: "frames", age_ms: 20 }] });
     const fresh = { ...state, staleness: stalenessOf(state.freshness, true, performance.now()) };
     expect(isFresh(fresh, ["frames"])).toBe(true);
     expect(isFresh(fresh, ["frames", "pose"])).toBe(false);
+    expect(isFresh({ ...fresh, connection: "lost" }, ["frames"])).toBe(false);
     expect(isFresh({ ...fresh, status: { ...status, over: true } }, ["frames"])).toBe(false);
     expect(isFresh(withMessage(fresh, hello), ["frames"])).toBe(false);
   });

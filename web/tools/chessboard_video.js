@@ -7,18 +7,18 @@ export const lens = { width: 480, height: 360, focal: 400, rate: 20 };
 /** Inner corners, and the side of a square in m. */
 export const board = { columns: 9, rows: 6, side: 0.025 };
 
-/** How the board is held, one after the other: its middle in the image, distance, tilts (rad). */
+/** How the board is held, one after the other and always whole in view: its middle in the image, distance, tilts (rad). */
 function poses() {
-  const places = [
-    [0.5, 0.5], [0.28, 0.27], [0.72, 0.27], [0.28, 0.73], [0.72, 0.73], [0.5, 0.26], [0.5, 0.74], [0.25, 0.5], [0.75, 0.5],
-  ];
   const tilts = [[0, 0], [0.45, 0], [-0.45, 0], [0, 0.5], [0, -0.5], [0.3, 0.35], [-0.3, -0.35]];
-  const distances = [0.3, 0.34, 0.42, 0.6];
-  return Array.from({ length: 60 }, (_, i) => ({
-    place: places[i % places.length],
-    distance: distances[(i * 3 + Math.floor(i / 9)) % distances.length],
-    tilt: tilts[(i * 2 + Math.floor(i / 7)) % tilts.length],
-  }));
+  const near = tilts.map((tilt) => ({ place: [0.5, 0.5], distance: 0.28, tilt }));
+  const [left, middle, right, top, bottom] = [0.2, 0.5, 0.8, 0.22, 0.78];
+  const places = [
+    [left, top], [middle, top], [right, top], [left, 0.5], [right, 0.5], [left, bottom], [middle, bottom], [right, bottom],
+  ];
+  const far = [0.6, 0.62, 0.66].flatMap((distance, round) =>
+    places.map((place, i) => ({ place, distance, tilt: tilts[(i + 3 * round) % tilts.length] })),
+  );
+  return [...near, ...far];
 }
 
 /** Gray value of the board's plane at x, y (m) from its middle. */
@@ -59,7 +59,7 @@ function render({ place, distance, tilt }) {
 
 /** Writes the frames to a file; returns the pipeline that plays it as a camera would. */
 export function writeChessboardVideo(path) {
-  const still = 10; // frames
+  const still = 20; // frames
   const file = openSync(path, "w");
   for (const pose of poses()) {
     const frame = render(pose);

@@ -90,9 +90,11 @@ async function loseConnection(t) {
   await t.waitForState(page, /^No data for \d+ s$/);
   await page.getByText("Connection lost, trying again").waitFor();
   await t.expectDashes(page, "lost");
-  await t.takePictures(page, "console_lost");
   await relay.open();
   await waitForNextPicture(page, t);
+  relay.cut();
+  await t.waitForState(page, /^No data for \d+ s$/);
+  await t.takePictures(page, "console_lost");
 }
 
 async function restartProgram(t) {
