@@ -91,28 +91,39 @@ const DigitModel& DefaultDigitModel() {
   return model;
 }
 
-DigitClassifier::DigitClassifier(const DigitModel& model) : set_gain_(), empty_() {
+DigitClassifier::DigitClassifier(const DigitModel& model) {
+  DigitFigure mean{};
   for (int figure = 0; figure < kFigureCount; ++figure) {
-    for (int i = 0; i < kDigitSide * kDigitSide; ++i) {
-      const float set = std::log(model[figure][i]);
-      const float not_set = std::log(1 - model[figure][i]);
-      set_gain_[figure][i] = set - not_set;
-      empty_[figure] += not_set;
-    }
+    figures_[figure] = LogOf(model[figure]);
+    for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += model[figure][i] / kFigureCount;
   }
+  mean_ = LogOf(mean);
+}
+
+DigitClassifier::LogFigure DigitClassifier::LogOf(const DigitFigure& figure) {
+  LogFigure log{};
+  for (std::size_t i = 0; i < figure.size(); ++i) {
+    const float set = std::log(figure[i]);
+    const float not_set = std::log(1 - figure[i]);
+    log.set_gain[i] = set - not_set;
+    log.empty += not_set;
+  }
+  return log;
 }
 
 int DigitClassifier::LikeliestFigure(const DigitImage& image, int digit) const {
   int best = digit * kStyleCount;
   for (int figure = best + 1; figure < (digit + 1) * kStyleCount; ++figure) {
-    if (LogLikelihood(image, figure) > LogLikelihood(image, best)) best = figure;
+    if (LogLikelihood(image, figures_[figure]) > LogLikelihood(image, figures_[best])) {
+      best = figure;
+    }
   }
   return best;
 }
 
-double DigitClassifier::LogLikelihood(const DigitImage& image, int figure) const {
-  double sum = empty_[figure];
-  for (std::size_t i = 0; i < image.size(); ++i) sum += image[i] * set_gain_[figure][i];
+double DigitClassifier::LogLikelihood(const DigitImage& image, const LogFigure& figure) {
+  double sum = figure.empty;
+  for (std::size_t i = 0; i < image.size(); ++i) sum += image[i] * figure.set_gain[i];
   return sum;
 }
 
@@ -121,19 +132,23 @@ DigitLikelihoods DigitClassifier::Classify(const DigitViews& views) const {
   constexpr double kIndependentShare = 0.1;
   DigitLikelihoods log_likelihoods;
   log_likelihoods.fill(-std::numeric_limits<double>::infinity());
+  double none = -std::numeric_limits<double>::infinity();  // the same for what is no digit
   for (const DigitImage& view : views) {
+    none = std::max(none, kIndependentShare * LogLikelihood(view, mean_));
     for (int figure = 0; figure < kFigureCount; ++figure) {
       double& best = log_likelihoods[figure / kStyleCount];
-      best = std::max(best, kIndependentShare * LogLikelihood(view, figure));
+      best = std::max(best, kIndependentShare * LogLikelihood(view, figures_[figure]));
     }
   }
   // A few pixels that differ between 6 and 9 differ by chance. In a map such chance would
   // accumulate.
   log_likelihoods[6] = log_likelihoods[9] = std::max(log_likelihoods[6], log_likelihoods[9]);
-  const double best = *std::max_element(log_likelihoods.begin(), log_likelihoods.end());
-  double total = 0;
+  const double best =
+      std::max(none, *std::max_element(log_likelihoods.begin(), log_likelihoods.end()));
+  none = std::exp(none - best);
+  double total = none;
   for (double& x : log_likelihoods) total += x = std::exp(x - best);
-  for (double& x : log_likelihoods) x /= total;
+  for (double& x : log_likelihoods) x = (x + none / kDigitCount) / total;
   return log_likelihoods;
 }
 

@@ -27,7 +27,8 @@ std::string PrintDigitModel(const DigitModel& model);
 const DigitModel& DefaultDigitModel();
 
 // Pixel-wise naive Bayes over the four orientations (paper, section 3.6). A digit is as likely as
-// the likeliest of its figures. Immutable and thread-safe.
+// the likeliest of its figures. What is no digit is as likely as the mean of all figures makes it;
+// by its probability the result is uniform, as after no digit at all. Immutable and thread-safe.
 class DigitClassifier {
  public:
   explicit DigitClassifier(const DigitModel& model);
@@ -38,12 +39,16 @@ class DigitClassifier {
   int LikeliestFigure(const DigitImage& image, int digit) const;
 
  private:
-  double LogLikelihood(const DigitImage& image, int figure) const;
+  // Logarithms of a figure's shares.
+  struct LogFigure {
+    DigitFigure set_gain;  // of the probability that a pixel is set, minus that of the opposite
+    double empty = 0;      // of the probability of an image without set pixels
+  };
+  static LogFigure LogOf(const DigitFigure& figure);
+  static double LogLikelihood(const DigitImage& image, const LogFigure& figure);
 
-  // Logarithm of the probability that a pixel is set minus that of the opposite, and the logarithm
-  // of the probability of an image without set pixels.
-  DigitModel set_gain_;
-  std::array<double, kFigureCount> empty_;
+  std::array<LogFigure, kFigureCount> figures_;
+  LogFigure mean_;
 };
 
 // Learns the figures from labelled images. The images of a digit are divided among its figures such

@@ -2,6 +2,8 @@
 // From a painted cuboid to its digit: tests of cuboid_face, digit_image, digit_classifier and otsu.
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -103,6 +105,39 @@ TEST(Digits, AreReadInEveryOrientation) {
       // A 6 upside down is a 9.
       EXPECT_EQ(found == 9 ? 6 : found, digit == 9 ? 6 : digit) << quarter;
     }
+  }
+}
+
+// Probability of the likeliest digit on a cuboid with this text; nothing where no figure is cut
+// out.
+std::optional<LikelyDigit> ReadText(const std::string& text, double angle) {
+  static const DigitClassifier classifier(DefaultDigitModel());
+  const CuboidView view = DrawCuboid(text, angle);
+  const auto image = CutOutDigit(view.image, view.corners);
+  if (!image) return std::nullopt;
+  return LikeliestDigit(classifier.Classify(*image));
+}
+
+// An E and an N that lie on their side look like a 3 and a 2.
+TEST(Digits, OtherFiguresAreRarelyTakenForDigits) {
+  int cut_out = 0, taken = 0;
+  for (const char* text : {"A", "E", "F", "H", "K", "M", "N", "P", "R", "T", "U",
+                           "V", "W", "X", "Y", "#", "+", "=", "&", "%", "*", "m"}) {
+    const auto likely = ReadText(text, 0.2);
+    cut_out += likely.has_value();
+    taken += likely && likely->probability > 0.9;
+  }
+  EXPECT_GE(cut_out, 20);
+  EXPECT_LE(taken, 2);
+}
+
+TEST(Digits, DigitsStayLikely) {
+  for (int digit = 0; digit < kDigitCount; ++digit) {
+    const bool has_twin = digit == 6 || digit == 9;  // each is at most half as likely
+    const auto likely = ReadText(std::to_string(digit), 0.7);
+    ASSERT_TRUE(likely) << digit;
+    EXPECT_EQ(likely->digit, digit == 9 ? 6 : digit);
+    EXPECT_GT(likely->probability, has_twin ? 0.45 : 0.7) << digit;
   }
 }
 
