@@ -281,12 +281,12 @@ std::vector<std::string> TagTargetOptions::Validate() const {
   try {
     violations = Board().Validate();
     if (board.empty()) return violations;
-    for (std::string& violation : violations) violation = board + ": " + violation;
+    for (std::string& violation : violations) violation.insert(0, board + ": ");
   } catch (const InputError& error) {
     violations = {error.what()};
   }
   // The key, apart from the path that follows it.
-  for (std::string& violation : violations) violation = "board: " + violation;
+  for (std::string& violation : violations) violation.insert(0, "board: ");
   return violations;
 }
 
