@@ -132,6 +132,7 @@ TEST_F(KestrelCommandTest, WrongUsageIsNamed) {
         std::pair("land a.png --zzz", "there is no option '--zzz'; kestrel land --help"),
         std::pair("--output x land a.png", "--output has to stand behind the command"),
         std::pair("land a.png --altitude 3 --altitude 4", "--altitude is given 2 times"),
+        std::pair("land a.png --altitude 1500", "--altitude: it is 1500, expected metres: 1.5?"),
         std::pair("land a.png --output", "--output: expected DIR"),
         std::pair("simulate landing --seed x", "--seed: got 'x', expected a number"),
         std::pair("land a.png --output x --annotate=Video",
