@@ -165,6 +165,16 @@ TEST_F(KestrelCommandTest, LandsOnARecording) {
   }
 }
 
+TEST_F(KestrelCommandTest, UnusedKeysOfTheRecordingsCalibrationAreNamed) {
+  const std::string recording = WriteRecording();
+  folder_.Write("flight/mav0/cam0/sensor.yaml", std::string(kSensor) + "lens_shift: 3\n");
+  const std::string err = Succeed("land " + recording).err;
+  const std::string warning = "sensor.yaml: not used, as not known here: 'lens_shift'";
+  const std::size_t first = err.find(warning);
+  EXPECT_NE(first, std::string::npos) << err;
+  EXPECT_EQ(err.find(warning, first + 1), std::string::npos) << err;
+}
+
 TEST_F(KestrelCommandTest, SaysWhereThePatternIsInTheWorld) {
   const Outcome outcome = Succeed("land --still " + WriteRecording());
   std::string row = outcome.out.substr(outcome.out.find('\n') + 1);
