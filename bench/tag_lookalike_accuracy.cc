@@ -28,14 +28,6 @@ namespace {
 constexpr int kTagId = 7;
 constexpr double kTagSize = 0.5;  // m
 
-TagBoard BoardOf(const std::string& family, int id) {
-  BoardTag tag;
-  tag.family = family;
-  tag.id = id;
-  tag.size_m = kTagSize;
-  return {{tag}};
-}
-
 TagCell Other(TagCell cell) {
   if (cell == TagCell::kNone) return cell;
   return cell == TagCell::kWhite ? TagCell::kBlack : TagCell::kWhite;
@@ -45,20 +37,20 @@ TagCell Other(TagCell cell) {
 class Lookalikes {
  public:
   explicit Lookalikes(const std::string& family)
-      : family_(family), board_(BoardOf(family, kTagId)), model_(board_) {}
+      : family_(family), board_(BoardOfTag(family, kTagId, kTagSize)), model_(board_) {}
 
   const TagBoard& board() const { return board_; }
 
   PrintedTag OtherId(Random* random) const {
     int id = random->Integer(0, family_.id_count() - 2);
     if (id >= kTagId) ++id;
-    return BoardOf(family_.name(), id).Printed().front();
+    return BoardOfTag(family_.name(), id, kTagSize).Printed().front();
   }
   static PrintedTag OtherFamily(Random* random) {
     const std::array<const char*, 6> kOthers{"tag16h5",        "tag25h9",       "tagStandard41h12",
                                              "tagCustom48h12", "aruco_5x5_250", "aruco_6x6_250"};
     const std::string family = kOthers[random->Integer(0, static_cast<int>(kOthers.size()) - 1)];
-    return BoardOf(family, random->Integer(0, 9)).Printed().front();
+    return BoardOfTag(family, random->Integer(0, 9), kTagSize).Printed().front();
   }
   // Half of the bits by which the family's tags differ, so that another tag is as near, and up to
   // four more.

@@ -47,14 +47,6 @@ CameraModel CameraOf(cv::Size size) {
                                       .distortion = {}});
 }
 
-TagBoard BoardOf(const std::string& family, int id) {
-  BoardTag tag;
-  tag.family = family;
-  tag.id = id;
-  tag.size_m = kTagSize;
-  return {{tag}};
-}
-
 // --- The ids ---
 
 // The data bits of all ids of a family in four turns, to compare with those of a quad.
@@ -68,7 +60,7 @@ struct Dictionary {
 
   explicit Dictionary(const std::string& name) : family(name) {
     const TagFamily of(name);
-    const TagModel model = BoardModel(BoardOf(name, 0)).tags.front();
+    const TagModel model = BoardModel(BoardOfTag(name, 0, kTagSize)).tags.front();
     layout = model.grid();
     dark_inside = model.dark_inside;
     for (std::size_t i = 0; i < layout.cells.size(); ++i) {
@@ -109,7 +101,7 @@ struct Dictionary {
   }
 };
 
-// Of ArUco's dictionaries of one size the largest has the ids of all.
+// Returns each family once: the largest of ArUco's dictionaries of a size has the ids of all.
 std::vector<Dictionary> Dictionaries() {
   std::vector<Dictionary> all;
   for (const std::string& name : TagFamily::Names()) {
@@ -152,7 +144,7 @@ class AnyTagFinder {
   // Returns the detection of a tag, however unlikely.
   std::optional<LandingDetection> Find(const cv::Mat& image, const std::string& family,
                                        int id) const {
-    const BoardModel board(BoardOf(family, id));
+    const BoardModel board(BoardOfTag(family, id, kTagSize));
     const BoardAlignment alignment(camera_, board);
     TagSearchBuffers buffers;
     buffers.board.samples.Reserve(board.most_cells);
@@ -231,8 +223,8 @@ FamilyCounts CountRealTag(const CameraModel& camera, const TagRenderer& renderer
   taken.blur_px = random.Uniform(0.3, 0.9);
   taken.contrast = random.Uniform(0.4, 1);
   const RigidTransform pose = RandomBoardBelow(random.Uniform(1, 8), 0.3, 0.3, &random);
-  const cv::Mat image =
-      renderer.Render(BoardOf(dictionary.family, id).Printed(), pose, taken, random.Bits());
+  const cv::Mat image = renderer.Render(BoardOfTag(dictionary.family, id, kTagSize).Printed(), pose,
+                                        taken, random.Bits());
   FamilyCounts counts;
   Counts& of = counts[dictionary.family];
   of.searched = 1;

@@ -25,6 +25,7 @@
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/io/recording/image_file.h"
 #include "kestrel/vision/tags/tag_board_detector.h"
+#include "kestrel/vision/tags/test_tag_images.h"
 #include "report_main.h"
 
 namespace kestrel {
@@ -172,7 +173,7 @@ double NearestPx(const Photograph& photograph, int id, const TagCorners& corners
 class TagFinder {
  public:
   TagFinder(const CameraModel& camera, const std::string& family, int id)
-      : camera_(camera), detector_(camera, BoardOf(family, id), {}) {}
+      : camera_(camera), detector_(camera, BoardOfTag(family, id, 2 * kHalf), {}) {}
 
   std::optional<TagCorners> Find(const cv::Mat& image) const {
     const auto workspace = detector_.MakeWorkspace();
@@ -189,14 +190,6 @@ class TagFinder {
 
  private:
   static constexpr double kHalf = 0.1;  // m; without a scale any size serves
-
-  static TagBoard BoardOf(const std::string& family, int id) {
-    BoardTag tag;
-    tag.family = family;
-    tag.id = id;
-    tag.size_m = 2 * kHalf;
-    return {{tag}};
-  }
 
   CameraModel camera_;
   TagBoardDetector detector_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a user can do, by button or key.
+// Actions of the user, by button or key.
 import { wholeOr, withFirst, withLast, type FrameRange } from "./clip";
 import { connection } from "./connection";
 import type { CommandName, Layer } from "./protocol";

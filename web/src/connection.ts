@@ -28,7 +28,7 @@ export class Connection {
   private socket: WebSocket | null = null;
   private retryMs = firstRetryMs;
   private openedAt = 0;
-  /** What the server was asked for; null: no images. */
+  /** The images that the server was asked for; null: none. */
   private imageWish: ImageWish | null = null;
 
   open(): void {

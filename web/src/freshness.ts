@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How old the data of a flight are. Nothing old is shown as what is now.
+// Ages of the data of a flight. Nothing old is shown as what is now.
 import type { Sources, SourceName } from "./protocol";
 
 /** Older than this, data of a flight are not what is now, ms. */
@@ -23,7 +23,7 @@ export class Freshness {
     this.heardAt = now;
   }
 
-  /** What a message tells that was long on its way is old: its time says when it was sent. */
+  /** Takes the ages in a message; they grow by the time that it was on its way. */
   tell(message: Sources, now: number): void {
     const sent = Number(BigInt(message.time) / 1000n) / 1000;
     const last = this.offset;
@@ -40,7 +40,7 @@ export class Freshness {
     return this.heardAt === null ? null : now - this.heardAt;
   }
 
-  /** Of the newest data of a source; null where it has given none yet, or is not known. */
+  /** Age of the newest data of a source; null where it has given none yet, or is not known. */
   age(source: SourceName, now: number): number | null {
     const madeAt = this.madeAt.get(source) ?? null;
     return madeAt === null ? null : Math.max(now - madeAt, 0);
@@ -51,7 +51,7 @@ export class Freshness {
   }
 }
 
-/** What is too old, and what is not. */
+/** The sources that are too old. */
 export interface Staleness {
   isSilent: boolean;
   /** Sources whose last data are old. */

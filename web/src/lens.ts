@@ -7,7 +7,7 @@ export interface LensEstimate {
   focal_sigma_px: number;
   rms_px: number;
   views: number;
-  /** Of the distortion. */
+  /** Model of the distortion. */
   model: string;
   warnings: string[];
 }
@@ -18,7 +18,7 @@ export interface Lens {
   board: string;
   /** Why it did not begin. */
   error: string;
-  /** What to show next. */
+  /** The view to show next. */
   advice: string;
   views: number;
   /** Corners in each field of the image, row by row. */
@@ -56,13 +56,13 @@ export const boardNames: Record<Board, string> = {
   print: "Kestrel's own print",
 };
 
-/** What is entered of a board; lengths in mm. */
+/** Input fields of a board; lengths in mm. */
 export interface BoardForm {
   board: Board;
   columns: number;
   rows: number;
   side_mm: number;
-  /** Of a ChArUco board's markers. */
+  /** Side of a ChArUco board's markers. */
   marker_mm: number;
   family: string;
   /** Between an AprilGrid's tags, in sides of a tag. */
@@ -80,7 +80,7 @@ function form(board: Board, columns: number, rows: number, side_mm: number): Boa
   return { board, columns, rows, side_mm, marker_mm: 30, family: "DICT_4X4_50", gap: 0.3 };
 }
 
-/** What columns and rows count. */
+/** The things that columns and rows count. */
 export const counted: Record<Board, string> = {
   chessboard: "inner corners",
   charuco: "squares",

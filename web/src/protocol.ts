@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the server says, as src/kestrel/app/console/console_json.h writes it. Times are whole
+// Messages of the server, as src/kestrel/app/console/console_json.h writes it. Times are whole
 // nanoseconds as text: they are beyond what numbers hold here.
 import type { Calibration } from "./calibration";
 
@@ -17,7 +17,7 @@ export interface Shape {
   outline: number[];
   /** The last point is joined to the first. */
   closed: boolean;
-  /** Of the detector over a recording; a flight has the first only. */
+  /** Run of the detector over a recording; a flight has the first only. */
   run: 1 | 2;
 }
 
@@ -26,14 +26,14 @@ export interface FrameHeader {
   time: string;
   /** Since the light was collected, when it was sent; null for recordings. */
   age_ms: number | null;
-  /** What is seen of it, of the views of hello; "": the camera's image. */
+  /** The view of it, one of those of hello; "": the camera's image. */
   view: string;
   width: number;
   height: number;
   shapes: Shape[];
 }
 
-/** Of a flight's values. */
+/** Source of a flight's values. */
 export type SourceName = "frames" | "autopilot" | "pose";
 
 export interface Series {
@@ -68,9 +68,9 @@ export interface Hello {
   title: string;
   live: boolean;
   series: Series[];
-  /** Of the shapes that there can be. */
+  /** Layers of shapes that there can be. */
   layers: Layer[];
-  /** What can be looked at in the place of the camera's image, as "threshold 1/8". */
+  /** Images that can be shown in place of the camera's, as "threshold 1/8". */
   views: string[];
   offers: CommandName[];
   /** Whether frames and tables can be had at /export/. */
@@ -128,11 +128,11 @@ export interface MapMessage {
   prediction: MapObject[];
   /** In view. */
   objects: MapObject[];
-  /** What a hunt's map has by now. */
+  /** Objects in the hunt's map by now. */
   mapped: MapObject[];
 }
 
-/** Of the team's map, in this UAV's world. */
+/** Object of the team's map, in this UAV's world. */
 export interface TeamObject extends MapObject {
   /** Names of those that have it in their maps. */
   uavs: string[];
@@ -149,7 +149,7 @@ export interface Check {
   name: string;
   verdict: "good" | "doubtful" | "wrong" | "not checked";
   measured: string;
-  /** What to do; empty where all is well. */
+  /** The remedy; empty where all is well. */
   advice: string;
 }
 
@@ -195,7 +195,7 @@ export interface Playback {
   speed: number;
 }
 
-/** What the page can change for a second run, by its name in `kestrel config`. */
+/** An option that the page can change for a second run, by its name in `kestrel config`. */
 export interface Option {
   name: string;
   value: string;
@@ -224,7 +224,7 @@ export interface Fact {
   value: string;
 }
 
-/** What the first run found in the frame that is shown and, once it is done, the second. */
+/** Findings of the first run in the frame that is shown and, once it is done, of the second. */
 export interface Findings {
   kind: "findings";
   frame: number;

@@ -58,7 +58,7 @@ export interface State {
   findings: Findings | null;
   /** Two pictures, one for each run. */
   isBeside: boolean;
-  /** What a clip is made of; null: the whole recording. */
+  /** Frames of a clip; null: the whole recording. */
   clipRange: FrameRange | null;
   clip: ClipProgress | null;
   colors: Colors | null;
@@ -78,7 +78,7 @@ export interface State {
   /** UAV's way on the map, oldest first. */
   track: [number, number][];
   layers: Record<Layer, boolean>;
-  /** What is looked at, of the views of hello; "": the camera's image. */
+  /** The view that is shown, one of those of hello; "": the camera's image. */
   view: string;
   /** Whether the map shows what the team knows. */
   isTeamShown: boolean;

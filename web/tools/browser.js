@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the programs try_*.js share, each of which uses the page of the program in Debian's Chromium
-// as a person would.
+// Common part of the programs try_*.js, each of which uses the page of the program in Debian's
+// Chromium as a person would.
 import { spawn, spawnSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, rmSync } from "node:fs";
 import { connect, createServer } from "node:net";

@@ -296,7 +296,7 @@ function mapOf(flight) {
   };
 }
 
-// What a UAV of a team that hunts for objects would hear; the landing has it on its map as well.
+// Messages that a UAV of a team that hunts would receive; the landing has them on its map as well.
 /** A multicopter that guidance flies down. */
 function vehicleAt(flight) {
   const fact = (name, measured, verdict = "good") => ({ name, verdict, measured, advice: "" });

@@ -29,7 +29,7 @@ const views = [
   { name: "study-beside", theme: "light", width: 1440, height: 1000, isStudy: true, opens: true },
 ];
 
-// What a phone and a laptop show of a flight that lives, stops, loses its network and ends, and of a replay.
+// Pages on a phone and a laptop of a flight that lives, stops, loses its network and ends, and of a replay.
 const sizes = [[390, 844], [844, 390], [1280, 900]];
 for (const state of ["live", "stopped", "lost", "ended", "replay"]) {
   for (const [width, height] of sizes) {

@@ -167,7 +167,7 @@ async function openHuntResult(t) {
   await page.locator("canvas[data-revision]").waitFor();
 }
 
-/** What a hand does above, without one. */
+/** Does by keys alone what is done by hand above. */
 async function useKeysAlone(t) {
   const page = await openReplay(t, [simulateLanding(t)]);
   await page.keyboard.press("?");

@@ -6,7 +6,7 @@ import type { Timeline } from "../protocol";
 import { clockText } from "../timeline";
 import { useStore } from "../use_store";
 
-/** What can be taken away: the frame that is shown, the tables of what was found, a clip. */
+/** The downloads: the frame that is shown, the tables of what was found, a clip. */
 export function ExportPanel() {
   const timeline = useStore((state) => state.timeline);
   const frame = useStore((state) => state.playback?.frame ?? 0);

@@ -31,7 +31,7 @@ export function Header() {
 }
 
 interface Said {
-  /** Of style.css. */
+  /** Value of data-state in style.css. */
   data: string | undefined;
   words: string;
   reason: string | undefined;
@@ -56,7 +56,7 @@ function State() {
   );
 }
 
-/** What is said of the state: the vision's word only while its images are what is now. */
+/** Returns the words for the state: the vision's only while its images are new. */
 function useSaid(): Said {
   useClock(2);
   return useStore((state) => {

@@ -10,7 +10,7 @@ const signs: Record<Check["verdict"], string> = {
   "not checked": "–",
 };
 
-/** What a check is about; of the others it is the program itself. */
+/** The sources that a check judges; the other checks judge the program itself. */
 const sourcesOf: Record<string, SourceName[]> = { camera: ["frames"], vision: ["frames"], autopilot: ["autopilot"] };
 
 /** How the flight's parts do now, the doctor's checks, and this browser's connection. */
@@ -40,7 +40,7 @@ export function HealthPanel() {
   );
 }
 
-/** What is in doubt first; the rest is there to be opened. */
+/** Shows the doubtful checks first; the rest can be opened. */
 function DoctorChecks({ checks }: { checks: Check[] }) {
   const { inDoubt, others } = sortedChecks(checks);
   return (

@@ -55,7 +55,7 @@ export function ImageView() {
   );
 }
 
-/** What of the image is seen. */
+/** Chooses the view and the overlays of the image. */
 export function ViewPanel() {
   return (
     <section aria-label="View">

@@ -16,6 +16,7 @@
 #include "kestrel/calibration/mount/flight_sightings.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/geometry/angles.h"
+#include "kestrel/io/bags/source_calibration.h"
 #include "kestrel/io/recording/calibration_output.h"
 
 namespace kestrel {
@@ -35,7 +36,7 @@ struct CalibrateArguments {
 CameraCalibration ReadGiven(const CalibrateArguments& arguments, const FrameSource& source) {
   const std::string& file = arguments.camera.empty() ? arguments.recording : arguments.camera;
   const std::optional<CameraCalibration> calibration =
-      arguments.camera.empty() ? source.calibration() : ReadCameraFile(arguments.camera);
+      CalibrationOf(source, arguments.camera, PrintUnusedKeys);
   if (!calibration) throw InputError(file + ": has no calibration, give one by --camera FILE");
   return *calibration;
 }

@@ -9,10 +9,11 @@
 
 namespace kestrel {
 
-// Reads a calibration. Says on stderr what of the file is not used.
+inline void PrintUnusedKeys(const std::string& text) { fmt::print(stderr, "kestrel: {}\n", text); }
+
+// Reads a calibration. Reports on stderr which keys of the file are not used.
 inline CameraCalibration ReadCameraFile(const std::string& file) {
-  return ReadCalibration(
-      file, "", [](const std::string& text) { fmt::print(stderr, "kestrel: {}\n", text); });
+  return ReadCalibration(file, "", PrintUnusedKeys);
 }
 
 }  // namespace kestrel

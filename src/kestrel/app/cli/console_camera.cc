@@ -67,9 +67,7 @@ void RunCameraConsole(const ConsoleArguments& arguments) {
   camera.keep_snapshot = [&](const cv::Mat& image, Time captured) {
     return keeper.KeepSnapshot(image, captured);
   };
-  camera.tell = [](const std::string& fault) {
-    fmt::print(stderr, "kestrel: {}; it is tried again\n", fault);
-  };
+  camera.tell = [](const std::string& fault) { fmt::print(stderr, "kestrel: {}\n", fault); };
   CameraConsole console(arguments.PageOptions(options), camera, folder, options.landing.detector);
   PrintLinks(console.urls());
   console.Play(WasInterrupted);

@@ -19,6 +19,7 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/io/bags/bag_writer.h"
 #include "kestrel/io/bags/recording_sink.h"
+#include "kestrel/io/bags/source_calibration.h"
 #include "kestrel/io/recording/euroc_layout.h"
 #include "kestrel/io/recording/euroc_recording.h"
 #include "kestrel/io/recording/file_kind.h"
@@ -41,7 +42,7 @@ struct ConvertArguments {
 std::optional<CameraCalibration> CalibrationFor(const ConvertArguments& arguments,
                                                 const FrameSource& source) {
   std::optional<CameraCalibration> calibration =
-      arguments.camera.empty() ? source.calibration() : ReadCameraFile(arguments.camera);
+      CalibrationOf(source, arguments.camera, PrintUnusedKeys);
   if (calibration && !calibration->body_from_camera) {
     calibration->body_from_camera = source.mount().body_from_camera;
   }

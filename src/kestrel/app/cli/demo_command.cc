@@ -57,7 +57,7 @@ std::string InCentimetres(const std::string& metres) {
   return fmt::format("{:.1f} cm", 100 * std::strtod(metres.c_str(), nullptr));
 }
 
-// What the plots of a chapter show, by the names of their files.
+// Captions of the plots of a chapter, by the names of their files.
 const std::map<std::string, std::string>& PlotCaptions() {
   static const std::map<std::string, std::string> captions = {
       {"position", "Place of the pad in the world: true, detected, and the track that follows it."},

@@ -23,6 +23,7 @@
 #include "kestrel/comms/mavlink/link_url.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/camera/calibration_reader.h"
+#include "kestrel/flight/doctor/check_list.h"
 #include "kestrel/flight/doctor/computer_checks.h"
 #include "kestrel/flight/doctor/examination.h"
 #include "kestrel/flight/doctor/explanation.h"
@@ -65,7 +66,6 @@ class DoctorVisit {
   }
 
   std::vector<Finding> Look() {
-    CatchInterrupts();
     if (simulated_) simulated_->Start();
     const Time start = Now();
     examination_->Run(DurationFromSeconds(arguments_.duration_s), WasInterrupted, &observations_);
@@ -221,10 +221,11 @@ class DoctorVisit {
 
 void RunDoctor(const DoctorArguments& arguments) {
   if (arguments.explain) {
-    fmt::print("{}", Explain({}));
+    fmt::print("{}{}", CheckTable(), Explain({}));
     return;
   }
   if (arguments.flight.source.sources.empty()) throw CLI::RequiredError("SOURCE");
+  CatchInterrupts();  // a source may take seconds to open
   DoctorVisit visit(arguments);
   fmt::print(stderr, "observing for {:g} s\n", arguments.duration_s);
   std::vector<Finding> findings = visit.Look();
@@ -259,8 +260,9 @@ void AddDoctorCommand(CLI::App* app) {
       ->check(InRange(0.999, 600.001, "1 to 600 seconds"));
   CLI::Option* explain =
       command->add_flag("--explain", arguments->explain,
-                        "Only print the messages for a pattern 2 m ahead, 1 m right, 5 m below, "
-                        "and the position that each autopilot computes from them");
+                        "Only print all checks with what is good, and the messages for a pattern "
+                        "2 m ahead, 1 m right, 5 m below, with the position that each autopilot "
+                        "computes from them");
   command->add_flag("--json", arguments->json, "The findings as JSON")->excludes(explain);
   command
       ->add_flag("--fix", arguments->fix,

@@ -148,7 +148,8 @@ TEST_F(DoctorCommandTest, FixesWhatTheUserAgreesTo) {
 TEST_F(DoctorCommandTest, ExplainsWithoutAnything) {
   const Outcome outcome = Succeed("doctor --explain");
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("ArduPilot thinks: 10.13 north, 22.23 east"),
-                                 HasSubstr("PX4 (VTE_EN 0) thinks: 10.13 north, 22.23 east")));
+                                 HasSubstr("PX4 (VTE_EN 0) thinks: 10.13 north, 22.23 east"),
+                                 HasSubstr("PLD_SRCH_ALT "), HasSubstr("time of day ")));
   EXPECT_EQ(Run("doctor").status, 2);
   EXPECT_EQ(Run("doctor sim:standing --explain --json").status, 2);
 }

@@ -101,7 +101,7 @@ TEST_F(FlyCommandTest, PlaysARecordingInRealTime) {
   EXPECT_EQ(Lines(ReadFile(folder_ / "out/landing_detections.csv")), 11);
 }
 
-TEST_F(FlyCommandTest, WhatItWaitsForIsSaid) {
+TEST_F(FlyCommandTest, WaitingForTheAutopilotIsReported) {
   const std::string flight =
       Simulate("landing", "--scenario calm --seed 2 --set frames=30 --set rate_hz=10");
   const Outcome outcome = Succeed("fly " + flight + " --autopilot tcpout://127.0.0.1:1");

@@ -132,6 +132,7 @@ TEST_F(KestrelCommandTest, WrongUsageIsNamed) {
         std::pair("land a.png --zzz", "there is no option '--zzz'; kestrel land --help"),
         std::pair("--output x land a.png", "--output has to stand behind the command"),
         std::pair("land a.png --altitude 3 --altitude 4", "--altitude is given 2 times"),
+        std::pair("land a.png --altitude 1500", "--altitude: it is 1500, expected metres: 1.5?"),
         std::pair("land a.png --output", "--output: expected DIR"),
         std::pair("simulate landing --seed x", "--seed: got 'x', expected a number"),
         std::pair("land a.png --output x --annotate=Video",
@@ -162,6 +163,16 @@ TEST_F(KestrelCommandTest, LandsOnARecording) {
     const std::string image = output + "/annotated/mav0/cam0/data/" + name + ".png";
     EXPECT_EQ(ReadImage(image).size(), cv::Size(640, 480));
   }
+}
+
+TEST_F(KestrelCommandTest, UnusedKeysOfTheRecordingsCalibrationAreNamed) {
+  const std::string recording = WriteRecording();
+  folder_.Write("flight/mav0/cam0/sensor.yaml", std::string(kSensor) + "lens_shift: 3\n");
+  const std::string err = Succeed("land " + recording).err;
+  const std::string warning = "sensor.yaml: not used, as not known here: 'lens_shift'";
+  const std::size_t first = err.find(warning);
+  EXPECT_NE(first, std::string::npos) << err;
+  EXPECT_EQ(err.find(warning, first + 1), std::string::npos) << err;
 }
 
 TEST_F(KestrelCommandTest, SaysWhereThePatternIsInTheWorld) {

@@ -66,7 +66,7 @@ void PrintSummary(const DetectTimes& times, const Vision& vision) {
              vision.Found(), times.InWords(), times.Faults(), vision.Remarks());
 }
 
-// What Ctrl-C has left of a recording is not taken for the whole.
+// Throws Interrupted when Ctrl-C left out a part of the recording.
 void RequireWhole(const OpenedSource& opened, std::size_t frames) {
   const auto all = opened.source->frame_count();
   if (!WasInterrupted() || frames == all) return;

@@ -2,18 +2,31 @@
 #include "kestrel/app/cli/source_arguments.h"
 
 #include <filesystem>
+#include <limits>
 #include <system_error>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/parse_number.h"
 #include "kestrel/core/camera/assumed_lens.h"
+#include "kestrel/vision/pipeline/require_altitude.h"
 
 namespace kestrel {
 namespace {
 
 constexpr double kMaxClockOffset = 1e6;
+
+CLI::Validator ValidAltitude() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        std::vector<std::string> violations;
+        RequireAltitude(ParseNumber<double>(text).value_or(0), "it", &violations);
+        return violations.empty() ? "" : violations.front();
+      },
+      "");
+}
 
 }  // namespace
 
@@ -72,7 +85,8 @@ void SourceArguments::AddReadingTo(CLI::App* command) {
                    "Height of the camera above the pattern or the ground (m), where the source has "
                    "no poses")
       ->type_name("M")
-      ->check(InRange(0, 1e5, "a positive height in m"));
+      ->check(InRange(0, std::numeric_limits<double>::infinity(), "a positive height in m"))
+      ->check(ValidAltitude());
   command
       ->add_option("--clock-offset", clock_offset,
                    "Navigation's time minus image's time of the same instant (s)")

@@ -137,9 +137,9 @@ void CameraConsole::TellState(const std::string& fault) {
   if (fault.empty() && frame_.image.empty()) return;  // not open yet
   if (fault == fault_) return;
   fault_ = fault;
-  if (!fault.empty()) camera_.tell(fault);
-  feed_.Add(ConsoleStatus{.state = fault.empty() ? "live" : "no picture",
-                          .reason = fault.empty() ? "" : fault + "; it is tried again"});
+  const std::string reason = fault.empty() ? "" : "trying again: " + fault;
+  if (!fault.empty()) camera_.tell(reason);
+  feed_.Add(ConsoleStatus{.state = fault.empty() ? "live" : "no picture", .reason = reason});
 }
 
 }  // namespace kestrel

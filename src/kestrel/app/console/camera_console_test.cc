@@ -100,7 +100,7 @@ TEST_F(CameraConsoleTest, ShowsThePictureAndWhatItIsLike) {
   EXPECT_EQ(socket.Await("event")["text"], "kept 320");
 }
 
-TEST_F(CameraConsoleTest, AMissingCameraIsSaidAndOpenedAgain) {
+TEST_F(CameraConsoleTest, MissingCameraIsReportedAndOpenedAgain) {
   TestSocket socket(port());
   AwaitState(&socket, "live");
   camera_.is_gone = true;

@@ -74,7 +74,7 @@ void ConsoleHub::Tick(Time now) {
 }
 
 void ConsoleHub::Broadcast(const ConsoleUpdate& update) {
-  // Of the moment: what comes later needs the next one.
+  // Values of the moment are not kept: a page that connects later needs the next ones.
   const bool is_fleeting = std::holds_alternative<ConsoleSample>(update) ||
                            std::holds_alternative<ConsoleSources>(update);
   if (is_fleeting && clients_.empty()) return;

@@ -219,7 +219,7 @@ TEST(HuntConsoleTest, FramesOfTheCameraAreKeptAndTaught) {
   EXPECT_TRUE(fs::exists(folder / "taught" / "objects.yaml"));
 }
 
-TEST(FlightHealthTest, WhatHadNoTimeIsNotCheckedAndWhatIsWaitedForIsSaid) {
+TEST(FlightHealthTest, EarlyChecksAreNotFailedAndLaterWaitingIsReported) {
   FlightHealth health;
   FlightReport state;
   state.autopilot.emplace();

@@ -5,7 +5,7 @@
 
 namespace kestrel {
 
-// What a picture tells of the camera's exposure and focus.
+// Exposure and focus of the camera, measured in a picture.
 struct PictureQuality {
   double brightness = 0;  // mean gray value, % of white
   double clipped = 0;     // part of the pixels that are black or white for good, %

@@ -109,7 +109,7 @@ TEST(ConsoleOptionsTest, NamesWhatIsWrongButNeverTheToken) {
   EXPECT_THAT(OptionsAt("10.0.0.5", "0123456789abcdef").Validate(), testing::IsEmpty());
 }
 
-TEST(ConsoleOptionsTest, WhatOthersReachHasAToken) {
+TEST(ConsoleOptionsTest, AddressOpenToOthersGetsAToken) {
   EXPECT_EQ(WithToken(OptionsAt("127.0.0.1")).token, "");
   const ConsoleOptions open = WithToken(OptionsAt("0.0.0.0"));
   EXPECT_EQ(open.token.size(), 32u);

@@ -68,6 +68,8 @@ TEST(NodeParameters, ValuesThatCannotBeAreNamed) {
                                                  {"console.port", "high"}}) {
     EXPECT_THAT(ErrorOf({{key, value}}), HasSubstr(key)) << value;
   }
+  EXPECT_THAT(ErrorOf({{"altitude_m", "1500"}}),
+              HasSubstr("altitude_m is 1500, expected metres: 1.5?"));
 }
 
 }  // namespace

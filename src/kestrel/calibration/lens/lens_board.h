@@ -15,8 +15,8 @@ enum class LensBoardKind { kChessboard, kCharuco, kAprilGrid };
 // A board that other tools calibrate cameras by.
 struct LensBoard {
   LensBoardKind kind = LensBoardKind::kChessboard;
-  // Of a chessboard the corners where four squares meet, of a ChArUco board the squares, of an
-  // AprilGrid the tags.
+  // Number of corners where four squares meet (chessboard), of squares (ChArUco), of tags
+  // (AprilGrid).
   int columns = 9;
   int rows = 6;
   double side_m = 0.025;            // of a square; of an AprilGrid's tag

@@ -13,7 +13,7 @@
 
 namespace kestrel {
 
-// How views of a board differ: what a calibration needs, as far as it is there.
+// Variety of the views of a board, which a calibration needs.
 struct LensVariety {
   LensCoverage coverage;
   // Number of views in which this side of the board is nearer than the other.

@@ -49,7 +49,7 @@ TEST_F(LensGuideTest, TheSameViewIsTakenOnce) {
   EXPECT_THAT(guide_.Advice(), HasSubstr("corner"));
 }
 
-TEST_F(LensGuideTest, ABoardThatIsGoneIsSaid) {
+TEST_F(LensGuideTest, MissingBoardIsReported) {
   EXPECT_FALSE(guide_.Look(std::nullopt, time_, Lens()));
   EXPECT_THAT(guide_.Advice(), HasSubstr("the board is not found"));
 }

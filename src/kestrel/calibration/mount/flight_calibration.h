@@ -46,7 +46,7 @@ struct SightingResidual {
   double after_m = 0;   // with the estimate
 };
 
-// How the UAV moved while it saw the target: what tells mount and clock apart from the place of the
+// Motion of the UAV while it saw the target, by which mount and clock differ from the place of the
 // target.
 struct FlightMotion {
   double turn = 0;           // largest difference of two headings, rad, to pi

@@ -47,7 +47,7 @@ RigidTransform TransformOf(const CalibrationEntry& entry) {
   return transform;
 }
 
-// What a key says about the mount.
+// Direction of the transform that a key has.
 enum class MountKey { kNone, kBodyFromCamera, kCameraFromBody };
 
 // The tools agree that T_AB, T_A_B or A_T_B maps coordinates in B to coordinates in A. They differ

@@ -361,7 +361,7 @@ std::vector<std::string> UnusedKeys(const Entry& map) {
   return unused;
 }
 
-// What the functions below need of a file to tell of it.
+// The file that is read, and the function that gets the lines for the user.
 struct Teller {
   const std::string& file;
   const std::function<void(const std::string&)>& tell;

@@ -472,7 +472,7 @@ TEST(CalibrationReader, ReadsOpenCvXml) {
   }
 }
 
-// What Python's tutorials write: nested lists, floating-point sizes, names of the author.
+// Files as Python's tutorials write them: nested lists, floating-point sizes, names of the author.
 TEST(CalibrationReader, KeysAreReadInEverySpelling) {
   for (const char* matrix : {"camera_matrix", "mtx", "cameraMatrix", "CameraMatrix", "K"}) {
     for (const char* coefficients :

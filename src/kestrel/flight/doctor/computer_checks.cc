@@ -180,7 +180,7 @@ Finding CheckLoad(const ComputerObservations& computer) {
 Finding CheckHeat(const ComputerObservations& computer) {
   constexpr double kHot = 78;
   constexpr double kTooHot = 90;
-  // Of the Raspberry Pi's flags: frequency capped, throttled, soft limit of the temperature.
+  // Flags of the Raspberry Pi: frequency capped, throttled, soft limit of the temperature.
   constexpr std::uint32_t kSlowed = 0xe;
   const std::string check = "heat";
   if (!computer.hottest_c && !computer.throttled) return NotChecked(check, "no sensor");

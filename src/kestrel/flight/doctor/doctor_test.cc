@@ -8,13 +8,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kestrel/flight/doctor/check_list.h"
 #include "kestrel/flight/doctor/examination.h"
 #include "kestrel/flight/doctor/finding.h"
+#include "kestrel/flight/doctor/parameter_checks.h"
 #include "kestrel/flight/doctor/test_setups.h"
 
 namespace kestrel {
 namespace {
 
+using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using Break = std::function<void(DoctorObservations*)>;
@@ -41,6 +44,17 @@ TEST(DoctorTest, IsSilentOnAGoodSetup) {
 TEST(DoctorTest, ChecksAllOfAGoodSetup) {
   for (const Finding& finding : Check(GoodSetup(AutopilotKind::kPx4))) {
     EXPECT_EQ(finding.verdict, Verdict::kGood) << finding.check << ": " << finding.measured;
+  }
+}
+
+TEST(DoctorTest, EveryCheckIsListed) {
+  std::vector<std::string> listed;
+  for (const ListedCheck& check : ListedChecks()) listed.emplace_back(check.name);
+  for (const AutopilotKind kind : {AutopilotKind::kArduPilot, AutopilotKind::kPx4}) {
+    for (const ListedCheck& check : CheckedParameters(kind)) listed.emplace_back(check.name);
+    for (const auto& setup : {GoodSetup(kind), GoodGuidedSetup(kind)}) {
+      for (const Finding& finding : Check(setup)) EXPECT_THAT(listed, Contains(finding.check));
+    }
   }
 }
 

@@ -147,8 +147,8 @@ void Examination::TakePacket(const mavlink::Packet& packet, Time received) {
 void Examination::WantParameters() {
   if (asked_parameters_) return;
   asked_parameters_ = true;
-  for (const std::string_view name : CheckedParameters(parts_.autopilot->kind())) {
-    parts_.autopilot->parameters().Want(name);
+  for (const ListedCheck& checked : CheckedParameters(parts_.autopilot->kind())) {
+    parts_.autopilot->parameters().Want(checked.name);
   }
 }
 
@@ -245,7 +245,7 @@ void Examination::SummarizeLink(Time end, LinkObservations* link) const {
 
 void Examination::SummarizeParameters(ParameterValues* values) const {
   const ParameterReader& reader = parts_.autopilot->parameters();
-  for (const std::string_view name : CheckedParameters(parts_.autopilot->kind())) {
+  for (const auto& [name, wants] : CheckedParameters(parts_.autopilot->kind())) {
     const auto value = reader.Find(name);
     const auto entry = reader.EntryOf(name);
     if (!value || !entry) continue;

@@ -17,19 +17,54 @@
 namespace kestrel {
 namespace {
 
-constexpr std::array<std::string_view, 23> kOfArduPilot = {
-    "PLND_ENABLED",  "PLND_TYPE",       "PLND_EST_TYPE",  "PLND_OPTIONS",   "PLND_LAG",
-    "PLND_STRICT",   "PLND_RET_MAX",    "PLND_ORIENT",    "PLND_YAW_ALIGN", "PLND_XY_DIST_MAX",
-    "RNGFND1_TYPE",  "EK3_SRC1_POSZ",   "EK3_SRC1_VELXY", "WP_SPD",         "ATC_ANGLE_MAX",
-    "GUID_TIMEOUT",  "MAV_GCS_SYSID",   "MAV_OPTIONS",    "WP_ACC",         "PSC_JERK_NE",
-    "FS_GCS_ENABLE", "PLND_LAND_OFS_X", "PLND_LAND_OFS_Y"};
+constexpr std::array<ListedCheck, 23> kOfArduPilot = {{
+    {"PLND_ENABLED", "1"},
+    {"PLND_TYPE", "1, targets by MAVLink"},
+    {"PLND_ORIENT", "25, down"},
+    {"PLND_YAW_ALIGN", "0"},
+    {"PLND_LAND_OFS_X", "0: else it lands so many centimetres beside the centre"},
+    {"PLND_LAND_OFS_Y", "0: else it lands so many centimetres beside the centre"},
+    {"PLND_LAG", "the measured latency (check latency)"},
+    {"RNGFND1_TYPE", "10, with fly.messages.sends_distance"},
+    {"EK3_SRC1_POSZ", "not 2: the range finder jumps over the deck"},
+    {"EK3_SRC1_VELXY", "not 5: the speed by optical flow is the deck's"},
+    {"MAV_GCS_SYSID", "left to the ground station"},
+    {"MAV_OPTIONS", "with bit 0 Kestrel has to send with the autopilot's own system"},
+    {"PLND_EST_TYPE", "--moving: 1"},
+    {"PLND_OPTIONS", "--moving: bit 0"},
+    {"PLND_XY_DIST_MAX", "--moving: 0 or at least 5"},
+    {"PLND_STRICT", "--moving: 0"},
+    {"PLND_RET_MAX", "--moving: 0"},
+    {"WP_SPD", "--moving, --guide: faster than the target"},
+    {"ATC_ANGLE_MAX", "--moving: at least 20 deg; --guide: fly.guidance.limits.max_tilt_deg"},
+    {"GUID_TIMEOUT", "--guide: 0.1 to 0.3 s: so long the last set-point is flown on"},
+    {"FS_GCS_ENABLE", "--guide: not 5, which lands on the spot"},
+    {"WP_ACC", "--guide --moving: at least 4 m/s^2"},
+    {"PSC_JERK_NE", "--guide --moving: at least 12 m/s^3"},
+}};
 
-constexpr std::array<std::string_view, 21> kOfPx4 = {
-    "VTE_EN",          "VTE_AID_MASK",     "LTEST_MODE",       "PLD_HACC_RAD",   "EKF2_HGT_REF",
-    "EKF2_RNG_CTRL",   "EKF2_OF_CTRL",     "COM_DISARM_LAND",  "MPC_LAND_SPEED", "MPC_Z_VEL_MAX_DN",
-    "MPC_XY_VEL_MAX",  "MPC_TILTMAX_AIR",  "COM_OF_LOSS_T",    "COM_OBL_RC_ACT", "NAV_RCL_ACT",
-    "COM_RC_OVERRIDE", "MAN_OVERRIDE_SPD", "LNDMC_XY_VEL_MAX", "RTL_PLD_MD",     "PLD_SRCH_ALT",
-    "PLD_MAX_SRCH"};
+constexpr std::array<ListedCheck, 20> kOfPx4 = {{
+    {"VTE_EN", "1 with the profile px4-vte, else 0; not with --guide"},
+    {"VTE_AID_MASK", "bit 1, with the profile px4-vte"},
+    {"LTEST_MODE", "--moving: 0"},
+    {"RTL_PLD_MD", "not 2: each return, that of a failsafe too, searches for the pattern"},
+    {"PLD_MAX_SRCH", "at least 1: else it lands without a pattern that is lost once"},
+    {"PLD_SRCH_ALT", "so low that the camera sees the pattern: it climbs there when it is lost"},
+    {"MPC_LAND_SPEED", "at most MPC_Z_VEL_MAX_DN"},
+    {"MPC_Z_VEL_MAX_DN", "at least MPC_LAND_SPEED: else contact is not detected"},
+    {"COM_DISARM_LAND", "above 0: else the motors run on"},
+    {"EKF2_HGT_REF", "not 2: the height by range finder follows the deck"},
+    {"EKF2_RNG_CTRL", "--moving: below 2"},
+    {"EKF2_OF_CTRL", "--moving: 0"},
+    {"COM_OF_LOSS_T", "--guide: 0.1 to 0.5 s: so long the last set-point is flown on"},
+    {"COM_OBL_RC_ACT", "--guide: 5, Hold"},
+    {"NAV_RCL_ACT", "--guide: not 0 where COM_OBL_RC_ACT is 0 to 2"},
+    {"COM_RC_OVERRIDE", "--guide: bit 1, the sticks end OFFBOARD"},
+    {"MAN_OVERRIDE_SPD", "--guide: 0 or more, the sticks end OFFBOARD"},
+    {"LNDMC_XY_VEL_MAX", "--guide: above the target's speed, else it does not disarm"},
+    {"MPC_XY_VEL_MAX", "--guide: above the target's speed"},
+    {"MPC_TILTMAX_AIR", "--guide: at least fly.guidance.limits.max_tilt_deg"},
+}};
 
 // Speed of a vehicle when none is given, from the paper: 15 km/h.
 constexpr double kUsualSpeed_mps = 4.2;
@@ -290,8 +325,8 @@ void CheckTargetsOfPx4(ParameterRules* rules) {
   }
 }
 
-// What PX4 does by itself around a precision landing. A pilot who does not know it takes the climb
-// of a search for a fly-away.
+// Checks what PX4 does by itself around a precision landing. A pilot who does not know it takes the
+// climb of a search for a fly-away.
 void CheckSearchOfPx4(ParameterRules* rules) {
   constexpr double kOpportunistic = 1;
   constexpr double kRequired = 2;
@@ -406,7 +441,7 @@ double LinkDelayOf(const DoctorObservations& observations) {
 
 }  // namespace
 
-std::span<const std::string_view> CheckedParameters(AutopilotKind kind) {
+std::span<const ListedCheck> CheckedParameters(AutopilotKind kind) {
   switch (kind) {
     case AutopilotKind::kArduPilot:
       return kOfArduPilot;

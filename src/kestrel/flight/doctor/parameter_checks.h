@@ -2,16 +2,16 @@
 #pragma once
 
 #include <span>
-#include <string_view>
 #include <vector>
 
+#include "kestrel/flight/doctor/check_list.h"
 #include "kestrel/flight/doctor/finding.h"
 #include "kestrel/flight/doctor/observations.h"
 
 namespace kestrel {
 
-// First names of the parameters that the checks use; none for other autopilots.
-std::span<const std::string_view> CheckedParameters(AutopilotKind kind);
+// The parameters that the checks use, by their first names; none for other autopilots.
+std::span<const ListedCheck> CheckedParameters(AutopilotKind kind);
 
 // Checks that the autopilot understands the messages of the profile.
 Finding CheckProfile(const DoctorObservations& observations);

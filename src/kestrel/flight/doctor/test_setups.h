@@ -108,7 +108,7 @@ inline ParameterValues DefaultParameters(AutopilotKind kind) {
   const AutopilotParameters defaults(kind == AutopilotKind::kPx4 ? AutopilotFirmware::kPx4
                                                                  : AutopilotFirmware::kArduPilot);
   ParameterValues values;
-  for (const std::string_view name : CheckedParameters(kind)) {
+  for (const auto& [name, wants] : CheckedParameters(kind)) {
     if (!defaults.Find(name)) continue;
     values[std::string(name)] = {defaults[name], std::string(name), 1};
   }

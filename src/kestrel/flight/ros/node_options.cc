@@ -10,6 +10,7 @@
 #include "kestrel/core/base/options.h"
 #include "kestrel/core/base/parse_number.h"
 #include "kestrel/core/base/violations.h"
+#include "kestrel/vision/pipeline/require_altitude.h"
 
 namespace kestrel {
 namespace {
@@ -75,7 +76,7 @@ std::vector<std::string> NodeOptions::Validate() const {
   if (poses != "topic" && poses != "tf" && poses != "none") {
     violations.push_back("poses must be topic, tf or none");
   }
-  RequireIn(altitude_m, 0, 1000, "altitude_m", &violations);
+  if (altitude_m != 0) RequireAltitude(altitude_m, "altitude_m", &violations);
   if (!origin.empty()) {
     const std::vector<double> degrees = origin_degrees();
     if (degrees.size() != 2 || std::abs(degrees[0]) >= 90 || std::abs(degrees[1]) > 180) {

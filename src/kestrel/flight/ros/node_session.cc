@@ -51,9 +51,10 @@ LiveSessionOptions SessionOptionsOf(const NodeOptions& options) {
 
 }  // namespace
 
-NodeFiles ReadNodeFiles(const NodeOptions& options) {
+NodeFiles ReadNodeFiles(const NodeOptions& options,
+                        const std::function<void(const std::string&)>& warn) {
   NodeFiles files;
-  if (!options.camera.empty()) files.calibration = ReadCalibration(options.camera);
+  if (!options.camera.empty()) files.calibration = ReadCalibration(options.camera, "", warn);
   if (!options.is_hunt()) return files;
   files.model = options.model.empty() ? DefaultObjectModel() : ReadObjectModel(options.model);
   if (!options.grid.empty()) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -27,8 +28,9 @@ struct NodeFiles {
   std::optional<ColorGrid> grid;
 };
 
-// Throws InputError when a file is not valid.
-NodeFiles ReadNodeFiles(const NodeOptions& options);
+// Calls 'warn' with what of the files is not used. Throws InputError when a file is not valid.
+NodeFiles ReadNodeFiles(const NodeOptions& options,
+                        const std::function<void(const std::string&)>& warn);
 
 // A LiveSession in a thread of its own, with its results on topics. It ends with its destruction.
 class NodeSession {

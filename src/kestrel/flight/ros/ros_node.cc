@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/flight/ros/ros_node.h"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 #include <vector>
@@ -37,8 +38,14 @@ std::string Joined(const char* what, const std::vector<std::string>& names) {
 RosNode::RosNode(const NodeOptions& options, NodeConnection* connection)
     : options_(options),
       connection_(connection),
-      files_(ReadNodeFiles(options)),
+      files_(ReadFiles(options)),
       source_(SourceOf(options)) {}
+
+NodeFiles RosNode::ReadFiles(const NodeOptions& options) const {
+  const auto warn = [this](const std::string& text) { connection_->Warn(text); };
+  if (!options.is_hunt()) std::ranges::for_each(options.landing.target.Warnings(), warn);
+  return ReadNodeFiles(options, warn);
+}
 
 void RosNode::Warn(const std::string& text) {
   const Time now = Now();
@@ -137,7 +144,7 @@ std::string RosNode::SaveMap() {
 
 void RosNode::Reset(const NodeOptions& options) {
   RequireChangeable(options);
-  files_ = ReadNodeFiles(options);
+  files_ = ReadFiles(options);
   options_ = options;
   Forget();
 }

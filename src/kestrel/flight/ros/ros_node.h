@@ -44,6 +44,9 @@ class RosNode {
 
  private:
   void Warn(const std::string& text);
+  // Reads the files of the options. Warns of what in them is not used, and of a target that is not
+  // advisable.
+  NodeFiles ReadFiles(const NodeOptions& options) const;
   void SetStopped(bool is_stopped);
   std::optional<CameraCalibration> Calibration() const;
   std::string Missing(const std::optional<CameraCalibration>& calibration) const;

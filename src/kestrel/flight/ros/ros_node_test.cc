@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/base/test_folder.h"
 #include "kestrel/flight/ros/test_ros_node.h"
 
 namespace kestrel {
@@ -107,6 +108,21 @@ TEST_F(RosNodeTest, StampsThatJumpBackStartAnew) {
   TakeImage(&node, kStamp);
   EXPECT_THAT(connection_.warnings(), Contains(HasSubstr("jump back")));
   connection_.At<Detection3DArrayMessage>(ResultTopic::kDetections, kStamp);
+}
+
+TEST_F(RosNodeTest, UnusedKeysOfTheCalibrationAndAPlainTargetAreWarnings) {
+  const TestFolder folder;
+  NodeOptions options = Options("none");
+  options.camera = folder.Write("lens.yaml",
+                                "resolution: [640, 480]\nintrinsics: [400, 400, 319.5, 239.5]\n"
+                                "distortion_model: none\nlens_shift: 3\n");
+  options.landing.target.kind = "aruco";
+  options.landing.target.aruco.family = "aruco_original";
+  options.landing.target.aruco.id = 1023;
+  const RosNode node(options, &connection_);
+  EXPECT_THAT(connection_.warnings(),
+              UnorderedElementsAre(HasSubstr("not used, as not known here: 'lens_shift'"),
+                                   HasSubstr("aruco_original id 1023 is as plain as")));
 }
 
 TEST_F(RosNodeTest, ResetTakesNewOptionsAndRefusesWhatCannotChange) {

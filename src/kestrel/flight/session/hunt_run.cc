@@ -7,6 +7,7 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/vision/objects/color/color_grid.h"
 #include "kestrel/vision/pipeline/ground_height.h"
+#include "kestrel/vision/pipeline/require_altitude.h"
 
 namespace kestrel {
 
@@ -32,6 +33,7 @@ HuntRun::HuntRun(const OpenedSource& opened, const ObjectModel& model, const Col
     : pipeline_(opened.calibration, model, grid, options),
       clock_offset_(opened.calibration.clock_offset.value_or(Duration::zero())),
       altitude_m_(altitude_m) {
+  RequireAltitude(altitude_m);
   pipeline_.SetAltitude(altitude_m);
 }
 

@@ -17,7 +17,7 @@ namespace kestrel {
 class HuntRun : public Vision {
  public:
   // 'altitude_m': height of the camera above the ground, where the source has no poses. Throws
-  // InputError when calibration, model or options are not valid.
+  // InputError when it, calibration, model or options are not valid.
   HuntRun(const OpenedSource& opened, const ObjectModel& model, const ColorGrid& grid,
           const HuntPipelineOptions& options, std::optional<double> altitude_m);
 

@@ -7,6 +7,7 @@
 
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/vision/pipeline/calibration_monitor.h"
+#include "kestrel/vision/pipeline/require_altitude.h"
 #include "kestrel/vision/pipeline/told_contradictions.h"
 
 namespace kestrel {
@@ -29,6 +30,7 @@ LandingRun::LandingRun(const OpenedSource& opened, const LandingPipelineOptions&
       altitude_m_(altitude_m),
       has_world_(opened.has_world()),
       is_lens_unknown_(opened.is_lens_unknown) {
+  RequireAltitude(altitude_m);
   pipeline_.SetAltitude(altitude_m);
 }
 

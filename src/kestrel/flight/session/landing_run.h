@@ -16,7 +16,7 @@ namespace kestrel {
 class LandingRun : public Vision {
  public:
   // 'altitude_m': height of the camera above the pattern, where the source has no poses. Throws
-  // InputError when the calibration or the options are not valid.
+  // InputError when it, the calibration or the options are not valid.
   LandingRun(const OpenedSource& opened, const LandingPipelineOptions& options,
              std::optional<double> altitude_m);
 

@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kestrel/core/base/test_folder.h"
 #include "kestrel/vision/pipeline/test_pattern.h"
 
 namespace kestrel {
@@ -52,6 +53,11 @@ TEST(LandingRun, SaysThatTheGivenAltitudeIsWrong) {
   };
   EXPECT_THAT(warning(20), HasSubstr("set --altitude 3.0"));
   EXPECT_EQ(warning(3), "");
+}
+
+TEST(LandingRun, RefusesAnAltitudeInMillimetres) {
+  EXPECT_THAT(InputErrorOf([] { RunWith(kFocal_px, 1500, /*is_still=*/false); }),
+              HasSubstr("altitude_m is 1500, expected metres: 1.5?"));
 }
 
 TEST(LandingRun, RemarksThatTheLensIsAnother) {

@@ -5,8 +5,8 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/camera/assumed_lens.h"
-#include "kestrel/core/camera/calibration_reader.h"
 #include "kestrel/io/bags/bag_source.h"
+#include "kestrel/io/bags/source_calibration.h"
 
 namespace kestrel {
 namespace {
@@ -39,8 +39,7 @@ void TellAssumption(const RecordingChoice& choice) {
 // 'first_image': see OpenedSource.
 CameraCalibration KnownCalibration(const FrameSource& source, const RecordingChoice& choice,
                                    std::string* first_image) {
-  if (!choice.camera.empty()) return ReadCalibration(choice.camera, "", choice.bag.tell);
-  if (const std::optional<CameraCalibration> own = source.calibration()) return *own;
+  if (const auto known = CalibrationOf(source, choice.camera, choice.bag.tell)) return *known;
   if (!choice.may_assume_lens && !choice.fov_deg) {
     throw InputError(
         "no calibration: the source has none, give one (--camera FILE, camera= in Python: EuRoC "

@@ -6,8 +6,8 @@
 
 namespace kestrel {
 
-// What the container of a video file says about itself, read from the sizes in its outermost boxes:
-// the duration and the rate of a container are estimates, its sizes are not.
+// Properties of a video file's container by the sizes in its outermost boxes: its duration and rate
+// are estimates, its sizes are not.
 struct VideoContainer {
   // Name of GStreamer's element for it; empty when another element may be needed.
   std::string demuxer;

@@ -66,7 +66,7 @@ double CellEvidence(double agreement, double information) {
   return clearness * (agreement > 0 ? information : -kMismatch);
 }
 
-// What the picture of a tag is made of.
+// Numbers of cells and vertices in the picture of a tag.
 struct VertexCount {
   int data = 0;     // cells
   int all = 0;      // vertices where four known cells meet, data among them

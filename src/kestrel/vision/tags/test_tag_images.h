@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -21,6 +22,11 @@
 #include "kestrel/vision/tags/tag_board.h"
 
 namespace kestrel {
+
+// Returns a board of one tag. 'size_m': side of the tag, m.
+inline TagBoard BoardOfTag(const std::string& family, int id, double size_m) {
+  return TagTargetOptions{.family = family, .id = id, .size_m = size_m}.Board();
+}
 
 // Conditions under which an image of a board is taken.
 struct TagImageOptions {

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "kestrel/core/camera/calibration.h"
+#include "kestrel/io/recording/frame_source.h"
+
+namespace kestrel {
+
+// Returns the calibration of the file, or the source's own where 'file' is empty; nothing if it has
+// none. Calls 'tell' with the keys of either file that are not used. Throws as ReadCalibration.
+std::optional<CameraCalibration> CalibrationOf(const FrameSource& source, const std::string& file,
+                                               const std::function<void(const std::string&)>& tell);
+
+}  // namespace kestrel
