@@ -2,8 +2,12 @@
 #pragma once
 
 #include <pybind11/pybind11.h>
+#include <string>
 
 namespace kestrel::python {
+
+// Issues a UserWarning of Python. Throws it where the user has made errors of warnings.
+void Warn(const std::string& text);
 
 // Each adds the classes and functions of one subject to the module. A function may use the classes
 // of those before it.

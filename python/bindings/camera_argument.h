@@ -20,7 +20,8 @@ namespace pybind11::detail {
 // A caster instead of implicit conversions, which would hide what is wrong with a camera.
 template <>
 struct type_caster<kestrel::python::CameraArgument> {
-  PYBIND11_TYPE_CASTER(kestrel::python::CameraArgument, const_name("CameraModel"));
+  PYBIND11_TYPE_CASTER(kestrel::python::CameraArgument,
+                       const_name("Union[CameraModel, CameraIntrinsics, CameraCalibration]"));
 
   bool load(handle source, bool /*convert*/) {
     if (isinstance<kestrel::CameraModel>(source)) {

@@ -175,11 +175,9 @@ void BindRayTable(py::module_& module) {
            "in order is read without a copy.");
 }
 
-// What of the file is not used becomes Python's warnings.
+// Keys of the file that are not used become Python's warnings.
 CameraCalibration ReadWithWarnings(const std::filesystem::path& file, const std::string& camera) {
-  return ReadCalibration(file, camera, [](const std::string& text) {
-    if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
-  });
+  return ReadCalibration(file, camera, Warn);
 }
 
 }  // namespace

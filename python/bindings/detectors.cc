@@ -15,6 +15,7 @@
 #include "kestrel/core/base/read_file.h"
 #include "kestrel/landing_pattern_detector.h"
 #include "kestrel/landing_pipeline.h"
+#include "kestrel/vision/tags/plain_tags.h"
 #include "kestrel/vision/targets/ring_with_tags_detector.h"
 #include "option_values.h"
 #include "value_class.h"
@@ -121,6 +122,10 @@ TagBoard BoardOf(const py::object& board) {
   return ParseTagBoard(text, "board", defaults.family, defaults.size_m);
 }
 
+void WarnOfBoard(const TagBoard& board) {
+  for (const std::string& warning : WarningsOfPlainTags(board)) Warn(warning);
+}
+
 void BindBase(py::module_& module) {
   py::class_<Detector, std::shared_ptr<Detector>>(
       module, "TargetDetector",
@@ -168,8 +173,11 @@ void BindTags(py::module_& module) {
                        const py::kwargs& keywords) {
              TagBoardDetectorOptions options;
              SetFields(keywords, FieldsOf(options));
-             return std::make_shared<TagBoardFinder>(
-                 std::make_shared<TagBoardDetector>(*camera.model, BoardOf(board), options));
+             const TagBoard tags = BoardOf(board);
+             auto finder = std::make_shared<TagBoardFinder>(
+                 std::make_shared<TagBoardDetector>(*camera.model, tags, options));
+             WarnOfBoard(tags);
+             return finder;
            }),
            py::arg("camera"), py::arg("board"),
            "board: a list of dicts, as [{'family': 'tag36h11', 'id': 3, 'size_m': 0.5}] (x_m, y_m "
@@ -183,8 +191,12 @@ void BindTags(py::module_& module) {
              SetFields(ring, FieldsOf(ring_options));
              TagBoardDetectorOptions tag_options;
              SetFields(tags, FieldsOf(tag_options));
-             return std::make_shared<RingWithTagsFinder>(std::make_shared<RingWithTagsDetector>(
-                 *camera.model, ring_options, BoardOf(board), tag_options));
+             const TagBoard printed = BoardOf(board);
+             auto finder =
+                 std::make_shared<RingWithTagsFinder>(std::make_shared<RingWithTagsDetector>(
+                     *camera.model, ring_options, printed, tag_options));
+             WarnOfBoard(printed);
+             return finder;
            }),
            py::arg("camera"), py::arg("board"), py::arg("ring") = py::dict(),
            py::arg("tags") = py::dict(),
@@ -227,8 +239,10 @@ void BindMakeDetector(py::module_& module) {
       [](const CameraArgument& camera, const py::object& options, const py::kwargs& keywords) {
         const auto landing = OptionsOf<LandingPipelineOptions>(
             options, keywords, [](const auto& file) { return file.landing; });
-        return std::make_shared<Detector>(
+        auto detector = std::make_shared<Detector>(
             MakeTargetDetector(*camera.model, landing.target, landing.detector));
+        WarnOf(landing.target);
+        return detector;
       },
       py::arg("camera"), py::arg("options") = py::none(),
       "Returns the TargetDetector of a configuration.\n\noptions: a dict by the names of `kestrel "

@@ -17,6 +17,10 @@ std::string_view Interned(const std::string& text) {
   return *texts.insert(text).first;
 }
 
+void Warn(const std::string& text) {
+  if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw pybind11::error_already_set();
+}
+
 void BindErrors(pybind11::module_& module) {
   pybind11::register_exception<InputError>(module, "InputError", PyExc_ValueError).doc() =
       "An error in what was given: a file, a key, a row, an option, the size of an image. One line "

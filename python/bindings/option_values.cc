@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "bindings.h"
 #include "kestrel/core/base/read_file.h"
 #include "kestrel/error.h"
 
@@ -140,6 +141,10 @@ ConfigurationFile ReadConfiguration(const std::string& path) {
 }
 
 void SetFields(const py::dict& values, const OptionFields& fields) { SetGroup("", values, fields); }
+
+void WarnOf(const TargetOptions& target) {
+  for (const std::string& warning : target.Warnings()) Warn(warning);
+}
 
 std::vector<std::string> Settings(const py::dict& values) {
   std::vector<std::string> settings;

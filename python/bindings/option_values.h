@@ -39,6 +39,9 @@ void SetFields(const pybind11::dict& values, const OptionFields& fields);
 // Returns the names and values of a dict as "key=value".
 std::vector<std::string> Settings(const pybind11::dict& values);
 
+// Issues Python's warnings of what is allowed but not advisable. The options must be valid.
+void WarnOf(const TargetOptions& target);
+
 // Returns the options of a class: those of 'options' (nothing, a dict, or the path of a
 // configuration file, of which 'part' takes its part), changed by the keyword arguments.
 template <class Options, class Part>

@@ -15,6 +15,7 @@
 #include "enum_casters.h"
 #include "kestrel/hunt_pipeline.h"
 #include "kestrel/landing_pipeline.h"
+#include "kestrel/vision/pipeline/require_altitude.h"
 #include "option_values.h"
 #include "seen.h"
 #include "value_class.h"
@@ -148,8 +149,7 @@ constexpr char kAddPose[] =
     "'invalid'.";
 constexpr char kSetAltitude[] =
     "Sets the height (m) of the camera above what it looks for, for frames without a pose; None: "
-    "not "
-    "known.";
+    "not known.";
 
 void BindLandingPipeline(py::module_& module) {
   py::class_<LandingVision, std::shared_ptr<LandingVision>>(
@@ -160,11 +160,13 @@ void BindLandingPipeline(py::module_& module) {
                        const std::shared_ptr<Detector>& detector, const py::kwargs& keywords) {
              const auto values = OptionsOf<LandingPipelineOptions>(
                  options, keywords, [](const auto& file) { return file.landing; });
-             if (!detector) {
-               return std::make_shared<LandingVision>(LandingPipeline(calibration, values));
+             if (detector) {
+               return std::make_shared<LandingVision>(LandingPipeline(
+                   calibration, std::make_unique<SharedDetector>(detector->target()), values));
              }
-             return std::make_shared<LandingVision>(LandingPipeline(
-                 calibration, std::make_unique<SharedDetector>(detector->target()), values));
+             auto made = std::make_shared<LandingVision>(LandingPipeline(calibration, values));
+             WarnOf(values.target);
+             return made;
            }),
            py::arg("calibration"), py::arg("options") = py::none(),
            py::arg("detector") = py::none(),
@@ -181,6 +183,7 @@ void BindLandingPipeline(py::module_& module) {
       .def(
           "set_altitude",
           [](LandingVision& self, std::optional<double> altitude_m) {
+            RequireAltitude(altitude_m);
             self.With([&](LandingPipeline& pipeline) { pipeline.SetAltitude(altitude_m); });
           },
           py::arg("altitude_m"), kSetAltitude)
@@ -229,6 +232,7 @@ void BindHuntPipeline(py::module_& module) {
       .def(
           "set_altitude",
           [](HuntVision& self, std::optional<double> altitude_m) {
+            RequireAltitude(altitude_m);
             self.With([&](HuntPipeline& pipeline) { pipeline.SetAltitude(altitude_m); });
           },
           py::arg("altitude_m"), kSetAltitude)

@@ -51,6 +51,16 @@ RecordingChoice ChoiceOf(const pybind11::object& source, const pybind11::object&
   return choice;
 }
 
+OpenedSource OpenWithWarnings(RecordingChoice choice) {
+  // The source keeps 'tell' and may call it later, where Python cannot be called.
+  const auto told = std::make_shared<std::vector<std::string>>();
+  choice.bag.tell = [told](const std::string& text) { told->push_back(text); };
+  OpenedSource opened = OpenRecording(choice);
+  opened.source->set_on_broken({});
+  for (const std::string& text : *told) Warn(text);
+  return opened;
+}
+
 namespace {
 
 namespace py = pybind11;
@@ -71,10 +81,7 @@ class LeftOutImages {
       const std::lock_guard lock(mutex_);
       faults.swap(faults_);
     }
-    for (const std::string& fault : faults) {
-      const std::string text = "an image is left out: " + fault;
-      if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
-    }
+    for (const std::string& fault : faults) python::Warn("an image is left out: " + fault);
   }
 
  private:
@@ -194,7 +201,7 @@ void BindRecordings(py::module_& module) {
       [](const py::object& source, const py::object& camera, PixelFormat format) {
         const RecordingChoice choice = ChoiceOf(source, camera, format);
         return Recording{choice.sources.front(), [choice] { return OpenRecording(choice); },
-                         OpenRecording(choice)};
+                         OpenWithWarnings(choice)};
       },
       py::arg("source"), py::arg("camera") = py::none(), py::arg("format") = PixelFormat::kGray,
       "Opens a recording (EuRoC), a bag, a video, a folder of images or image files.\n\nsource: a "

@@ -17,6 +17,9 @@ std::vector<std::string> SourcesOf(const pybind11::object& source);
 RecordingChoice ChoiceOf(const pybind11::object& source, const pybind11::object& camera,
                          PixelFormat format);
 
+// Opens it, and issues Python's warnings of what the user should know. Throws as OpenRecording.
+OpenedSource OpenWithWarnings(RecordingChoice choice);
+
 // A recording of Python: it can be opened any number of times, from its beginning.
 struct Recording {
   std::string name;

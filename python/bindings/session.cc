@@ -208,6 +208,7 @@ class Session {
     } else {
       options_ = VisionOptions(choices_.options);
     }
+    if (!choices_.is_hunt) WarnOf(options_.landing.target);
     if (!choices_.model) choices_.model = std::make_shared<ObjectModel>(DefaultObjectModel());
   }
   Session(const Session&) = delete;
@@ -233,7 +234,7 @@ class Session {
       opened.source->set_format(format());
       return opened;
     }
-    return OpenRecording(ChoiceOf(choices_.source, choices_.camera, format()));
+    return OpenWithWarnings(ChoiceOf(choices_.source, choices_.camera, format()));
   }
 
   std::string RunRecorded() {

@@ -72,7 +72,7 @@ class ValueClass {
 
   template <class Owner, class Member>
   ValueClass& Field(const char* name, Member Owner::*member, const char* doc) {
-    fields_->push_back({name, [member](const T& self) { return pybind11::cast(self.*member); },
+    fields_->push_back({name, doc, [member](const T& self) { return pybind11::cast(self.*member); },
                         [member](const pybind11::handle& value, T* self) {
                           if constexpr (std::is_same_v<Member, std::string_view>) {
                             self->*member = Interned(value.cast<std::string>());
@@ -89,7 +89,7 @@ class ValueClass {
   // A field that is no member: 'get' returns it, 'set' takes it.
   template <class Get, class Set>
   ValueClass& Field(const char* name, Get get, Set set, const char* doc) {
-    fields_->push_back({name, [get](const T& self) { return ObjectOf(get(self)); },
+    fields_->push_back({name, doc, [get](const T& self) { return ObjectOf(get(self)); },
                         [set](const pybind11::handle& value, T* self) { set(value, self); }});
     class_.def_property_readonly(name, get, doc);
     return *this;
@@ -114,6 +114,7 @@ class ValueClass {
  private:
   struct FieldOf {
     const char* name;
+    const char* doc;
     std::function<pybind11::object(const T&)> get;
     std::function<void(const pybind11::handle&, T*)> set;
   };
@@ -143,7 +144,7 @@ class ValueClass {
         field.set(given, value);
       } catch (const pybind11::cast_error&) {
         throw pybind11::type_error(own + "." + key + ": got " + std::string(pybind11::repr(given)) +
-                                   ", expected a value of the kind that its docstring says");
+                                   ", expected: " + field.doc);
       }
       return;
     }

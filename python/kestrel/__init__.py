@@ -10,6 +10,7 @@ by one line: TypeError for another kind of value, InputError for the rest.
 """
 
 from . import _kestrel
+from ._calls import with_clear_errors as _with_clear_errors
 from ._kestrel import *  # noqa: F401,F403
 from ._kestrel import __version__ as __version__
 from .tables import ResultTable as ResultTable
@@ -18,3 +19,4 @@ from .tables import ResultTable as ResultTable
 for _name, _value in vars(_kestrel).items():
     if not _name.startswith("_"):
         _value.__module__ = "kestrel"
+        globals()[_name] = _with_clear_errors(_value)
