@@ -59,6 +59,26 @@ TEST_F(ConsoleCommandTest, ACameraNeedsNeitherCalibrationNorAutopilot) {
   }
 }
 
+TEST_F(ConsoleCommandTest, AFlightWithoutACalibrationShowsAndRecords) {
+  const std::string kept = folder_ / "kept";
+  RunningCommand fly(
+      "fly 'videotestsrc is-live=true ! video/x-raw,width=320,height=240' --console 127.0.0.1:0"
+      " --set fly.keep_folder=" +
+          kept,
+      folder_);
+  TestSocket socket(fly.Port());
+  socket.Send(R"({"images": true})");
+  EXPECT_EQ(socket.Await("hello")["offers"].back(), "lens");
+  EXPECT_TRUE(socket.Await("image")["shapes"].empty());
+  socket.Send(R"({"command": "record", "value": 1})");
+  nlohmann::json status = socket.Await("status");
+  while (!status["recording"]) status = socket.Await("status");
+  socket.Await("sample");
+  EXPECT_EQ(fly.End(), 0) << fly.Log();
+  EXPECT_THAT(fly.Log(), HasSubstr("no lens calibration"));
+  EXPECT_FALSE(std::filesystem::is_empty(kept));
+}
+
 TEST_F(ConsoleCommandTest, ACameraThatIsMissingIsSaidAndTriedAgain) {
   RunningCommand console("console /dev/video63 --address 127.0.0.1:0", folder_);
   TestSocket socket(console.Port());
