@@ -46,7 +46,7 @@ class DoctorVisit {
  public:
   explicit DoctorVisit(const DoctorArguments& arguments)
       : arguments_(arguments),
-        options_(arguments.flight.ReadOptions()),
+        options_(arguments_.flight.ReadOptions()),
         source_(options_, arguments_.flight.source.dds.NodeOpener(options_.dds)) {
     SetUse();
     OpenSource();
@@ -224,7 +224,6 @@ void RunDoctor(const DoctorArguments& arguments) {
     fmt::print("{}", Explain({}));
     return;
   }
-  if (arguments.flight.source.sources.empty()) throw CLI::RequiredError("SOURCE");
   DoctorVisit visit(arguments);
   fmt::print(stderr, "observing for {:g} s\n", arguments.duration_s);
   std::vector<Finding> findings = visit.Look();
@@ -249,7 +248,6 @@ void AddDoctorCommand(CLI::App* app) {
       app->add_subcommand("doctor", "Check camera, calibration, mount, autopilot and computer");
   const auto arguments = std::make_shared<DoctorArguments>();
   arguments->flight.AddTo(command);
-  command->get_option("SOURCE")->required(false);  // not needed for --explain
   command
       ->add_flag("--moving{4.2}", arguments->moving_mps,
                  "Check the set-up for a moving target, at 4.2 m/s or --moving=SPEED")

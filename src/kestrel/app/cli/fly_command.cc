@@ -26,6 +26,7 @@
 #include "kestrel/app/fly/fly_source.h"
 #include "kestrel/app/foxglove/flight_live.h"
 #include "kestrel/app/foxglove/mcap_sink.h"
+#include "kestrel/app/options/field_settings.h"
 #include "kestrel/comms/team/team_link.h"
 #include "kestrel/core/base/bounded_queue.h"
 #include "kestrel/core/base/error.h"
@@ -89,9 +90,11 @@ RecordingChoice CameraChoice(const FlyArguments& arguments) {
 // A flight: its sinks and its team around a LiveSession.
 class Flight {
  public:
-  explicit Flight(const FlyArguments& arguments)
+  // 'options': those that the arguments give.
+  Flight(const FlyArguments& arguments, const KestrelOptions& options)
       : arguments_(arguments),
-        options_(arguments.ReadOptions()),
+        options_(options),
+        settings_(arguments.source.options.config, arguments.given, options),
         source_(options_, arguments_.source.dds.NodeOpener(options_.dds)) {
     OpenAloud(CameraChoice(arguments_), arguments_.loop, &source_);
     RequireAutopilot();
@@ -273,6 +276,11 @@ class Flight {
             .keep_snapshot =
                 [this, logged](const cv::Mat& image, Time captured) {
                   return logged(keeper_->KeepSnapshot(image, captured));
+                },
+            .settings =
+                [this](const std::vector<std::string>& settings) {
+                  if (settings.empty()) return settings_.State();
+                  return settings_.Save(settings, session_->Report().autopilot);
                 }};
   }
 
@@ -304,6 +312,7 @@ class Flight {
 
   FlyArguments arguments_;
   KestrelOptions options_;
+  FieldSettings settings_;  // used by the page's thread
   FlySource source_;
   ObservationSinks sinks_;
   FlightLog* log_ = nullptr;          // of the sinks
@@ -335,8 +344,7 @@ void RequireNoResults(const FlyArguments& arguments, const std::string& advice) 
 }
 
 // Shows and records a camera that cannot measure.
-void RunUncalibrated(const FlyArguments& arguments) {
-  const KestrelOptions options = arguments.ReadOptions();
+void RunUncalibrated(const FlyArguments& arguments, const KestrelOptions& options) {
   const std::string& name = arguments.source.sources.front();
   const std::string advice = fmt::format(
       "{0} has no lens calibration, so nothing is measured: `kestrel console {1}` or `kestrel "
@@ -369,10 +377,11 @@ void RunUncalibrated(const FlyArguments& arguments) {
   Tell(InWords({.outcome = outcome}) + "\n");
 }
 
-void RunFly(const FlyArguments& arguments) {
+void RunFly(FlyArguments arguments) {
   OutliveTerminal();
-  if (IsUncalibrated(arguments)) return RunUncalibrated(arguments);
-  Flight flight(arguments);
+  const KestrelOptions options = arguments.ReadOptions();
+  if (IsUncalibrated(arguments)) return RunUncalibrated(arguments, options);
+  Flight flight(arguments, options);
   Tell(arguments.autopilot.empty() ? kEndsWithoutAutopilot : kEndsByLanding);
   const FlightEnd end = flight.Run();
   flight.ShowEnd(end);
@@ -382,9 +391,10 @@ void RunFly(const FlyArguments& arguments) {
 
 }  // namespace
 
-void FlyUntilInterrupted(const FlyArguments& arguments) {
+void FlyUntilInterrupted(FlyArguments arguments) {
+  const KestrelOptions options = arguments.ReadOptions();
   while (!WasInterrupted()) {
-    Flight flight(arguments);
+    Flight flight(arguments, options);
     Tell(InWords(flight.Run()) + "\n");
   }
 }

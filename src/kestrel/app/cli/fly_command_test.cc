@@ -140,6 +140,16 @@ TEST_F(FlyCommandTest, WithoutACalibrationNothingIsSent) {
   ExpectInputError("fly 'udpsrc port=99999 ! filesrc'", "udpsrc");
 }
 
+TEST_F(FlyCommandTest, TheSourceMayBeInTheConfiguration) {
+  const std::string flight =
+      Simulate("landing", "--scenario calm --seed 2 --set frames=10 --set rate_hz=10");
+  const std::string config = folder_.Write("kestrel.yaml", "fly:\n  source: " + flight + "\n");
+  EXPECT_THAT(Succeed("fly --config " + config).err, HasSubstr("pattern found in 10"));
+  const Outcome none = Run("fly");
+  EXPECT_EQ(none.status, 2);
+  EXPECT_THAT(none.err, HasSubstr("SOURCE, or fly.source in --config FILE, is required"));
+}
+
 TEST_F(FlyCommandTest, FaultsAreNamed) {
   const std::string source = "fly sim:standing --autopilot ";
   ExpectInputError(source + "udp://127.0.0.1:14550", "udp");
