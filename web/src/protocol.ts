@@ -5,6 +5,7 @@ import type { Calibration } from "./calibration";
 
 import type { Colors, ColorScores } from "./color_protocol";
 import type { Lens } from "./lens";
+import type { Settings } from "./settings";
 import type { Study, StudyReplay } from "./study";
 
 export const layers = ["detection", "prediction", "rejected", "truth", "second"] as const;
@@ -61,7 +62,8 @@ export type CommandName =
   | "open"
   | "lens"
   | "lens-stop"
-  | "lens-save";
+  | "lens-save"
+  | "settings";
 
 export interface Hello {
   kind: "hello";
@@ -270,6 +272,7 @@ export type ServerMessage =
   | Study
   | StudyReplay
   | Lens
+  | Settings
   | LinkReport;
 
 export interface ImageMessage {

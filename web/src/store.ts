@@ -26,6 +26,7 @@ import type {
   Vehicle,
 } from "./protocol";
 import { SeriesBuffer } from "./series_buffer";
+import type { Settings } from "./settings";
 import type { Study, StudyReplay } from "./study";
 
 export type ConnectionState = "connecting" | "open" | "lost" | "refused";
@@ -68,6 +69,7 @@ export interface State {
   study: Study | null;
   studyReplay: StudyReplay | null;
   lens: Lens | null;
+  settings: Settings | null;
   link: LinkReport | null;
   /** Changed in place, by every message. */
   freshness: Freshness;
@@ -122,6 +124,7 @@ export function initialState(): State {
     study: null,
     studyReplay: null,
     lens: null,
+    settings: null,
     link: null,
     freshness: new Freshness(),
     staleness: unknown,
@@ -171,6 +174,7 @@ export function withMessage(state: State, message: ServerMessage): State {
         freshness: new Freshness(),
         staleness: unknown,
         lens: null,
+        settings: null,
         series: new SeriesBuffer(message.series.length),
         flight: null,
       };
@@ -221,6 +225,8 @@ export function withMessage(state: State, message: ServerMessage): State {
       return withReplay(state, message);
     case "lens":
       return { ...state, lens: message };
+    case "settings":
+      return { ...state, settings: message };
     case "link":
       return { ...state, link: message };
   }

@@ -55,6 +55,19 @@ const options = [
   { name: "landing.still", value: "false", unit: "", meaning: "frames have nothing to do with each other" },
 ];
 
+const settings = [
+  { name: "fly.source", label: "Camera", value: "/dev/video0", unit: "", meaning: "camera or recording", choices: [], given: true },
+  { name: "landing.target.kind", label: "Target", value: "aruco", unit: "", meaning: "what the target is", choices: ["aruco", "ring-cross"], given: false },
+  { name: "landing.target.id", label: "Id of the target", value: "3", unit: "", meaning: "id of the pad", choices: [], given: false },
+];
+
+/** The answer to changes that are saved. */
+function savedSettings(changes) {
+  const values = Object.fromEntries(changes.map((change) => change.split("=")));
+  const changed = settings.map((one) => ({ ...one, value: values[one.name] ?? one.value }));
+  return { kind: "settings", file: "kestrel.yaml", settings: changed, saved: "saved to kestrel.yaml; restart kestrel fly", error: "" };
+}
+
 /**
  * Starts the server; resolves to it. 'isReplay': as `kestrel console` of a recording; 'isStudy': of a study. Its
  * 'silent' are the sources of a flight that give nothing any more, with the time of the last, ms; "program": it says
@@ -107,7 +120,7 @@ class Client {
   }
 
   greet() {
-    const offers = this.isStudy ? ["play", "seek", "step", "detect", "cancel", "compare", "open"] : this.isReplay ? ["play", "seek", "step", "detect", "cancel", "calibrate"] : ["record", "snapshot"];
+    const offers = this.isStudy ? ["play", "seek", "step", "detect", "cancel", "compare", "open"] : this.isReplay ? ["play", "seek", "step", "detect", "cancel", "calibrate"] : ["record", "snapshot", "settings"];
     const title = this.isStudy ? "study" : this.isReplay ? "Recording flight_07" : "Simulated flight";
     const layers = ["detection", "prediction", "rejected", ...(this.isReplay ? ["second"] : [])];
     this.send({ kind: "hello", title, live: !this.isReplay, series, layers, views, offers, exports: this.isReplay, colors: this.isReplay && !this.isStudy });
@@ -115,6 +128,7 @@ class Client {
     this.send({ kind: "health", checks });
     if (!this.isReplay) this.send({ kind: "doctor", checks: doctorChecks });
     if (!this.isReplay) this.send(team());
+    if (!this.isReplay) this.send({ kind: "settings", file: "kestrel.yaml", settings, saved: "", error: "" });
     this.event("info", "camera opened: 376x240, 30 Hz");
     this.event("warning", "autopilot's clock is 12 ms ahead");
     if (this.isReplay) this.sendTimeline();
@@ -201,6 +215,7 @@ class Client {
     this.calibration?.receive(message);
     this.study?.receive(message);
     if (message.command === "detect") this.detect(message.settings);
+    if (message.command === "settings") this.send(savedSettings(message.settings));
     if (message.command === "snapshot") this.event("info", "snapshot kept");
     if (message.command === "play") this.speed = message.value;
     if (message.command === "step") this.show(this.frame + message.value, 0);

@@ -6,6 +6,7 @@ import type { Status } from "../protocol";
 import { isFresh, type ConnectionState } from "../store";
 import { timeToGo } from "../time_to_go";
 import { useClock, useFresh, useStore } from "../use_store";
+import { SettingsPanel } from "./settings_panel";
 
 const connectionInWords: Record<ConnectionState, string> = {
   connecting: "Connecting",
@@ -17,7 +18,7 @@ const connectionInWords: Record<ConnectionState, string> = {
 /** Series that a pilot reads: always in view. */
 const mainSeries = ["height", "offset", "objects"];
 
-/** State in words, what is wrong, the numbers that a pilot reads, the vehicle, and what can be done. */
+/** State in words, what is wrong, the numbers that a pilot reads, the vehicle, what can be done, and settings. */
 export function Header() {
   const isOnTable = useStore((state) => state.page === "study");
   return (
@@ -26,6 +27,7 @@ export function Header() {
       {!isOnTable && <MainNumbers />}
       <VehicleFacts />
       <Actions />
+      <SettingsPanel />
     </header>
   );
 }

@@ -59,6 +59,55 @@ TEST_F(ConsoleCommandTest, ACameraIsShownWithoutCalibrationAndAutopilot) {
   }
 }
 
+TEST_F(ConsoleCommandTest, AFlightsSettingsAreSaved) {
+  const std::string config = folder_.Write(
+      "kestrel.yaml", "# ours\nfly:\n  sim_camera:\n    scale: 0.4\nlanding:\n  still: false\n");
+  const auto answer = [](TestSocket* socket, const std::string& setting) {
+    socket->Await("settings");
+    socket->Send(R"({"command": "settings", "settings": [")" + setting + "\"]}");
+    return socket->Await("settings");
+  };
+  {
+    RunningCommand fly("fly " + Recording() + " --loop --console 127.0.0.1:0 --config " + config,
+                       folder_);
+    TestSocket socket(fly.Port());
+    EXPECT_EQ(answer(&socket, "landing.target.size_m=0.6")["saved"],
+              "saved to " + config + "; restart kestrel fly");
+  }
+  EXPECT_EQ(ReadFile(config),
+            "# ours\nfly:\n  sim_camera:\n    scale: 0.4\nlanding:\n  target:\n    size_m: 0.6\n"
+            "  still: false\n");
+  RunningCommand fly(
+      "fly sim:standing --autopilot sim:px4 --console 127.0.0.1:0 --config " + config, folder_);
+  TestSocket socket(fly.Port());
+  nlohmann::json vehicle = socket.Await("vehicle");
+  while (vehicle.dump().find("disarmed") != std::string::npos) vehicle = socket.Await("vehicle");
+  socket.Send(R"({"command": "settings", "settings": ["landing.target.size_m=0.7"]})");
+  nlohmann::json settings = socket.Await("settings");
+  while (settings["error"] == "") settings = socket.Await("settings");
+  EXPECT_THAT(settings["error"].get<std::string>(), HasSubstr("the UAV is armed"));
+}
+
+TEST_F(ConsoleCommandTest, AFlightWithoutACalibrationShowsAndRecords) {
+  const std::string kept = folder_ / "kept";
+  RunningCommand fly(
+      "fly 'videotestsrc is-live=true ! video/x-raw,width=320,height=240' --console 127.0.0.1:0"
+      " --set fly.keep_folder=" +
+          kept,
+      folder_);
+  TestSocket socket(fly.Port());
+  socket.Send(R"({"images": true})");
+  EXPECT_EQ(socket.Await("hello")["offers"].back(), "lens");
+  EXPECT_TRUE(socket.Await("image")["shapes"].empty());
+  socket.Send(R"({"command": "record", "value": 1})");
+  nlohmann::json status = socket.Await("status");
+  while (!status["recording"]) status = socket.Await("status");
+  socket.Await("sample");
+  EXPECT_EQ(fly.End(), 0) << fly.Log();
+  EXPECT_THAT(fly.Log(), HasSubstr("no lens calibration"));
+  EXPECT_FALSE(std::filesystem::is_empty(kept));
+}
+
 TEST_F(ConsoleCommandTest, MissingCameraIsReportedAndOpenedAgain) {
   RunningCommand console("console /dev/video63 --address 127.0.0.1:0", folder_);
   TestSocket socket(console.Port());

@@ -47,7 +47,7 @@ class DoctorVisit {
  public:
   explicit DoctorVisit(const DoctorArguments& arguments)
       : arguments_(arguments),
-        options_(arguments.flight.ReadOptions()),
+        options_(arguments_.flight.ReadOptions()),
         source_(options_, arguments_.flight.source.dds.NodeOpener(options_.dds)) {
     SetUse();
     OpenSource();
@@ -224,7 +224,6 @@ void RunDoctor(const DoctorArguments& arguments) {
     fmt::print("{}{}", CheckTable(), Explain({}));
     return;
   }
-  if (arguments.flight.source.sources.empty()) throw CLI::RequiredError("SOURCE");
   CatchInterrupts();  // a source may take seconds to open
   DoctorVisit visit(arguments);
   fmt::print(stderr, "observing for {:g} s\n", arguments.duration_s);
@@ -250,7 +249,6 @@ void AddDoctorCommand(CLI::App* app) {
       app->add_subcommand("doctor", "Check camera, calibration, mount, autopilot and computer");
   const auto arguments = std::make_shared<DoctorArguments>();
   arguments->flight.AddTo(command);
-  command->get_option("SOURCE")->required(false);  // not needed for --explain
   command
       ->add_flag("--moving{4.2}", arguments->moving_mps,
                  "Check the set-up for a moving target, at 4.2 m/s or --moving=SPEED")

@@ -38,10 +38,10 @@ double ParseLinkDelay(const std::string& text) {
 
 void FlyArguments::AddTo(CLI::App* command) {
   source.AddTo(command);
-  command->get_option("SOURCE")->description(
+  command->get_option("SOURCE")->required(false)->description(
       "A camera (/dev/video0, rtsp://...), a GStreamer pipeline, a topic of ROS 2 (dds:TOPIC), a "
       "simulated camera (sim:SCENARIO, as sim:standing or sim:figure8), or a recording, which is "
-      "played in real time");
+      "played in real time (default: fly.source of --config)");
   source.options.target.AddTo(command);
   command
       ->add_option("--autopilot", autopilot,
@@ -93,9 +93,17 @@ void FlyArguments::AddTo(CLI::App* command) {
   command->add_flag("--loop", loop, "Play a recording in a loop");
 }
 
-KestrelOptions FlyArguments::ReadOptions() const {
+KestrelOptions FlyArguments::ReadOptions() {
   RequireFlyable(source);
   KestrelOptions options = source.options.Read();
+  given = source.options.Settings();
+  if (!source.sources.empty()) {
+    options.fly.source = source.sources.front();
+    given.push_back("fly.source=" + options.fly.source);
+  } else if (options.fly.source.empty()) {
+    throw CLI::RequiredError("SOURCE, or fly.source in --config FILE,");
+  }
+  source.sources = {options.fly.source};
   if (rate_hz) options.fly.flight.rate_hz = *rate_hz;
   if (!signing_key.empty()) options.fly.link.signing_key = signing_key;
   if (link_delay != "auto") options.fly.flight.link_delay_s = ParseLinkDelay(link_delay);

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -29,12 +30,15 @@ struct FlyArguments {
   std::string model;  // file with the model of the objects
   TeamArguments team;
   bool loop = false;
+  // Options that the command line sets over the configuration file, as "key=value"; by ReadOptions.
+  std::vector<std::string> given;
 
   void AddTo(CLI::App* command);
 
-  // Returns the options with the changes that these arguments make. Throws InputError for arguments
-  // of `land` that a flight does not support, and when the options are not valid.
-  KestrelOptions ReadOptions() const;
+  // Returns the options with the changes that these arguments make; a source that the command line
+  // does not name becomes that of the options. Throws InputError for arguments of `land` that a
+  // flight does not support, and when the options are not valid. Once only.
+  KestrelOptions ReadOptions();
 };
 
 }  // namespace kestrel

@@ -15,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/app/cli/camera_run.h"
 #include "kestrel/app/cli/fly_arguments.h"
 #include "kestrel/app/cli/interrupt.h"
 #include "kestrel/app/cli/page_links.h"
@@ -25,6 +26,7 @@
 #include "kestrel/app/fly/fly_source.h"
 #include "kestrel/app/foxglove/flight_live.h"
 #include "kestrel/app/foxglove/mcap_sink.h"
+#include "kestrel/app/options/field_settings.h"
 #include "kestrel/comms/team/team_link.h"
 #include "kestrel/core/base/bounded_queue.h"
 #include "kestrel/core/base/error.h"
@@ -47,6 +49,20 @@ constexpr char kEndsByLanding[] =
 constexpr char kEndsWithoutAutopilot[] =
     "runs until Ctrl-C, SIGTERM or the end of the source; goes on when its terminal closes\n";
 
+// A camera that is slow, or delivers nothing, must not look like a program that hangs.
+void OpenAloud(const RecordingChoice& choice, bool is_looped, FlySource* opened) {
+  const std::string& source = choice.sources.front();
+  const std::jthread notice([&source](const std::stop_token& is_open) {
+    constexpr Duration kQuiet = std::chrono::seconds(1);
+    std::mutex mutex;
+    std::unique_lock lock(mutex);
+    std::condition_variable_any().wait_for(lock, is_open, kQuiet, [] { return false; });
+    if (is_open.stop_requested() || !IsCamera(source)) return;
+    Tell("waits for the camera: the first image of " + source + "\n");
+  });
+  opened->Open(choice, is_looped);
+}
+
 // Prints events with the time since the start. Any thread may give one and does not wait for the
 // terminal; the flight's own thread shows them.
 class FlightLog : public ObservationSink {
@@ -67,15 +83,20 @@ class FlightLog : public ObservationSink {
   Time start_ = Now();
 };
 
+RecordingChoice CameraChoice(const FlyArguments& arguments) {
+  return arguments.source.Recording(arguments.hunt ? PixelFormat::kBgr : PixelFormat::kGray);
+}
+
 // A flight: its sinks and its team around a LiveSession.
 class Flight {
  public:
-  explicit Flight(const FlyArguments& arguments)
+  // 'options': those that the arguments give.
+  Flight(const FlyArguments& arguments, const KestrelOptions& options)
       : arguments_(arguments),
-        options_(arguments.ReadOptions()),
+        options_(options),
+        settings_(arguments.source.options.config, arguments.given, options),
         source_(options_, arguments_.source.dds.NodeOpener(options_.dds)) {
-    const PixelFormat format = arguments.hunt ? PixelFormat::kBgr : PixelFormat::kGray;
-    OpenSource(format);
+    OpenAloud(CameraChoice(arguments_), arguments_.loop, &source_);
     RequireAutopilot();
     log_ = sinks_.Add(std::make_unique<FlightLog>());
     OpenConsole();
@@ -128,20 +149,6 @@ class Flight {
     const std::string& source = arguments_.source.sources.front();
     if (!SimulatedSource::IsNamed(source) || !arguments_.autopilot.empty()) return;
     throw WrongUsage(source + ": expected --autopilot URL, as sim:ardupilot or sim:px4");
-  }
-
-  // A camera that is slow, or delivers nothing, must not look like a program that hangs.
-  void OpenSource(PixelFormat format) {
-    const std::string& source = arguments_.source.sources.front();
-    const std::jthread notice([&source](const std::stop_token& is_open) {
-      constexpr Duration kQuiet = std::chrono::seconds(1);
-      std::mutex mutex;
-      std::unique_lock lock(mutex);
-      std::condition_variable_any().wait_for(lock, is_open, kQuiet, [] { return false; });
-      if (is_open.stop_requested() || !IsCamera(source)) return;
-      Tell("waits for the camera: the first image of " + source + "\n");
-    });
-    source_.Open(arguments_.source.Recording(format), arguments_.loop);
   }
 
   void Say(const std::string& text, EventLevel level = EventLevel::kInfo) {
@@ -269,6 +276,11 @@ class Flight {
             .keep_snapshot =
                 [this, logged](const cv::Mat& image, Time captured) {
                   return logged(keeper_->KeepSnapshot(image, captured));
+                },
+            .settings =
+                [this](const std::vector<std::string>& settings) {
+                  if (settings.empty()) return settings_.State();
+                  return settings_.Save(settings, session_->Report().autopilot);
                 }};
   }
 
@@ -300,6 +312,7 @@ class Flight {
 
   FlyArguments arguments_;
   KestrelOptions options_;
+  FieldSettings settings_;  // used by the page's thread
   FlySource source_;
   ObservationSinks sinks_;
   FlightLog* log_ = nullptr;          // of the sinks
@@ -311,9 +324,64 @@ class Flight {
   std::optional<FlightKeeper> keeper_;
 };
 
-void RunFly(const FlyArguments& arguments) {
+// True for a camera of whose lens nothing is known.
+bool IsUncalibrated(const FlyArguments& arguments) {
+  return IsCamera(arguments.source.sources.front()) && arguments.source.camera.empty();
+}
+
+// Throws WrongUsage for what needs a measurement. 'advice': how there would be one.
+void RequireNoResults(const FlyArguments& arguments, const std::string& advice) {
+  const SourceArguments& source = arguments.source;
+  const std::pair<const char*, bool> results[] = {{"--autopilot", !arguments.autopilot.empty()},
+                                                  {"--dds", source.dds.is_given()},
+                                                  {"--ros", arguments.ros},
+                                                  {"--team", !arguments.team.team.empty()},
+                                                  {"--output", !source.output.empty()},
+                                                  {"--mcap", !source.mcap.empty()}};
+  for (const auto& [option, is_given] : results) {
+    if (is_given) throw WrongUsage(fmt::format("{}: nothing to send or write: {}", option, advice));
+  }
+}
+
+// Shows and records a camera that cannot measure.
+void RunUncalibrated(const FlyArguments& arguments, const KestrelOptions& options) {
+  const std::string& name = arguments.source.sources.front();
+  const std::string advice = fmt::format(
+      "{0} has no lens calibration, so nothing is measured: `kestrel console {1}` or `kestrel "
+      "calibrate lens` makes one for --camera FILE",
+      name, ShellWord(name));
+  RequireNoResults(arguments, advice);
+  FlySource source(options, {});
+  CameraRunChoice choice{.camera = CameraChoice(arguments),
+                         .is_looped = arguments.loop,
+                         .keep_folder = options.fly.keep_folder,
+                         .record = arguments.record,
+                         .replaces = arguments.source.force};
+  choice.camera.may_assume_lens = true;
+  if (arguments.console) choice.page = options.console;
+  OpenAloud(choice.camera, choice.is_looped, &source);
+  CameraRun run(options, choice, &source);
+  Tell("kestrel: " + advice + "\n");
+  Tell(kEndsWithoutAutopilot);
+  CatchInterrupts();
+  Time next_state = Now();
+  run.Play([&] {
+    if (Now() >= next_state) {
+      Tell(run.State() + "\n");
+      next_state += DurationFromSeconds(kStatePeriod_s);
+    }
+    return WasInterrupted();
+  });
+  Tell(run.State() + "\n");
+  const auto outcome = WasInterrupted() ? FlightOutcome::kStopped : FlightOutcome::kSourceEnded;
+  Tell(InWords({.outcome = outcome}) + "\n");
+}
+
+void RunFly(FlyArguments arguments) {
   OutliveTerminal();
-  Flight flight(arguments);
+  const KestrelOptions options = arguments.ReadOptions();
+  if (IsUncalibrated(arguments)) return RunUncalibrated(arguments, options);
+  Flight flight(arguments, options);
   Tell(arguments.autopilot.empty() ? kEndsWithoutAutopilot : kEndsByLanding);
   const FlightEnd end = flight.Run();
   flight.ShowEnd(end);
@@ -323,9 +391,10 @@ void RunFly(const FlyArguments& arguments) {
 
 }  // namespace
 
-void FlyUntilInterrupted(const FlyArguments& arguments) {
+void FlyUntilInterrupted(FlyArguments arguments) {
+  const KestrelOptions options = arguments.ReadOptions();
   while (!WasInterrupted()) {
-    Flight flight(arguments);
+    Flight flight(arguments, options);
     Tell(InWords(flight.Run()) + "\n");
   }
 }

@@ -16,7 +16,7 @@ void AddFlyCommand(CLI::App* app);
 
 // Makes flights with these arguments, one after the other, until the user interrupts: a show.
 // Throws InputError as the command does.
-void FlyUntilInterrupted(const FlyArguments& arguments);
+void FlyUntilInterrupted(FlyArguments arguments);
 
 // Arguments that are valid alone but not together; what() is one line.
 class WrongUsage : public std::runtime_error {

@@ -27,11 +27,15 @@ struct OptionArguments {
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
   }
-  // Returns the options, after saying what of them is not advisable.
-  KestrelOptions Read() const {
+  // Returns what these arguments set over the file, as "key=value".
+  std::vector<std::string> Settings() const {
     std::vector<std::string> all = settings;
     target.AppendTo(&all, "landing.target");
-    KestrelOptions options = ReadKestrelOptions(config, all);
+    return all;
+  }
+  // Returns the options, after saying what of them is not advisable.
+  KestrelOptions Read() const {
+    KestrelOptions options = ReadKestrelOptions(config, Settings());
     for (const std::string& warning : options.landing.target.Warnings()) {
       fmt::print(stderr, "kestrel: warning: {}\n", warning);
     }

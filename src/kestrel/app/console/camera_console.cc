@@ -31,19 +31,23 @@ ConsoleFeed::Description DescriptionOf(const std::string& title) {
                      {"best_sharpness", "", "Sharpest so far"}},
           .layers = {OverlayLayer::kDetection},
           .views = {},
-          .offers = {ConsoleCommandKind::kSnapshot, ConsoleCommandKind::kLens}};
+          .offers = {ConsoleCommandKind::kRecord, ConsoleCommandKind::kSnapshot,
+                     ConsoleCommandKind::kLens}};
 }
 
 }  // namespace
 
-CameraConsole::CameraConsole(const ConsoleOptions& options, Camera camera,
+CameraConsole::CameraConsole(const std::optional<ConsoleOptions>& page, Camera camera,
                              const std::string& folder,
                              const LandingPatternDetectorOptions& detector)
     : camera_(std::move(camera)),
       feed_(DescriptionOf(camera_.name)),
-      server_(options, &feed_),
-      lens_({camera_.name, folder, detector}, &feed_) {
-  feed_.Add(ConsoleStatus{.state = "opening", .reason = "waits for the first picture"});
+      lens_({camera_.name, folder, detector}, &feed_),
+      source_(camera_.source),
+      told_{.state = "opening", .reason = "waits for the first picture"},
+      measured_(Now()) {
+  if (page) server_.emplace(*page, &feed_);
+  feed_.Add(told_);
 }
 
 void CameraConsole::Play(const std::function<bool()>& is_stopped) {
@@ -55,25 +59,28 @@ void CameraConsole::Play(const std::function<bool()>& is_stopped) {
       Watch();
     }
     lens_.Follow();
+    TellState();
     TellAge();
   }
 }
 
 void CameraConsole::Obey(const ConsoleCommand& command) {
-  if (command.kind == ConsoleCommandKind::kSnapshot) return Snapshot();
-  lens_.Obey(command);
+  try {
+    if (command.kind == ConsoleCommandKind::kRecord) {
+      Say(EventLevel::kInfo, camera_.record(command.value != 0));
+    } else if (command.kind == ConsoleCommandKind::kSnapshot) {
+      Say(EventLevel::kInfo, Snapshot());
+    } else {
+      lens_.Obey(command);
+    }
+  } catch (const InputError& error) {
+    Say(EventLevel::kError, error.what());
+  }
 }
 
-void CameraConsole::Snapshot() {
-  const auto say = [&](EventLevel level, const std::string& text) {
-    feed_.Add(SessionEvent{Now(), level, text});
-  };
-  if (frame_.image.empty()) return say(EventLevel::kWarning, "no snapshot: there is no image yet");
-  try {
-    say(EventLevel::kInfo, camera_.keep_snapshot(frame_.image, frame_.captured));
-  } catch (const InputError& error) {
-    say(EventLevel::kError, error.what());
-  }
+std::string CameraConsole::Snapshot() const {
+  if (frame_.image.empty()) return "no snapshot: there is no image yet";
+  return camera_.keep_snapshot(frame_.image, frame_.captured);
 }
 
 void CameraConsole::Open() {
@@ -82,7 +89,7 @@ void CameraConsole::Open() {
     source_ = camera_.open();
     measured_ = Now();
   } catch (const InputError& error) {
-    TellState(error.what());
+    SetFault(error.what());
     next_attempt_ = Now() + kRetry;
   }
 }
@@ -95,7 +102,7 @@ void CameraConsole::Watch() {
   }
   const Frame* const frame = event ? std::get_if<Frame>(&*event) : nullptr;
   if (frame != nullptr) Take(*frame);
-  TellState(source_->error());
+  SetFault(source_->error());
 }
 
 void CameraConsole::Take(const Frame& frame) {
@@ -133,13 +140,20 @@ void CameraConsole::TellAge() {
   feed_.Add(ConsoleSources{now, {{ConsoleSource::kFrames, age}}});
 }
 
-void CameraConsole::TellState(const std::string& fault) {
-  if (fault.empty() && frame_.image.empty()) return;  // not open yet
+void CameraConsole::SetFault(const std::string& fault) {
   if (fault == fault_) return;
   fault_ = fault;
-  const std::string reason = fault.empty() ? "" : "trying again: " + fault;
-  if (!fault.empty()) camera_.tell(reason);
-  feed_.Add(ConsoleStatus{.state = fault.empty() ? "live" : "no picture", .reason = reason});
+  if (!fault.empty()) camera_.tell("trying again: " + fault);
+}
+
+void CameraConsole::TellState() {
+  if (fault_.empty() && frame_.image.empty()) return;  // not open yet
+  const ConsoleStatus status{.state = fault_.empty() ? "live" : "no picture",
+                             .reason = fault_.empty() ? "" : "trying again: " + fault_,
+                             .is_recording = camera_.is_recording()};
+  if (status == told_) return;
+  told_ = status;
+  feed_.Add(status);
 }
 
 }  // namespace kestrel

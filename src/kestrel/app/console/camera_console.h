@@ -18,47 +18,62 @@ namespace kestrel {
 
 // A camera on the page, before anything is known of it: its picture, rate, exposure and focus, and
 // the guided calibration of its lens. A camera that is missing or fails is opened again and again.
+// Without a page it only keeps the camera running.
 class CameraConsole {
  public:
   struct Camera {
-    std::string name;  // as the user gave it
+    std::string name;              // as the user gave it
+    LiveSource* source = nullptr;  // it, where it is open already
     // Opens it; valid until it is opened again. Throws InputError that says why it cannot be.
     std::function<LiveSource*()> open;
     // Returns the exposure, s, where the camera tells it.
     std::function<std::optional<double>()> exposure_s;
     // Keeps a picture; returns a sentence that says where. Throws InputError.
     std::function<std::string(const cv::Mat& image, Time captured)> keep_snapshot;
+    // Switches recording on or off; returns a sentence that says what was done. Throws InputError.
+    std::function<std::string(bool is_on)> record;
+    std::function<bool()> is_recording;
     // Called with each new fault of the camera.
     std::function<void(const std::string& fault)> tell;
   };
 
-  // Starts the server. Throws InputError as WebServer does.
-  CameraConsole(const ConsoleOptions& options, Camera camera, const std::string& folder,
+  // Starts the server; without 'page' there is none. Throws InputError as WebServer does.
+  CameraConsole(const std::optional<ConsoleOptions>& page, Camera camera, const std::string& folder,
                 const LandingPatternDetectorOptions& detector);
 
-  std::vector<std::string> urls() const { return server_.urls(); }
+  // As WebServer::urls; empty without a page.
+  std::vector<std::string> urls() const {
+    return server_ ? server_->urls() : std::vector<std::string>();
+  }
 
   // Shows the camera until 'is_stopped' returns true; it is called often.
   void Play(const std::function<bool()>& is_stopped);
 
+  // Shows an event. Any thread.
+  void Say(EventLevel level, const std::string& text) {
+    feed_.Add(SessionEvent{Now(), level, text});
+  }
+
  private:
   void Obey(const ConsoleCommand& command);
-  void Snapshot();
+  std::string Snapshot() const;
   void Open();
   void Watch();
   void Take(const Frame& frame);
   void AddSample(const cv::Mat& gray);
-  void TellState(const std::string& fault);
+  void SetFault(const std::string& fault);
+  void TellState();
   void TellAge();
 
   Camera camera_;
   ConsoleFeed feed_;
-  WebServer server_;
+  std::optional<WebServer> server_;
   LensPage lens_;
-  LiveSource* source_ = nullptr;  // null: to be opened
+  LiveSource* source_;  // null: to be opened
   Time next_attempt_{};
-  std::optional<std::string> fault_;  // that was told
-  ConsoleFrame frame_;                // the newest
+  std::string fault_;   // of the camera; empty: none
+  ConsoleStatus told_;  // the last status that the page got
+  ConsoleFrame frame_;  // the newest
   Time measured_{}, aged_{};
   int frames_ = 0;  // since then
   double best_sharpness_ = 0;

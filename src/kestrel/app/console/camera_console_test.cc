@@ -60,6 +60,11 @@ class CameraConsoleTest : public ::testing::Test {
     camera.keep_snapshot = [](const cv::Mat& image, Time) {
       return "kept " + std::to_string(image.cols);
     };
+    camera.record = [this](bool is_on) {
+      is_recording_ = is_on;
+      return is_on ? "recording" : "recorded";
+    };
+    camera.is_recording = [this] { return is_recording_; };
     camera.tell = [](const std::string&) {};
     console_.emplace(AnyPort(), camera, folder_.path(), LandingPatternDetectorOptions());
     thread_ = std::thread([this] { console_->Play([this] { return is_stopped_.load(); }); });
@@ -80,6 +85,7 @@ class CameraConsoleTest : public ::testing::Test {
   }
 
   TestFolder folder_;
+  bool is_recording_ = false;  // used by the page's thread only
   std::vector<LensImage> images_;
   PlayedCamera camera_{&images_};
   std::atomic<bool> is_missing_{false}, is_stopped_{false};
@@ -98,6 +104,16 @@ TEST_F(CameraConsoleTest, ShowsThePictureAndWhatItIsLike) {
   socket.Await("image");
   socket.Send(R"({"command": "snapshot"})");
   EXPECT_EQ(socket.Await("event")["text"], "kept 320");
+}
+
+TEST_F(CameraConsoleTest, IsRecordedWhenThePageAsks) {
+  TestSocket socket(port());
+  EXPECT_FALSE(AwaitState(&socket, "live")["recording"]);
+  socket.Send(R"({"command": "record", "value": 1})");
+  EXPECT_EQ(socket.Await("event")["text"], "recording");
+  EXPECT_TRUE(socket.Await("status")["recording"]);
+  socket.Send(R"({"command": "record", "value": 0})");
+  EXPECT_FALSE(socket.Await("status")["recording"]);
 }
 
 TEST_F(CameraConsoleTest, MissingCameraIsReportedAndOpenedAgain) {

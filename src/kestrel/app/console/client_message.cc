@@ -26,16 +26,17 @@ constexpr std::array kCommands = {ConsoleCommandKind::kRecord,
                                   ConsoleCommandKind::kOpen,
                                   ConsoleCommandKind::kLens,
                                   ConsoleCommandKind::kLensStop,
-                                  ConsoleCommandKind::kLensSave};
+                                  ConsoleCommandKind::kLensSave,
+                                  ConsoleCommandKind::kSettings};
 // A list in an object. Deeper text would use up the parser's stack.
 constexpr int kMaxDepth = 2;
 // True for the commands with a list of settings.
 bool HasSettings(ConsoleCommandKind kind) {
   return kind == ConsoleCommandKind::kDetect || kind == ConsoleCommandKind::kCalibrate ||
          kind == ConsoleCommandKind::kCompare || kind == ConsoleCommandKind::kLens ||
-         kind == ConsoleCommandKind::kLensSave;
+         kind == ConsoleCommandKind::kLensSave || kind == ConsoleCommandKind::kSettings;
 }
-constexpr std::size_t kMaxSettings = 32, kMaxSettingBytes = 128;
+constexpr std::size_t kMaxSettings = 32, kMaxSettingBytes = 512;
 
 bool ReadSettings(const Json& list, std::vector<std::string>* settings) {
   if (!list.is_array() || list.size() > kMaxSettings) return false;
@@ -125,6 +126,8 @@ const char* ToString(ConsoleCommandKind kind) {
       return "lens-stop";
     case ConsoleCommandKind::kLensSave:
       return "lens-save";
+    case ConsoleCommandKind::kSettings:
+      return "settings";
   }
   return "";
 }

@@ -43,16 +43,18 @@ enum class ConsoleCommandKind {
   kLens,             // calibrate the lens of a live camera by a board and a distortion model
   kLensStop,         // stop that
   kLensSave,         // save its result: a name, and "replace" to replace a file
+  kSettings,         // save these settings for the next start
 };
 // Returns "record", "snapshot", "play", "seek", "step", "detect", "cancel", "calibrate",
-// "calibrate-cancel", "calibrate-save", "compare", "open", "lens", "lens-stop" or "lens-save".
+// "calibrate-cancel", "calibrate-save", "compare", "open", "lens", "lens-stop", "lens-save" or
+// "settings".
 const char* ToString(ConsoleCommandKind kind);
 struct ConsoleCommand {
   ConsoleCommandKind kind = ConsoleCommandKind::kSnapshot;
   double value = 0;  // finite
   // As in {"command": "detect", "settings": ["landing.still=true"]}, {"command": "calibrate",
   // "settings": ["mount", "clock"]} or {"command": "compare", "settings": ["0", "2"]}. At most 32
-  // settings of at most 128 bytes each.
+  // settings of at most 512 bytes each.
   std::vector<std::string> settings = {};
 };
 

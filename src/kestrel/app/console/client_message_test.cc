@@ -32,6 +32,11 @@ TEST(ClientMessageTest, ReadsWhatThePageSends) {
   EXPECT_EQ(calibrate.settings, std::vector<std::string>{"lens"});
   EXPECT_EQ(std::get<ConsoleCommand>(*ParseClientMessage(R"({"command":"calibrate-save"})")).kind,
             ConsoleCommandKind::kCalibrateSave);
+  const auto save = std::get<ConsoleCommand>(
+      *ParseClientMessage(R"({"command": "settings", "settings": ["landing.target.id=3"]})"));
+  EXPECT_EQ(save.kind, ConsoleCommandKind::kSettings);
+  EXPECT_EQ(save.settings, std::vector<std::string>{"landing.target.id=3"});
+  EXPECT_FALSE(ParseClientMessage(R"({"command": "settings"})"));
 }
 
 TEST(ClientMessageTest, SettingsAreBounded) {
@@ -42,9 +47,9 @@ TEST(ClientMessageTest, SettingsAreBounded) {
                               list.substr(std::min<std::size_t>(1, list.size())) + "]}");
   };
   EXPECT_TRUE(detect(0, 1));
-  EXPECT_TRUE(detect(32, 128));
+  EXPECT_TRUE(detect(32, 512));
   EXPECT_FALSE(detect(33, 1));
-  EXPECT_FALSE(detect(1, 129));
+  EXPECT_FALSE(detect(1, 513));
 }
 
 std::string Mark(const std::string& frame, const std::string& tool, const std::string& size,

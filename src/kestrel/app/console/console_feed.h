@@ -17,6 +17,7 @@
 #include "kestrel/app/console/color_state.h"
 #include "kestrel/app/console/export_request.h"
 #include "kestrel/app/console/lens_state.h"
+#include "kestrel/app/console/settings_state.h"
 #include "kestrel/app/console/study_state.h"
 #include "kestrel/core/base/bounded_queue.h"
 #include "kestrel/core/base/latest_value.h"
@@ -220,7 +221,7 @@ using ConsoleUpdate =
                  ConsoleTimeline, ConsolePlayback, ConsoleDoctor, ConsoleOptionList,
                  ConsoleSecondRun, ConsoleFindings, ConsoleClip, ConsoleColors, ConsoleColorScores,
                  ConsoleCalibration, ConsoleTeam, ConsoleVehicle, ConsoleStudy, ConsoleStudyReplay,
-                 ConsoleSources, ConsoleSeries, ConsoleLens>;
+                 ConsoleSources, ConsoleSeries, ConsoleLens, ConsoleSettings>;
 
 // A task of the page of colours.
 using ColorJob = std::variant<ColorRequest, PendingExport>;

@@ -197,6 +197,24 @@ Json Message(const ConsoleFindings& findings) {
   return {{"kind", "findings"}, {"frame", findings.frame}, {"runs", std::move(runs)}};
 }
 
+Json Message(const ConsoleSettings& state) {
+  Json settings = Json::array();
+  for (const ConsoleSetting& one : state.settings) {
+    settings.push_back({{"name", one.name},
+                        {"label", one.label},
+                        {"value", one.value},
+                        {"unit", one.unit},
+                        {"meaning", one.meaning},
+                        {"choices", one.choices},
+                        {"given", one.is_given}});
+  }
+  return {{"kind", "settings"},
+          {"file", state.file},
+          {"settings", std::move(settings)},
+          {"saved", state.saved},
+          {"error", state.error}};
+}
+
 Json Message(const ConsoleClip& clip) {
   return {{"kind", "clip"}, {"done", clip.done}, {"frames", clip.frames}};
 }

@@ -30,7 +30,8 @@ ConsoleFeed::Description DescriptionOf(const std::string& title, const FlightVie
       .series = is_hunt ? HuntSeries() : LandingSeries(),
       .layers = is_hunt ? HuntLayers() : LandingLayers(),
       .views = is_hunt ? HuntImageViews(std::get<HuntView>(view)) : LandingImageViews(),
-      .offers = {ConsoleCommandKind::kRecord, ConsoleCommandKind::kSnapshot},
+      .offers = {ConsoleCommandKind::kRecord, ConsoleCommandKind::kSnapshot,
+                 ConsoleCommandKind::kSettings},
       .has_colors = has_colors};
   description.series.push_back({"latency", "ms", "Capture to result", {ConsoleSource::kFrames}});
   description.series.push_back({"link", "1/s", "Packets", {ConsoleSource::kAutopilot}});
@@ -209,6 +210,7 @@ void FlightConsole::Take(const Observation& observation) {
 void FlightConsole::Answer(FlightRequests requests) {
   answering_thread_ = std::thread([this, requests = std::move(requests)] {
     SetUpThisThread("console asks", {});
+    feed_.Add(requests.settings({}));
     while (!is_over_) {
       while (const auto command = feed_.TakeCommand()) Answer(requests, *command);
       std::this_thread::sleep_for(kAnswerInterval);
@@ -222,6 +224,8 @@ void FlightConsole::Answer(const FlightRequests& requests, const ConsoleCommand&
       Say(EventLevel::kInfo, requests.record(command.value != 0));
     } else if (command.kind == ConsoleCommandKind::kSnapshot) {
       KeepSnapshot(requests);
+    } else if (command.kind == ConsoleCommandKind::kSettings) {
+      feed_.Add(requests.settings(command.settings));
     }
   } catch (const InputError& error) {
     Say(EventLevel::kError, error.what());

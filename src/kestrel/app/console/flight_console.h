@@ -33,6 +33,9 @@ using FlightView = std::variant<LandingView, HuntView>;
 struct FlightRequests {
   std::function<std::string(bool is_on)> record;  // switches recording on or off
   std::function<std::string(const cv::Mat& image, Time captured)> keep_snapshot;
+  // Saves settings, each as "key=value", and returns the state of all that can be changed, with
+  // what was saved or why not; none: only returns it. Does not throw InputError.
+  std::function<ConsoleSettings(const std::vector<std::string>& settings)> settings;
 };
 
 // Places for what the page of colours keeps of a flight.

@@ -55,7 +55,7 @@ TEST_F(FlightConsoleTest, ShowsWhatTheVisionSees) {
   const auto hello = socket.Next("hello");
   ASSERT_TRUE(hello);
   EXPECT_EQ((*hello)["title"], "a flight");
-  EXPECT_EQ((*hello)["offers"], (nlohmann::json{"record", "snapshot"}));
+  EXPECT_EQ((*hello)["offers"], (nlohmann::json{"record", "snapshot", "settings"}));
   EXPECT_EQ((*hello)["colors"], false);
   EXPECT_EQ((*hello)["views"].size(), 4u);
   LandingObservation observation;
@@ -136,7 +136,17 @@ TEST_F(FlightConsoleTest, ObeysWhatThePageAsks) {
                        [](const cv::Mat& image, Time captured) {
                          return fmt::format("kept {} px of {}", image.cols,
                                             ToNanoseconds(captured));
+                       },
+                   .settings =
+                       [](const std::vector<std::string>& settings) {
+                         ConsoleSettings state{.file = "kestrel.yaml", .settings = {}};
+                         if (!settings.empty()) state.saved = settings.front();
+                         return state;
                        }});
+  const auto settings = socket.Next("settings");
+  ASSERT_TRUE(settings);
+  EXPECT_EQ((*settings)["file"], "kestrel.yaml");
+  EXPECT_EQ((*settings)["saved"], "");
   const auto begun = socket.Next("event");
   ASSERT_TRUE(begun);
   EXPECT_EQ((*begun)["text"], "recording");
@@ -157,6 +167,10 @@ TEST_F(FlightConsoleTest, ObeysWhatThePageAsks) {
   const auto kept = socket.Next("event");
   ASSERT_TRUE(kept);
   EXPECT_EQ((*kept)["text"], fmt::format("kept 376 px of {}", ToNanoseconds(frame.time)));
+  socket.Send(R"({"command": "settings", "settings": ["landing.target.id=3"]})");
+  const auto saved = socket.Next("settings");
+  ASSERT_TRUE(saved);
+  EXPECT_EQ((*saved)["saved"], "landing.target.id=3");
 }
 
 TEST_F(FlightConsoleTest, KeepsNoImageWhenNobodyLooks) {

@@ -37,11 +37,6 @@ std::optional<DistortionModel> ModelNamed(const std::string& name) {
   return std::nullopt;
 }
 
-// Quoted for a shell where it must be.
-std::string Quoted(const std::string& word) {
-  return word.find_first_of(" !\"$&;|<>()*") == std::string::npos ? word : "'" + word + "'";
-}
-
 OverlayShape ShapeOf(const LensView& view) {
   std::vector<cv::Point2f> points;
   for (const LensEdge& edge : view.edges) {
@@ -53,6 +48,10 @@ OverlayShape ShapeOf(const LensView& view) {
 }
 
 }  // namespace
+
+std::string ShellWord(const std::string& word) {
+  return word.find_first_of(" !\"$&;|<>()*") == std::string::npos ? word : "'" + word + "'";
+}
 
 LensPage::LensPage(Options options, ConsoleFeed* feed) : options_(std::move(options)), feed_(feed) {
   state_.folder = std::filesystem::absolute(options_.folder).lexically_normal().string();
@@ -177,8 +176,8 @@ void LensPage::Save(const std::vector<std::string>& words) {
       calibration.intrinsics = result_->intrinsics;
       WriteCalibration(calibration, kNominalRateHz, path, may_replace);
       state_.saved = path;
-      state_.next = fmt::format("kestrel fly {} --camera {} --console", Quoted(options_.camera),
-                                Quoted(path));
+      state_.next = fmt::format("kestrel fly {} --camera {} --console", ShellWord(options_.camera),
+                                ShellWord(path));
     }
   } catch (const InputError& error) {
     state_.save_error = error.what();

@@ -66,4 +66,7 @@ class LensPage {
   BackgroundRun<LensCalibration> estimation_;
 };
 
+// Returns the word as a shell takes it: in quotes where it must be.
+std::string ShellWord(const std::string& word);
+
 }  // namespace kestrel

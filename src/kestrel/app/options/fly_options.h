@@ -17,6 +17,7 @@ namespace kestrel {
 
 // The options of `kestrel fly`.
 struct FlyOptions {
+  std::string source;  // that is flown with where the command line names none
   FlightOptions flight;
   GstreamerCameraOptions camera;
   // Controls the exposure by the brightness of the images, for cameras that cannot do it
@@ -33,6 +34,7 @@ struct FlyOptions {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
+    visitor("source", self.source, "", "camera or recording, where the command line has no SOURCE");
     FlightOptions::Visit(self.flight, visitor);
     visitor.Group("camera", self.camera);
     visitor("control_exposure", self.control_exposure, "",

@@ -18,6 +18,16 @@ TEST(KestrelOptions, SettingsChangeTheDefaults) {
   EXPECT_EQ(options.landing.target_height_m, 0.5);
 }
 
+TEST(KestrelOptions, PrintedTextsReadBackWhateverIsInThem) {
+  for (const char* text : {"videotestsrc ! video/x-raw", "a: b", "a #b", "null", "", "[1]"}) {
+    KestrelOptions options, again;
+    options.fly.source = text;
+    again.fly.source = "another";
+    ReadOptionFields(PrintOptions(options), "printed", FieldsOf(again));
+    EXPECT_EQ(again.fly.source, text);
+  }
+}
+
 TEST(KestrelOptions, ViolationsCarryTheirWholeKey) {
   try {
     ReadKestrelOptions("", {"landing.hint_sigma_m=-1", "landing.detector.min_quality=7"});

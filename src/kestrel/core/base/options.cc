@@ -140,10 +140,8 @@ struct ValuePrinter {
   std::string operator()(const bool* value) const { return *value ? "true" : "false"; }
   std::string operator()(const int* value) const { return fmt::to_string(*value); }
   std::string operator()(const double* value) const { return fmt::to_string(*value); }
-  // An empty text needs quotes; without them it would be read as no value.
-  std::string operator()(const std::string* value) const {
-    return value->empty() ? "\"\"" : *value;
-  }
+  // In quotes where YAML would read something else.
+  std::string operator()(const std::string* value) const { return YAML::Dump(YAML::Node(*value)); }
 };
 
 std::vector<std::string> SplitKey(const std::string& key) {

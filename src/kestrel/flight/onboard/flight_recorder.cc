@@ -80,7 +80,7 @@ FlightRecorder::FlightRecorder(const fs::path& folder, bool replace,
       images_(static_cast<std::size_t>(options.queue_frames)),
       records_(kRecords) {
   if (options_.compression == "jpg") jpeg_encoder_.emplace(options_.jpg_quality);
-  writer_.WriteCamera(calibration, rate_hz);
+  if (calibration.intrinsics.width_px > 0) writer_.WriteCamera(calibration, rate_hz);
   writer_.WritePoseSensor(kPoseRate_hz);
   write_thread_ = std::thread([this] { RunWriter(); });
   commit_thread_ = std::thread([this] { RunCommitter(); });

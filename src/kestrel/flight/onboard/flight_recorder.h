@@ -80,7 +80,7 @@ class FlightRecorder {
 
   // Throws InputError when 'folder' has something else in it (or a recording, unless 'replace'),
   // cannot be written or is in use by another writer, or the options are not valid. 'rate_hz': rate
-  // of the images.
+  // of the images. A calibration of width 0 (none is known) is not written.
   FlightRecorder(const std::filesystem::path& folder, bool replace,
                  const CameraCalibration& calibration, double rate_hz,
                  const FlightRecorderOptions& options, Tell tell);
