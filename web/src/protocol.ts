@@ -181,6 +181,12 @@ export interface EventMessage {
   text: string;
 }
 
+/** What the autopilot of a recorded flight said, in order of time. */
+export interface RecordedLog {
+  kind: "log";
+  events: EventMessage[];
+}
+
 /** One character of marks for each frame: - nothing, f found, l lost, x false. */
 export interface Timeline {
   kind: "timeline";
@@ -258,6 +264,7 @@ export type ServerMessage =
   | Health
   | Doctor
   | EventMessage
+  | RecordedLog
   | Timeline
   | Playback
   | OptionList
