@@ -183,6 +183,12 @@ export interface EventMessage {
   text: string;
 }
 
+/** What the autopilot of a recorded flight said, in order of time. */
+export interface RecordedLog {
+  kind: "log";
+  events: EventMessage[];
+}
+
 /** One character of marks for each frame: - nothing, f found, l lost, x false. */
 export interface Timeline {
   kind: "timeline";
@@ -260,6 +266,7 @@ export type ServerMessage =
   | Health
   | Doctor
   | EventMessage
+  | RecordedLog
   | Timeline
   | Playback
   | OptionList

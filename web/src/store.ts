@@ -52,6 +52,8 @@ export interface State {
   vehicle: Vehicle | null;
   doctor: Doctor | null;
   events: EventMessage[];
+  /** Of the recorded flight; what comes after the frame that is shown is not shown. */
+  log: EventMessage[];
   timeline: Timeline | null;
   playback: Playback | null;
   options: Option[];
@@ -109,6 +111,7 @@ export function initialState(): State {
     vehicle: null,
     doctor: null,
     events: [],
+    log: [],
     timeline: null,
     playback: null,
     options: [],
@@ -152,6 +155,7 @@ export function withMessage(state: State, message: ServerMessage): State {
         page: pageAfter(state, message),
         view: message.views.includes(state.view) ? state.view : "",
         events: [],
+        log: [],
         track: [],
         map: null,
         team: null,
@@ -200,6 +204,8 @@ export function withMessage(state: State, message: ServerMessage): State {
       return { ...state, doctor: message };
     case "event":
       return { ...state, events: [...state.events, message].slice(-maxEvents) };
+    case "log":
+      return { ...state, log: message.events };
     case "timeline":
       // A study opens one recording after the other: what was said of the one before is gone.
       return { ...state, timeline: message, second: null, findings: null, clipRange: null, track: [], flight: null };

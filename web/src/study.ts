@@ -38,6 +38,8 @@ export interface Study {
   rows: StudyRow[];
   /** Rows of the study, of which these are the worst. */
   total: number;
+  /** What the recordings show, in the words of `kestrel study report`; empty: nothing is compared. */
+  judgement: string;
   remark: string;
   error: string;
 }
@@ -133,15 +135,10 @@ export function changeText(change: number | null): string {
   return `${change < 0 ? "−" : "+"}${points}`;
 }
 
-/** As "2 worse, 1 better, 1 the same, 1 without a result of both". */
+/** As "4 recordings, 1 without a result of both". */
 export function summaryOf(rows: StudyRow[]): string {
-  const count = (is: (text: string) => boolean) => rows.filter(({ change }) => is(changeText(change))).length;
-  return [
-    `${count((text) => text.startsWith("−"))} worse`,
-    `${count((text) => text.startsWith("+"))} better`,
-    `${count((text) => text === "0.0")} the same`,
-    `${count((text) => text === "–")} without a result of both`,
-  ].join(", ");
+  const without = rows.filter(({ change }) => change === null).length;
+  return `${rows.length} recordings${without > 0 ? `, ${without} without a result of both` : ""}`;
 }
 
 export function progressInWords({ recording, before, done, frames }: StudyReplay): string {

@@ -37,6 +37,7 @@ const study: Study = {
     row("flight 1", outcome(null, { done: false }), outcome(0.5)),
   ],
   total: 4,
+  judgement: "Worse in 1 of 2, too few to prove (2 recordings, 8 are the least)",
   remark: "",
   error: "",
 };
@@ -76,8 +77,9 @@ describe("table of a study", () => {
     expect(outcomeText(outcome(1, { error_m: 0.0312 }), "error_m")).toBe("0.031 m");
     expect(changeText(-0.5)).toBe("−50.0");
     expect(changeText(0.123)).toBe("+12.3");
+    expect(summaryOf(study.rows.slice(1, 3))).toBe("2 recordings");
     expect(changeText(-0.0001)).toBe("0.0");
-    expect(summaryOf(study.rows)).toBe("1 worse, 0 better, 1 the same, 2 without a result of both");
+    expect(summaryOf(study.rows)).toBe("4 recordings, 2 without a result of both");
   });
 });
 

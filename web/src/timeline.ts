@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-import type { Timeline } from "./protocol";
+import { secondsBetween, type EventMessage, type Timeline } from "./protocol";
 
 export type Mark = "-" | "f" | "l" | "x";
 
@@ -54,6 +54,13 @@ export function frameAtFraction(timeline: Timeline, fraction: number): number {
 
 export function fractionOf(timeline: Timeline, frame: number): number {
   return (timeline.times_ms[frame] ?? 0) / duration(timeline);
+}
+
+/** What was said until a frame, and what is said of the replay itself; in order of time. */
+export function eventsUntil(timeline: Timeline, frame: number, log: EventMessage[], events: EventMessage[]): EventMessage[] {
+  const now = timeline.times_ms[frame] ?? 0;
+  const said = log.filter(({ time }) => 1000 * secondsBetween(timeline.begin, time) <= now);
+  return [...said, ...events].sort((a, b) => secondsBetween(b.time, a.time));
 }
 
 /** The first frame of the next stretch of trouble (lost or false), in a direction; null: none. */

@@ -2,7 +2,7 @@
 import { marksInWords, nextDifference } from "./timeline";
 import { describe, expect, test } from "vitest";
 import type { Timeline } from "./protocol";
-import { clockText, columnMarks, frameAt, frameAtFraction, nextTrouble } from "./timeline";
+import { clockText, columnMarks, eventsUntil, frameAt, frameAtFraction, nextTrouble } from "./timeline";
 
 function timelineOf(marks: string): Timeline {
   return {
@@ -28,6 +28,15 @@ describe("timeline", () => {
     expect(frameAtFraction(timeline, 0.5)).toBe(2);
     expect(frameAtFraction(timeline, 7)).toBe(4);
     expect(frameAt(timelineOf(""), 3)).toBe(0);
+  });
+
+  test("lists what was said until a frame", () => {
+    const event = (ms: number, text: string) => ({ kind: "event" as const, time: `${ms}000000`, level: "info" as const, text });
+    const log = [event(-50, "heard"), event(100, "mode LAND"), event(250, "touchdown")];
+    const words = (frame: number) => eventsUntil(timelineOf("ffff"), frame, log, [event(0, "cannot be read")]).map(({ text }) => text);
+    expect(words(0)).toEqual(["heard", "cannot be read"]);
+    expect(words(1)).toEqual(["heard", "cannot be read", "mode LAND"]);
+    expect(words(3)).toEqual(["heard", "cannot be read", "mode LAND", "touchdown"]);
   });
 
   test("goes from trouble to trouble", () => {

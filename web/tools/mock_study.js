@@ -2,6 +2,7 @@
 // The table of a study as the program would send it, for work on the page without it.
 
 const recordings = 40;
+const judgement = "Worse in 19 of 40 and better in 20 of 40; kestrel study report judges whether that is chance";
 const variants = ["usual", "strict min_quality=0.9", "small rings"];
 
 /** A study that counts up to a recording's frames when one is opened. */
@@ -25,7 +26,7 @@ export class MockStudy {
     this.rows = Array.from({ length: recordings }, (_, i) => rowOf(i, before, after));
     const place = ({ change, after: { failure } }) => (failure !== "" ? -2 : (change ?? 2));
     this.rows.sort((a, b) => place(a) - place(b));
-    this.send({ kind: "study", variants, before, after, rows: this.rows, total: 1240, remark: "", error: "" });
+    this.send({ kind: "study", variants, before, after, rows: this.rows, total: 1240, judgement, remark: "", error: "" });
   }
 
   start(row) {

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Replays recordings as a person would, of a landing and of a hunt: scrubs and plays, runs the
 // detector again with other options and sees both runs over one picture and beside each other, takes
-// a frame, a table and a clip away, opens a result, all by the keyboard as well:
+// a frame, a table and a clip away, opens a result, all by the keyboard as well; sees what the autopilot
+// of a recorded flight said:
 //
 //   node tools/try_replay.js KESTREL FOLDER
-import { readFileSync } from "node:fs";
+import { appendFileSync, readFileSync, statSync, truncateSync } from "node:fs";
+import { join } from "node:path";
 import { tryAll } from "./browser.js";
 
 const frames = 60;
 
-await tryAll(scrubRecording, compareRuns, saveClip, replayHunt, openHuntResult, useKeysAlone);
+await tryAll(scrubRecording, compareRuns, saveClip, replayHunt, openHuntResult, useKeysAlone, followAutopilot);
 
 function simulateLanding(t) {
   const settings = [`frames=${frames}`, "rate_hz=10", "ground.map_px=512", "shutter.rays_per_pixel=4"];
@@ -197,4 +199,65 @@ async function useKeysAlone(t) {
   t.expect((await coming).suggestedFilename().startsWith("clip-0-1."), "another clip");
   await page.keyboard.press("a");
   await page.getByText("Clip: frames 1 to 60").waitFor();
+}
+
+/** Mode, motors, battery and texts are those of the frame; of a damaged log, what is left. */
+async function followAutopilot(t) {
+  t.run(["fly", "sim:standing", "--autopilot", "sim:ardupilot", "--record", "flight", "--output", "flown"]);
+  const page = await openReplay(t, ["flight"]);
+  await seekTo(page, 0.1);
+  await vehicleSays(page, /mode LOITER.*motors armed.*battery \d+\.\d V, \d+ %/);
+  await eventsSay(page, /ArduPilot \(system 1\) heard, LOITER, armed/);
+  const early = await eventsOf(page).textContent();
+  t.expect(!/mode LAND|Disarming/.test(early), `events of later are listed: ${early}`);
+  await seekTo(page, 0.6);
+  await vehicleSays(page, /mode LAND.*motors armed/);
+  await eventsSay(page, /mode LAND, armed.*autopilot: PrecLand: Target Found/);
+  await t.takePicture(page, "console_replay_flight");
+  await t.takePictures(page, "console_replay_flight");
+  await takeEventsOnPhone(t, page);
+  await page.getByRole("slider").focus();
+  await page.keyboard.press("End");
+  await vehicleSays(page, /mode LAND.*motors disarmed/);
+  await eventsSay(page, /mode LAND, disarmed.*autopilot: Disarming motors/);
+  await showDamagedLog(t, join(t.scratch, "flight/mavlink.tlog"));
+}
+
+async function showDamagedLog(t, log) {
+  truncateSync(log, Math.floor(statSync(log).size / 2));
+  appendFileSync(log, "cut");
+  const page = await openReplay(t, ["flight"]);
+  await eventsSay(page, /mavlink\.tlog: \d+ of \d+ bytes are damaged or cut off: the rest is shown/);
+  await seekTo(page, 0.1);
+  await vehicleSays(page, /mode LOITER.*motors armed/);
+  await page.getByRole("slider").focus();
+  await page.keyboard.press("End");
+  await vehicleSays(page, /^mode not recorded/);
+}
+
+async function takeEventsOnPhone(t, page) {
+  const before = page.viewportSize();
+  await page.setViewportSize({ width: 390, height: 844 });
+  await page.getByRole("button", { name: "events", exact: true }).click();
+  await eventsOf(page).scrollIntoViewIfNeeded();
+  await t.takePicture(page, "console_replay_events_390x844");
+  await page.setViewportSize(before);
+}
+
+/** Presses on the timeline, at a part of its length. */
+async function seekTo(page, part) {
+  const box = await page.getByRole("slider").boundingBox();
+  await page.mouse.click(box.x + box.width * part, box.y + box.height / 2);
+}
+
+function vehicleSays(page, facts) {
+  return page.getByRole("group", { name: "Vehicle" }).filter({ hasText: facts }).waitFor();
+}
+
+function eventsOf(page) {
+  return page.getByLabel("Events, the newest first");
+}
+
+function eventsSay(page, text) {
+  return eventsOf(page).filter({ hasText: text }).waitFor();
 }

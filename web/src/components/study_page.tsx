@@ -104,8 +104,9 @@ function Table({ study }: { study: Study }) {
   const isEstimated = study.rows.some(({ before, after }) => before.estimated || after.estimated);
   return (
     <>
+      {study.judgement !== "" && <p class="judgement">{study.judgement}.</p>}
       <p>
-        {study.rows.length} recordings: {summaryOf(study.rows)}.
+        {summaryOf(study.rows)}.
         {hidden > 0 && ` ${hidden} more are not shown: none of them got worse than these.`}
       </p>
       <p class="hint">

@@ -20,6 +20,7 @@
 #include "kestrel/app/cli/result_argument.h"
 #include "kestrel/app/console/calibration_tools.h"
 #include "kestrel/app/console/find_colors.h"
+#include "kestrel/app/console/recorded_autopilot.h"
 #include "kestrel/app/console/replay_console.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/flight/session/observation_sinks.h"
@@ -58,7 +59,13 @@ void RunConsole(const ConsoleArguments& arguments) {
   console.OfferCalibration(CalibrationTools(arguments.source.Recording(PixelFormat::kGray),
                                             arguments.LandingOptions(options),
                                             arguments.OutputFolder()));
-  console.Play(run->TakeResult(), RecordingOf(choice, *search), WasInterrupted);
+  ReplayResult result = run->TakeResult();
+  ReplayConsole::Recording recording = RecordingOf(choice, *search);
+  recording.autopilot =
+      ReadRecordedAutopilot(choice.sources, result.frames.front().time, result.frames.back().time);
+  const std::string& fault = recording.autopilot.fault;
+  if (!fault.empty()) fmt::print(stderr, "kestrel: warning: {}\n", fault);
+  console.Play(std::move(result), std::move(recording), WasInterrupted);
 }
 
 // Shows a simulated UAV that lands on a simulated car, again and again.

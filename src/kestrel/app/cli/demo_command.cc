@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,12 @@ namespace fs = std::filesystem;
 constexpr char kCalibrated[] =
     " --set navigation.mount_error_deg=0 --set navigation.clock_offset_min_s=0"
     " --set navigation.clock_offset_max_s=0";
+
+// Times at which the videos show the pad from near, or the most objects.
+constexpr double kFollowStill_s = 2, kHuntStill_s = 2.75, kLandStill_s = 7.8;
+
+// In a clone of Kestrel, where `make demo` runs.
+constexpr char kGuide[] = "docs/first-landing.md";
 
 // Runs a command of the program in this process, after showing it as one would type it.
 void RunCommand(const std::string& words) {
@@ -68,8 +75,8 @@ const std::map<std::string, std::string>& PlotCaptions() {
       {"velocity", "Velocity of the pad: the estimate should lie on the true one."},
       {"prediction", "Error of the place where the pad is expected to be in a moment."},
       {"map",
-       "The field from above. A circle with a cross is an object in the map; a circle alone "
-       "was passed, and is not in the map."},
+       "The field from above. A circle with a cross is an object in the map. A gray circle was "
+       "only passed: it was in view too briefly to be wanted there."},
       {"touchdown", "Paths of the UAV and of the car, from above and from the side."},
   };
   return captions;
@@ -86,16 +93,33 @@ class Demo {
     Hunt();
     Land();
     const std::string page = files_.NewFile("index.html").string();
-    const std::vector<std::string>& landing = chapters_.back().videos;
-    files_.OpenText("index.html") << ToHtml("Kestrel: a landing on a moving car, by what it sees",
-                                            landing.empty() ? "" : landing.front(), verdict_,
-                                            chapters_);
+    const std::vector<PageVideo>& landing = chapters_.back().videos;
+    files_.OpenText("index.html") << ToHtml(
+        "Kestrel: a landing on a moving car, by what it sees",
+        landing.empty() ? std::nullopt : std::optional(landing.front()), verdict_, chapters_,
+        NextSteps());
     fmt::print("\n");
     for (const PageVerdict& line : verdict_) fmt::print("{}\n", line.found);
     fmt::print("Videos, plots and figures: {}\n", page);
   }
 
  private:
+  std::vector<PageStep> NextSteps() const {
+    std::vector<PageStep> steps = {
+        {"See the first flight frame by frame in the browser",
+         "kestrel console " + Quoted("flight") + " " + Quoted("found"), ""},
+        {"Let an autopilot land by what Kestrel sees",
+         "kestrel fly sim:standing --autopilot sim:ardupilot --console", ""},
+        {"Print a pad", "kestrel print --size 0.16 --output pad.pdf", ""},
+        {"See your own camera, and calibrate its lens", "kestrel console /dev/video0", ""}};
+    PageStep guide{"From a camera to a first landing: docs/first-landing.md", "", ""};
+    if (const fs::path file = fs::absolute(kGuide); fs::exists(file)) {
+      guide.file = file.lexically_relative(fs::absolute(folder_)).generic_string();
+    }
+    steps.push_back(guide);
+    return steps;
+  }
+
   std::string Quoted(const char* name) const { return "\"" + (folder_ / name).string() + "\""; }
 
   void Follow() {
@@ -116,7 +140,7 @@ class Demo {
     AddChapter("A car on a figure of eight, followed from above",
                "A UAV comes down over a car that drives in curves. The outline is what Kestrel "
                "found; the plots compare it with the truth of the simulation.",
-               "found", report);
+               "found", report, kFollowStill_s);
   }
 
   void Hunt() {
@@ -135,7 +159,7 @@ class Demo {
          "a disc of 20 cm."});
     AddChapter("Coloured objects, found and mapped",
                "A UAV flies to and fro over a field with coloured discs, cuboids and bars.",
-               "objects", report);
+               "objects", report, kHuntStill_s);
   }
 
   void Land() {
@@ -148,7 +172,7 @@ class Demo {
          "Good: below 0.1 m from the centre. Needed: 0.5 m, the radius of the ring."});
     AddChapter("A landing on the car, by what Kestrel sees",
                "A simulated UAV in gusty wind has nothing but the track to land by.", "touchdown",
-               Report());
+               Report(), kLandStill_s);
   }
 
   template <class Evaluate>
@@ -159,14 +183,16 @@ class Demo {
     return report;
   }
 
-  // Adds all videos and plots of an output folder.
-  void AddChapter(const char* title, const char* text, const char* output, const Report& report) {
+  // Adds all videos and plots of an output folder. 'still_s': a time of the video at which what is
+  // looked for is large in it.
+  void AddChapter(const char* title, const char* text, const char* output, const Report& report,
+                  double still_s) {
     PageChapter chapter{title, text, {}, {}, report.tables};
     for (const auto& entry : fs::recursive_directory_iterator(folder_ / output)) {
       const std::string name = entry.path().lexically_relative(folder_).generic_string();
       const fs::path kind = entry.path().extension();
       if (entry.path().stem() == "annotated" && entry.is_regular_file()) {
-        chapter.videos.push_back(name);
+        chapter.videos.push_back({name, still_s});
       } else if (kind == ".png" && name.find("/mav0/") == std::string::npos) {
         const auto caption = PlotCaptions().find(entry.path().stem().string());
         chapter.pictures.push_back(

@@ -177,6 +177,11 @@ struct ConsolePlayback {
   double speed = 0;
 };
 
+// What the autopilot of a recorded flight said: shown as far as the frame that is shown.
+struct ConsoleLog {
+  std::vector<SessionEvent> events;  // in order of time
+};
+
 // A fact about a frame in words, as "method": "whole pattern".
 struct ConsoleFact {
   std::string name;
@@ -221,7 +226,7 @@ using ConsoleUpdate =
                  ConsoleTimeline, ConsolePlayback, ConsoleDoctor, ConsoleOptionList,
                  ConsoleSecondRun, ConsoleFindings, ConsoleClip, ConsoleColors, ConsoleColorScores,
                  ConsoleCalibration, ConsoleTeam, ConsoleVehicle, ConsoleStudy, ConsoleStudyReplay,
-                 ConsoleSources, ConsoleSeries, ConsoleLens, ConsoleSettings>;
+                 ConsoleSources, ConsoleSeries, ConsoleLens, ConsoleLog, ConsoleSettings>;
 
 // A task of the page of colours.
 using ColorJob = std::variant<ColorRequest, PendingExport>;

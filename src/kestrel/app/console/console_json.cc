@@ -137,6 +137,12 @@ Json Message(const SessionEvent& event) {
           {"text", event.text}};
 }
 
+Json Message(const ConsoleLog& log) {
+  Json events = Json::array();
+  for (const SessionEvent& event : log.events) events.push_back(Message(event));
+  return {{"kind", "log"}, {"events", std::move(events)}};
+}
+
 // One character per frame.
 std::string Marks(const std::vector<FrameMark>& marks) {
   std::string text;

@@ -69,6 +69,7 @@ RecordingPlayer::RecordingPlayer(const ReplaySubject& subject, ReplayResult firs
   SendTimeline();
   SendSeries();
   feed_->Add(subject.options);
+  feed_->Add(ConsoleLog{recording_.autopilot.events});
 }
 
 void RecordingPlayer::Obey(const ConsoleCommand& command) {
@@ -173,6 +174,7 @@ void RecordingPlayer::TellFrame() {
   }
   feed_->Add(std::move(map));
   feed_->Add(frame.status);
+  if (!recording_.autopilot.states.empty()) feed_->Add(recording_.autopilot.At(frame.time));
   ConsoleFindings findings{index, {frame.facts}};
   if (second_) findings.runs.push_back(second_->frames[index].facts);
   feed_->Add(std::move(findings));

@@ -11,6 +11,7 @@
 #include "kestrel/app/console/clip_maker.h"
 #include "kestrel/app/console/console_feed.h"
 #include "kestrel/app/console/playhead.h"
+#include "kestrel/app/console/recorded_autopilot.h"
 #include "kestrel/app/console/replay_frame.h"
 #include "kestrel/app/console/second_run.h"
 
@@ -44,6 +45,8 @@ class RecordingPlayer {
     // Returns a job that runs the detector over the recording with these settings. Throws
     // InputError for settings that are not valid. Any thread.
     std::function<SecondRun::Job(const std::vector<std::string>& settings)> detect;
+    // What the autopilot reported meanwhile, if that was recorded.
+    RecordedAutopilot autopilot = {};
   };
 
   // Begins with the first frame in which something was found. 'first': result of the first run, at

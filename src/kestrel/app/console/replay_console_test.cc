@@ -56,12 +56,22 @@ class ReplayConsoleTest : public testing::Test {
       MapEntry& entry = first.map.emplace_back();
       entry.since = Time(1000s + 500ms);
       entry.object.label = "red";
-      console_.Play(std::move(first), {open, detect}, [this] { return is_stopped_.load(); });
+      console_.Play(std::move(first), {open, detect, Autopilot()},
+                    [this] { return is_stopped_.load(); });
     });
   }
   ~ReplayConsoleTest() override {
     is_stopped_ = true;
     thread_.join();
+  }
+  // It enters another mode half-way.
+  static RecordedAutopilot Autopilot() {
+    const ConsoleVehicle loiter{{{"mode", "good", "LOITER"}}, {}, ""};
+    const ConsoleVehicle land{{{"mode", "good", "LAND"}}, {}, ""};
+    const Time changed(1000s + 1s);
+    return {{{Time::min(), loiter}, {changed, land}},
+            {{changed, EventLevel::kInfo, "mode LAND, armed"}},
+            ""};
   }
   // A run that finds the pattern in the first half of the frames, unless it is told to wait or
   // fail.
@@ -142,6 +152,23 @@ TEST_F(ReplayConsoleTest, PlotsOfTheWholeRecordingAreThereAtOnce) {
   ASSERT_TRUE(series);
   EXPECT_EQ((*series)["times_ms"].size(), kFrames);
   for (const auto& values : (*series)["values"]) EXPECT_EQ(values.size(), kFrames);
+}
+
+TEST_F(ReplayConsoleTest, ShowsTheVehicleOfTheFrame) {
+  TestSocket socket(port());
+  const auto is_at = [&socket](double seconds, const std::string& mode) {
+    socket.Send(fmt::format(R"({{"command": "seek", "value": {}}})", seconds));
+    while (const auto vehicle = socket.Next("vehicle")) {
+      if ((*vehicle)["facts"][0]["measured"] == mode) return true;
+    }
+    return false;
+  };
+  const auto log = socket.Next("log");
+  ASSERT_TRUE(log);
+  EXPECT_EQ((*log)["events"][0]["text"], "mode LAND, armed");
+  EXPECT_EQ((*log)["events"][0]["time"], "1001000000000");
+  EXPECT_TRUE(is_at(1.5, "LAND"));
+  EXPECT_TRUE(is_at(0.5, "LOITER"));
 }
 
 TEST_F(ReplayConsoleTest, DetectsAgainWithOtherOptions) {

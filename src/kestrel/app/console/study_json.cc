@@ -31,9 +31,15 @@ nlohmann::json Message(const ConsoleStudy& study) {
                     {"after", OutcomeJson(row.after)},
                     {"change", OrNull(row.Change())}});
   }
-  return {{"kind", "study"},        {"variants", study.variants}, {"before", study.before},
-          {"after", study.after},   {"rows", std::move(rows)},    {"total", study.comparison.total},
-          {"remark", study.remark}, {"error", study.error}};
+  return {{"kind", "study"},
+          {"variants", study.variants},
+          {"before", study.before},
+          {"after", study.after},
+          {"rows", std::move(rows)},
+          {"total", study.comparison.total},
+          {"judgement", study.comparison.judgement},
+          {"remark", study.remark},
+          {"error", study.error}};
 }
 
 nlohmann::json Message(const ConsoleStudyReplay& replay) {

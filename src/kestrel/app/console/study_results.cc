@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "kestrel/app/console/study_judgement.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/shown.h"
 
@@ -77,6 +78,17 @@ auto NameOf(const StudyRow& row) { return std::tie(row.recording, row.piece); }
 bool IsWorse(const StudyRow& a, const StudyRow& b) {
   const auto order_a = OrderOf(a), order_b = OrderOf(b);
   return order_a != order_b ? order_a < order_b : NameOf(a) < NameOf(b);
+}
+
+std::string JudgementOf(const std::vector<StudyRow>& rows) {
+  std::map<std::string, std::int64_t> changes;  // of a recording all its pieces
+  for (const StudyRow& row : rows) {
+    if (!row.before.IsDone() || !row.after.IsDone()) continue;
+    changes[row.recording] += row.after.found_count - row.before.found_count;
+  }
+  std::vector<std::int64_t> all;
+  for (const auto& [recording, change] : changes) all.push_back(change);
+  return StudyJudgement(all);
 }
 
 std::string DatabaseIn(const std::string& folder) {
@@ -184,6 +196,7 @@ StudyOutcome StudyResults::OutcomeOf(sqlite3_stmt* unit) const {
     Fail(fmt::format("the unit {} has found {} of {}", Shown(outcome.key), found, asked));
   }
   if (!IsNull(unit, 9)) outcome.false_count = sqlite3_column_int64(unit, 9);
+  outcome.found_count = found;
   if (asked > 0) {
     const auto count = static_cast<double>(asked);
     outcome.found = static_cast<double>(found) / count;
@@ -217,6 +230,7 @@ StudyComparison StudyResults::Compare(const StudyVariant& before, const StudyVar
   }
   StudyComparison comparison{{}, rows.size()};
   for (auto& [name, row] : rows) comparison.rows.push_back(std::move(row));
+  if (before != after) comparison.judgement = JudgementOf(comparison.rows);
   std::sort(comparison.rows.begin(), comparison.rows.end(), IsWorse);
   if (comparison.rows.size() > kMaxRows) comparison.rows.resize(kMaxRows);
   for (StudyRow& row : comparison.rows) {

@@ -32,11 +32,14 @@ struct StudyOutcome {
   std::string key = {};                    // of the unit; empty: not done
   std::string failure = {};                // why it failed; empty: it did not
   std::int64_t frames = 0;                 // images of the recording
+  std::int64_t found_count = 0;            // of what should be found
   std::optional<double> found = {};        // share of what should be found, 0 to 1
   std::optional<double> false_found = {};  // false detections for each image with something to find
   std::optional<std::int64_t> false_count = {};
   std::optional<double> error_m = {};  // median of the error of what was found, m
   bool is_estimated = false;           // the recording has no truth
+
+  bool IsDone() const { return !key.empty() && failure.empty(); }
 };
 
 // A recording, or a piece of one, as two variants saw it.
@@ -54,6 +57,7 @@ struct StudyRow {
 struct StudyComparison {
   std::vector<StudyRow> rows;  // what failed with the second only, then what got worst first
   std::size_t total = 0;       // number of rows before only the first of them were kept
+  std::string judgement = {};  // StudyJudgement of all rows; empty: there is nothing to compare
 };
 
 // The results of `kestrel study run` in a folder: its file study.db, which a study may be writing.

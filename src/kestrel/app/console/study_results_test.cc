@@ -41,6 +41,10 @@ TEST(StudyResults, PutsFirstWhatGotWorst) {
   const StudyComparison comparison = results.Compare(kUsual, kStrict);
   EXPECT_THAT(Names(comparison), ElementsAre("broken", "lost", "false", "same", "better", "to do"));
   EXPECT_EQ(comparison.total, 6u);
+  EXPECT_EQ(comparison.judgement,
+            "Worse in 1 of 4 and better in 1 of 4, too few to prove (4 recordings, 8 are the "
+            "least)");
+  EXPECT_EQ(results.Compare(kUsual, kUsual).judgement, "");
   EXPECT_EQ(comparison.rows[0].after.failure, "memory limit");
   const StudyRow& lost = comparison.rows[1];
   EXPECT_DOUBLE_EQ(*lost.before.found, 0.9);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <iterator>
 #include <map>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -18,9 +19,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Points2d Positions(const std::vector<TrueSighting>& sightings) {
+// Returns where the objects were when in view: those that are wanted in the map, or the others.
+Points2d Positions(const std::vector<TrueSighting>& sightings, const std::set<int>& wanted,
+                   bool is_wanted) {
   Points2d points;
-  for (const TrueSighting& s : sightings) points.push_back(s.position_in_world.head<2>());
+  for (const TrueSighting& s : sightings) {
+    if (wanted.contains(s.id) == is_wanted) points.push_back(s.position_in_world.head<2>());
+  }
   return points;
 }
 
@@ -53,11 +58,19 @@ std::vector<PlotSeries> DetectedByClass(const std::vector<ObjectRow>& objects) {
   return series;
 }
 
-Plot MapPlot(const std::vector<TrueSighting>& sightings, const ObjectRows& rows,
+Plot MapPlot(const std::vector<TrueSighting>& sightings,
+             const std::vector<ObjectComparison>& comparisons, const ObjectRows& rows,
              const std::vector<MapRow>& map) {
   constexpr const char* kBlack = "#000000";
+  constexpr const char* kGray = "#b0b0b0";
+  const std::set<int> wanted = WantedObjects(comparisons);
   PlotPanel panel{"x (east), m", "y (north), m", {}, /*equal_axes=*/true};
-  panel.series = {{"true, when in view", PlotStyle::kCircles, Positions(sightings), {}, kBlack},
+  const auto circles = [&](bool is_wanted, const char* label, const char* color) {
+    return PlotSeries{
+        label, PlotStyle::kCircles, Positions(sightings, wanted, is_wanted), {}, color};
+  };
+  panel.series = {circles(true, "true, when in view", kBlack),
+                  circles(false, "true, only passed", kGray),
                   {"in the map", PlotStyle::kCrosses, Positions(map), {}, kBlack}};
   std::ranges::move(DetectedByClass(rows.objects), std::back_inserter(panel.series));
   return {"map", "Objects, seen from above", {panel}};
@@ -89,7 +102,7 @@ Report EvaluateHunt(const std::string& recording, const std::string& output) {
     map = ParseMapRows(ReadFile(map_file), map_file);
     report.tables.push_back(MapTable(CompareMap(objects, sightings, comparisons, map)));
   }
-  report.plots = {MapPlot(sightings, rows, map)};
+  report.plots = {MapPlot(sightings, comparisons, rows, map)};
   return report;
 }
 

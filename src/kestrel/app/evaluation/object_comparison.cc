@@ -142,10 +142,7 @@ std::vector<ObjectComparison> CompareObjects(const FlightTruth& flight, const Tr
   return comparisons;
 }
 
-std::vector<MapComparison> CompareMap(const TrueObjects& objects,
-                                      const std::vector<TrueSighting>& sightings,
-                                      const std::vector<ObjectComparison>& comparisons,
-                                      const std::vector<MapRow>& rows) {
+std::set<int> WantedObjects(const std::vector<ObjectComparison>& comparisons) {
   std::map<int, int> wanted_sightings;
   for (const ObjectComparison& comparison : comparisons) {
     if (comparison.is_wanted) ++wanted_sightings[*comparison.true_id];
@@ -154,6 +151,14 @@ std::vector<MapComparison> CompareMap(const TrueObjects& objects,
   for (const auto& [id, count] : wanted_sightings) {
     if (count >= kMinSightings) wanted.insert(id);
   }
+  return wanted;
+}
+
+std::vector<MapComparison> CompareMap(const TrueObjects& objects,
+                                      const std::vector<TrueSighting>& sightings,
+                                      const std::vector<ObjectComparison>& comparisons,
+                                      const std::vector<MapRow>& rows) {
+  std::set<int> wanted = WantedObjects(comparisons);
   std::vector<Candidate> candidates;
   for (const auto& [id, object] : objects) {
     for (int k = 0; k < static_cast<int>(rows.size()); ++k) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -57,8 +58,12 @@ struct MapComparison {
   bool IsMapped() const { return !mapped_class.empty(); }
 };
 
-// Compares the objects that had at least three wanted sightings with the entries of the map. They
-// are paired where they are at most 1 m apart at the time when the entry was last seen.
+// Returns the ids of the objects that should be in the map: those with at least three wanted
+// sightings. The UAV only passed the others.
+std::set<int> WantedObjects(const std::vector<ObjectComparison>& comparisons);
+
+// Compares the wanted objects with the entries of the map. They are paired where they are at most 1
+// m apart at the time when the entry was last seen.
 std::vector<MapComparison> CompareMap(const TrueObjects& objects,
                                       const std::vector<TrueSighting>& sightings,
                                       const std::vector<ObjectComparison>& comparisons,

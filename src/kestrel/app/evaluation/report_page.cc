@@ -13,7 +13,8 @@ constexpr char kStyle[] =
     "--good:#17302a;--quiet:#a3adb6;--link:#7db7f5}}"
     "body{max-width:75rem;margin:1rem auto;padding:0 1rem;font:1rem/1.5 system-ui,sans-serif;"
     "color:var(--text);background:var(--page)}"
-    "h1{font-size:1.5rem;margin:.5rem 0}a,summary{color:var(--link)}"
+    "h1{font-size:1.5rem;margin:.5rem 0}h2{font-size:1.15rem}a,summary{color:var(--link)}"
+    "li{margin:.3rem 0}code{overflow-wrap:anywhere}"
     ".first{display:grid;grid-template-columns:3fr 2fr;gap:1.5rem;align-items:start}"
     "@media(max-width:50rem){.first{grid-template-columns:1fr}}"
     "dl{margin:0;padding:.5rem 1rem;border-left:.3rem solid #009e73;background:var(--good)}"
@@ -26,13 +27,6 @@ constexpr char kStyle[] =
     "table{border-collapse:collapse;font-size:.85rem;margin-bottom:1rem}"
     "td,th{border:1px solid var(--line);padding:.2rem .5rem;text-align:right}"
     ".table{overflow-x:auto}";
-
-constexpr char kLinks[] =
-    "<p>Next: <code>kestrel fly sim:standing --autopilot sim:ardupilot</code> lands by an "
-    "autopilot, <code>kestrel console --demo</code> shows a flight in the browser, "
-    "<code>kestrel print --size 0.16 --output pad.pdf</code> prints a pad. From a camera to a "
-    "first "
-    "landing: docs/first-landing.md.</p>\n";
 
 std::string Escaped(const std::string& text) {
   std::string escaped;
@@ -68,11 +62,10 @@ std::string TableOf(const ReportTable& table) {
   return html + "</table></div>\n";
 }
 
-// The fragment makes browsers show an image of the middle of the flight before it is played.
-std::string Video(const std::string& file) {
+std::string Video(const PageVideo& video) {
   return fmt::format(
-      "<video controls muted loop playsinline preload=\"metadata\" src=\"{}#t=2\"></video>\n",
-      Escaped(file));
+      "<video controls muted loop playsinline preload=\"metadata\" src=\"{}#t={:g}\"></video>\n",
+      Escaped(video.file), video.still_s);
 }
 
 std::string Picture(const PagePicture& picture) {
@@ -88,7 +81,7 @@ std::string Folded(const std::string& title, const std::string& content) {
 
 std::string Chapter(const PageChapter& chapter) {
   std::string html = fmt::format("<p>{}</p>\n", Escaped(chapter.text));
-  for (const std::string& video : chapter.videos) html += Video(video);
+  for (const PageVideo& video : chapter.videos) html += Video(video);
   html += "<div class=\"plots\">\n";
   for (const PagePicture& picture : chapter.pictures) html += Picture(picture);
   html += "</div>\n";
@@ -100,23 +93,36 @@ std::string Chapter(const PageChapter& chapter) {
   return Folded(chapter.title, html);
 }
 
+std::string Steps(const std::vector<PageStep>& steps) {
+  std::string html = "<h2>Next</h2>\n<ol>\n";
+  for (const PageStep& step : steps) {
+    std::string text = Escaped(step.text);
+    if (!step.file.empty()) {
+      text = fmt::format("<a href=\"{}\">{}</a>", Escaped(step.file), text);
+    }
+    if (!step.command.empty()) text += fmt::format(": <code>{}</code>", Escaped(step.command));
+    html += fmt::format("<li>{}</li>\n", text);
+  }
+  return html + "</ol>\n";
+}
+
 }  // namespace
 
-std::string ToHtml(const std::string& title, const std::string& video,
+std::string ToHtml(const std::string& title, const std::optional<PageVideo>& video,
                    const std::vector<PageVerdict>& verdict,
-                   const std::vector<PageChapter>& chapters) {
+                   const std::vector<PageChapter>& chapters, const std::vector<PageStep>& steps) {
   std::string html = fmt::format(
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width\">\n"
       "<title>{0}</title>\n<style>{1}</style></head>\n<body><h1>{0}</h1>\n"
       "<div class=\"first\">\n<div>{2}</div>\n<dl>\n",
-      Escaped(title), kStyle, video.empty() ? "" : Video(video));
+      Escaped(title), kStyle, video ? Video(*video) : "");
   for (const PageVerdict& line : verdict) {
     html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", Escaped(line.found), Escaped(line.needed));
   }
   html += "</dl></div>\n";
   for (const PageChapter& chapter : chapters) html += Chapter(chapter);
-  return html + kLinks + "</body></html>\n";
+  return html + Steps(steps) + "</body></html>\n";
 }
 
 }  // namespace kestrel

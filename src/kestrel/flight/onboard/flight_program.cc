@@ -13,6 +13,7 @@
 #include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/comms/mavlink/silence.h"
 #include "kestrel/core/base/options.h"
+#include "kestrel/flight/session/autopilot_report.h"
 
 namespace kestrel {
 namespace {
@@ -330,22 +331,7 @@ void FlightProgram::ShowAutopilot(Time now) {
   const Autopilot& autopilot = *parts_.autopilot;
   const std::lock_guard lock(autopilot_mutex_);
   AutopilotState& state = autopilot_state_;
-  state.is_here = autopilot.is_here();
-  state.is_armed = autopilot.is_armed();
-  state.is_landing = state.is_armed && autopilot.is_landing_mode();
-  if (state.is_here) {
-    state.mode = autopilot.mode_name();
-    state.waits.clear();
-  }
-  if (const auto battery = autopilot.battery()) {
-    state.battery_v = battery->voltage_v;
-    state.battery_remaining = battery->remaining;
-  }
-  if (const auto& gnss = autopilot.status().gnss()) {
-    state.gnss_fix = gnss->fix;
-    state.satellites = gnss->satellites;
-  }
-  state.has_good_position = autopilot.is_position_good(now);
+  UpdateState(autopilot, now, &state);
   if (!guided_) return;
   const FollowingDemand& demand = guided_->demand();
   LimitsInUse& limits = state.limits.emplace();

@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include "kestrel/comms/guard/guard_link.h"
-#include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/comms/mavlink/target_profile.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/options.h"
@@ -22,6 +21,7 @@
 #include "kestrel/flight/onboard/landing_vision.h"
 #include "kestrel/flight/onboard/live_session_options.h"
 #include "kestrel/flight/onboard/recording_switch.h"
+#include "kestrel/flight/session/autopilot_report.h"
 #include "kestrel/flight/session/observation_sinks.h"
 #include "kestrel/io/recording/output_folder.h"
 #include "kestrel/io/recording/truth_rows.h"
@@ -29,11 +29,6 @@
 
 namespace kestrel {
 namespace {
-
-EventLevel LevelOf(std::uint8_t severity) {
-  if (severity <= mavlink::kSeverityError) return EventLevel::kError;
-  return severity <= mavlink::kSeverityWarning ? EventLevel::kWarning : EventLevel::kInfo;
-}
 
 // Records every exposure that the camera is set to.
 class RecordedActuator : public ExposureActuator {
@@ -264,16 +259,15 @@ void LiveSession::Impl::OpenAutopilot() {
   }
   guard_ = guard.get();
   connection_.emplace(parts_.autopilot, options_.link, tap, std::move(guard));
-  autopilot_.emplace(options_.autopilot, &*connection_,
-                     AutopilotListener{
-                         .pose = [this](const PoseSample& pose) { TakePose(pose); },
-                         .true_pose = [this](const PoseSample& pose) { TakeTruePose(pose); },
-                         .event = [this](const AutopilotEvent& e) { Say(e.text); },
-                         .text =
-                             [this](std::uint8_t severity, std::string_view text) {
-                               Say(fmt::format("autopilot: {}", text), LevelOf(severity));
-                             },
-                     });
+  autopilot_.emplace(
+      options_.autopilot, &*connection_,
+      AutopilotListener{
+          .pose = [this](const PoseSample& pose) { TakePose(pose); },
+          .true_pose = [this](const PoseSample& pose) { TakeTruePose(pose); },
+          .event = [this](const AutopilotEvent& e) { Say(e.text); },
+          .text = [this](std::uint8_t severity,
+                         std::string_view text) { Say(WordsOfAutopilot(text), LevelOf(severity)); },
+      });
 }
 
 FlightParts LiveSession::Impl::ProgramParts() {
