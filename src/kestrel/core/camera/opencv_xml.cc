@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/core/camera/opencv_xml.h"
 
+#include <exception>
+#include <string>
+
 #include <opencv2/core.hpp>
 #include <yaml-cpp/yaml.h>
 
@@ -36,7 +39,7 @@ YAML::Node LoadOpenCvXml(std::string_view text, const std::string& file) {
     const cv::FileStorage storage(std::string(text.substr(text.find('<'))),
                                   cv::FileStorage::READ | cv::FileStorage::MEMORY);
     return Converted(storage.root());
-  } catch (const cv::Exception&) {
+  } catch (const std::exception&) {  // cv::Exception, or what its parser does not catch
     throw InputError(file + ": the file is not OpenCV's XML (<opencv_storage>) or is truncated");
   }
 }
