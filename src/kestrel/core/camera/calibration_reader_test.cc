@@ -470,6 +470,7 @@ TEST(CalibrationReader, ReadsOpenCvXml) {
   for (std::size_t length = 1; length + 20 < xml.size(); length += 7) {
     EXPECT_THROW(ParseCalibration(xml.substr(0, length), "lens.xml"), InputError) << length;
   }
+  EXPECT_THAT(Refusal("<?xml version=\r\r v_s>\n"), HasSubstr("is not OpenCV's XML"));
 }
 
 // Files as Python's tutorials write them: nested lists, floating-point sizes, names of the author.
