@@ -60,9 +60,9 @@ def test_a_hunt(tmp_path, hunt_flight, capsys):
 
 
 def test_a_calibration_of_the_mount(tmp_path, capsys):
-    kestrel.simulate("calm", frames=22, rate_hz=10, shutter={"rays_per_pixel": 1}).write(
+    kestrel.simulate("calm", frames=80, rate_hz=10, shutter={"rays_per_pixel": 1}).write(
         tmp_path / "recordings" / "flight")
-    output = run(tmp_path, task="calibrate", arguments=["--moving", "--force"], configurations=[
+    output = run(tmp_path, task="calibrate", configurations=[
         {"name": "default"}, {"name": "far", "set": {"landing.detector.min_ring_px": 16}}])
     rows = reported(output, "calibrations")
     assert "residual of the calibration" in capsys.readouterr().out
