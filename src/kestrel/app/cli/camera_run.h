@@ -15,7 +15,7 @@
 
 namespace kestrel {
 
-// What a camera run shows and records, and where.
+// Choices of a camera run: the camera, the page, and where images are recorded.
 struct CameraRunChoice {
   RecordingChoice camera;                   // its 'sources' has one element
   bool is_looped = false;                   // a source that has an end begins again

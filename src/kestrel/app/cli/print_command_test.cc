@@ -90,7 +90,7 @@ TEST_F(PrintCommandTest, APadOfAnySizeFitsOneSheetAndIsDetected) {
   }
 }
 
-TEST_F(PrintCommandTest, SizeLargerThanASheetIsOnePage) {
+TEST_F(PrintCommandTest, LargePadIsPrintedOnOneSheet) {
   const std::string pdf = folder_ / "large.pdf";
   EXPECT_THAT(Succeed("print --size 1.2 --output " + pdf).err, Not(HasSubstr("sheet")));
   ExpectInputError("print --size 160 --output " + folder_ / "x.pdf", "metres: 0.16?");

@@ -177,7 +177,7 @@ struct ConsolePlayback {
   double speed = 0;
 };
 
-// What the autopilot of a recorded flight said: shown as far as the frame that is shown.
+// Messages of the autopilot of a recorded flight; the page shows those up to its frame.
 struct ConsoleLog {
   std::vector<SessionEvent> events;  // in order of time
 };

@@ -25,7 +25,7 @@ using Log = std::span<const std::uint8_t>;
 // A packet so far from the images has a damaged time.
 constexpr Duration kMargin = std::chrono::minutes(10);
 
-// What a recorded autopilot is asked goes nowhere.
+// A recorded autopilot answers no requests: they are discarded.
 class NoTransport : public Transport {
  public:
   std::size_t Receive(Duration /*timeout*/, std::span<std::uint8_t> /*buffer*/) override {
@@ -67,7 +67,7 @@ std::optional<Duration> OffsetOf(Log log, Time begin, Time end) {
   return *middle;
 }
 
-// What is not known before the first heartbeat, and after the end of the log.
+// The state before the first heartbeat and after the end of the log: nothing is known.
 ConsoleVehicle NotKnown() { return {{{"mode", "not checked", "not recorded"}}, {}, ""}; }
 
 // Follows an autopilot by its recorded packets as a flight does by those of the link.

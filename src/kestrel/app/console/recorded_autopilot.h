@@ -10,7 +10,7 @@
 
 namespace kestrel {
 
-// What the autopilot reported during a recorded flight.
+// States and messages that the autopilot reported during a recorded flight.
 struct RecordedAutopilot {
   struct State {
     Time since;

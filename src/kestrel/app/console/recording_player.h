@@ -45,7 +45,7 @@ class RecordingPlayer {
     // Returns a job that runs the detector over the recording with these settings. Throws
     // InputError for settings that are not valid. Any thread.
     std::function<SecondRun::Job(const std::vector<std::string>& settings)> detect;
-    // What the autopilot reported meanwhile, if that was recorded.
+    // The reports of the autopilot up to then, where they were recorded.
     RecordedAutopilot autopilot = {};
   };
 

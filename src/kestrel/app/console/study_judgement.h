@@ -9,7 +9,7 @@ namespace kestrel {
 
 // Returns in words what recordings show of two configurations, as the verdict of
 // `kestrel study report` begins: "Worse in both, too few to prove (2 recordings, 8 are the least)".
-// Of enough recordings that command alone judges. 'changes': for each recording how many more
+// That command alone judges enough recordings. 'changes': for each recording how many more
 // the second found; empty: an empty text.
 std::string StudyJudgement(const std::vector<std::int64_t>& changes);
 

@@ -28,7 +28,7 @@ TEST(StudyJudgement, OfManyRecordingsTheReportJudges) {
             "Worse in 7 of 8; kestrel study report judges whether that is chance");
 }
 
-TEST(StudyJudgement, NothingIsSaidOfNothing) { EXPECT_EQ(StudyJudgement({}), ""); }
+TEST(StudyJudgement, NoRecordingsGiveAnEmptyText) { EXPECT_EQ(StudyJudgement({}), ""); }
 
 }  // namespace
 }  // namespace kestrel

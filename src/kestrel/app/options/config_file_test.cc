@@ -65,12 +65,12 @@ TEST(WithSetting, QuotesWhatYamlWouldReadOtherwise) {
     KestrelOptions options;
     ReadOptionFields(changed, "", FieldsOf(options));
     EXPECT_EQ(options.fly.keep_folder, text) << changed;
-    // What is quoted is replaced as well.
+    // A quoted value is replaced as well.
     EXPECT_EQ(With(changed, "fly.keep_folder=a"), With(kFile, "fly.keep_folder=a"));
   }
 }
 
-TEST(WithSetting, WhatItCannotChangeIsRefused) {
+TEST(WithSetting, UnchangeableOptionIsRefused) {
   for (const std::string yaml :
        {"landing: {target: {id: 3}}\n", "landing:\n  target: {kind: aruco}\n", "a: 1\n",
         "landing:\n  target:\n    id: >\n      3\n"}) {

@@ -87,7 +87,7 @@ TEST_F(FieldSettingsTest, WrongValuesAreRefused) {
   ExpectRefused(Settings(), "console.token=0123456789abcdef", "no setting of this page");
 }
 
-TEST_F(FieldSettingsTest, WhatTheCommandLineGivesStays) {
+TEST_F(FieldSettingsTest, SettingOfTheCommandLineStays) {
   const FieldSettings settings = Settings({"landing.target.id=9"});
   EXPECT_EQ(ValueOf(settings.State(), "landing.target.id"), "9");
   EXPECT_TRUE(settings.State().settings.back().is_given);
