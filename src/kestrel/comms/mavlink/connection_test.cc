@@ -117,7 +117,7 @@ TEST(LinkUrlTest, OffersTheUrlThatWasMeant) {
       {"192.168.1.5", "udpout://192.168.1.5:14550"},
   };
   for (const auto& [given, meant] : cases) {
-    EXPECT_THAT(ErrorOf([&] { ParseLinkUrl(given); }), testing::HasSubstr(meant)) << given;
+    EXPECT_THAT(ErrorOf([&url = given] { ParseLinkUrl(url); }), testing::HasSubstr(meant)) << given;
     ParseLinkUrl(meant);  // does not throw
   }
 }
