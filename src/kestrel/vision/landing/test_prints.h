@@ -90,12 +90,18 @@ inline cv::Mat DrawPrint(const CameraModel& camera, const LandingPattern& patter
     if (std::max(std::abs(x), std::abs(y)) > 0.5 * pattern.board_size_m) return 120;
     return print(x, y) ? 40 : 200;
   };
+  // The corners, edges and middles of all pixels: neighbours share them.
+  cv::Mat lattice(2 * camera.height_px() + 1, 2 * camera.width_px() + 1, CV_8UC1);
+  for (int v = 0; v < lattice.rows; ++v) {
+    for (int u = 0; u < lattice.cols; ++u) {
+      lattice.at<std::uint8_t>(v, u) =
+          static_cast<std::uint8_t>(gray_at(0.5 * (u - 1), 0.5 * (v - 1)));
+    }
+  }
   const auto is_even = [&](int u, int v) {
-    const int gray = gray_at(u, v);
-    for (const double dv : {-0.5, 0.0, 0.5}) {
-      for (const double du : {-0.5, 0.0, 0.5}) {
-        if (gray_at(u + du, v + dv) != gray) return false;
-      }
+    const cv::Mat pixel = lattice(cv::Rect(2 * u, 2 * v, 3, 3));
+    for (int i = 0; i < 9; ++i) {
+      if (pixel.at<std::uint8_t>(i / 3, i % 3) != pixel.at<std::uint8_t>(1, 1)) return false;
     }
     return true;
   };
