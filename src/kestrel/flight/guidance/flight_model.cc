@@ -41,16 +41,22 @@ constexpr double kSteadyAcceleration = 1;
 // Assumption: the autopilot knows its own velocity without delay. A command that is given ahead by
 // the delay is therefore too large by the delay times the acceleration.
 Answer AssumedAnswer(double delay_s) { return {0.3, -delay_s, 0, 0, 0}; }
-// 'push_mps': standard deviation of what it leaves uncompensated; drag leaves as much at 3 m/s.
-Answer AnswerSigma(double push_mps) { return {0.3, 0.05, push_mps / 3, push_mps, push_mps}; }
+// A landing is too short to distinguish drag and push from the catching up before it, and an
+// autopilot that takes accelerations leaves little of them. Drag leaves at 3 m/s what the push
+// does.
+Answer AnswerSigma(const VelocityControl& control) {
+  const double push_mps = control.takes_acceleration() ? 0.1 : 0.3;
+  return {0.3, 0.05, push_mps / 3, push_mps, push_mps};
+}
 
 // True when a UAV that is slower than its command by 'slack' is at a limit of its autopilot: this
-// says nothing about its answer. A UAV with a moderate slack that comes no nearer to the command
-// has drag that nothing compensates, and counts.
-bool IsAtLimit(const Eigen::Vector2d& slack, const Eigen::Vector2d& acceleration) {
+// says nothing about its answer. 'gain': its acceleration beyond the one that is commanded. A UAV
+// with a moderate slack that comes no nearer to the command has drag that nothing compensates, and
+// counts.
+bool IsAtLimit(const Eigen::Vector2d& slack, const Eigen::Vector2d& gain) {
   const double size = slack.norm();
   if (size <= kMaxSlack_mps) return false;
-  return size > kMaxSteadySlack_mps || acceleration.dot(slack) > kSteadyAcceleration * size;
+  return size > kMaxSteadySlack_mps || gain.dot(slack) > kSteadyAcceleration * size;
 }
 
 }  // namespace
@@ -59,16 +65,17 @@ std::vector<std::string> FlightModelOptions::Validate() const {
   std::vector<std::string> violations;
   RequireIn(delay_s, 0, 0.4, "delay_s", &violations);
   RequireIn(memory_s, 1, 100, "memory_s", &violations);
-  RequireIn(push_sigma_mps, 0.01, 10, "push_sigma_mps", &violations);
+  AddViolations("control", control.Validate(), &violations);
   return violations;
 }
 
 FlightModel::FlightModel(const FlightModelOptions& options)
     : options_(Checked(options)),
       by_lean_(Air(0.1, 0, 0), Air(0.15, 1, 1), kAirNoise),
+      observer_(options.control),
       delay_s_(options.delay_s),
       answer_(AssumedAnswer(options.delay_s)) {
-  by_delay_.fill(ForgettingRegression<5>(answer_, AnswerSigma(options.push_sigma_mps), kNoise_mps));
+  by_delay_.fill(ForgettingRegression<5>(answer_, AnswerSigma(options.control), kNoise_mps));
 }
 
 void FlightModel::Observe(Time now, const Vector3d& velocity, const Vector3d& up,
@@ -86,7 +93,7 @@ void FlightModel::Observe(Time now, const Vector3d& velocity, const Vector3d& up
                 newest_->lean + part * (lean - newest_->lean));
     }
   }
-  newest_ = Instant{now, velocity, lean, sent};
+  newest_ = Instant{now, velocity, lean, sent, fed_forward_};
   if (count_ == 0) Weigh();
 }
 
@@ -99,6 +106,7 @@ void FlightModel::AddSample(const Vector3d& velocity, const Vector2d& lean) {
   if (newest_->sent) {
     sums.commanded_velocity += newest_->sent->velocity.head<2>();
     sums.commanded_acceleration += newest_->sent->acceleration.head<2>();
+    sums.fed_forward += newest_->fed_forward;
     ++sums.commands;
   }
   ++count_;
@@ -114,6 +122,7 @@ void FlightModel::Learn() {
   const Vector2d ends = 0.5 * (begin.velocity_now - end.velocity_now).head<2>();
   const Vector2d velocity = (end.velocity - begin.velocity + ends) / kWindow;
   LearnAir(begin, end, acceleration);
+  if (options_.control.takes_acceleration()) ObserveDisturbance(velocity, acceleration.head<2>());
   // All delays are judged by the same measurements.
   constexpr int kSpan = kWindow + (kDelays - 1) * kDelayStep;
   if (count_ <= kSpan || Ago(0).commands - Ago(kSpan).commands < kSpan) return;
@@ -122,9 +131,10 @@ void FlightModel::Learn() {
     const Sums& sent_begin = Ago(i * kDelayStep + kWindow);
     const Vector2d commanded =
         (sent_end.commanded_velocity - sent_begin.commanded_velocity) / kWindow;
-    const Vector2d pushed =
-        (sent_end.commanded_acceleration - sent_begin.commanded_acceleration) / kWindow;
-    if (IsAtLimit(commanded - velocity, acceleration.head<2>())) continue;
+    const Vector2d pushed = (sent_end.commanded_acceleration - sent_begin.commanded_acceleration -
+                             (sent_end.fed_forward - sent_begin.fed_forward)) /
+                            kWindow;
+    if (IsAtLimit(commanded - velocity, acceleration.head<2>() - pushed)) continue;
     by_delay_[i].Forget(std::exp(-kLearnEvery * kSample_s / options_.memory_s));
     for (int axis = 0; axis < 2; ++axis) {
       Answer row(acceleration(axis) - pushed(axis), pushed(axis), velocity(axis), 0, 0);
@@ -136,8 +146,10 @@ void FlightModel::Learn() {
 }
 
 void FlightModel::LearnAir(const Sums& begin, const Sums& end, const Vector3d& acceleration) {
-  const Vector2d velocity = (end.velocity - begin.velocity) / kWindow;
   const Vector2d lean = (end.lean - begin.lean) / kWindow;
+  // The drag of a descent reduces the thrust that leans.
+  const double climb = 0.5 * (begin.velocity_now.z() + end.velocity_now.z());
+  const Vector2d velocity = (end.velocity - begin.velocity) / kWindow - climb * lean;
   const Vector2d by_air = acceleration.head<2>() - (kGravity + acceleration.z()) * lean;
   by_lean_.Forget(std::exp(-kLearnEvery * kSample_s / kAirMemory_s));
   for (int axis = 0; axis < 2; ++axis) {
@@ -145,6 +157,30 @@ void FlightModel::LearnAir(const Sums& begin, const Sums& end, const Vector3d& a
     row(1 + axis) = 1;
     by_lean_.Add(row, by_air(axis), kWeight);
   }
+}
+
+// The control saw its velocity and the command before its answer, by the delay of the attitude and
+// by the whole delay.
+void FlightModel::ObserveDisturbance(const Vector2d& velocity, const Vector2d& acceleration) {
+  const Air air = by_lean_.Solve().parameters;
+  observer_.SetAir({air(0), air.tail<2>()}, velocity);
+  const auto samples = [](double seconds) {
+    return std::clamp(static_cast<int>(std::lround(seconds / kSample_s)), 0, kDelays * kDelayStep);
+  };
+  const int command = samples(delay_s_);
+  const int attitude = samples(delay_s_ - link_delay_s_);
+  if (count_ <= kWindow + command) return;
+  const Sums& sent_end = Ago(command);
+  const Sums& sent_begin = Ago(command + kWindow);
+  if (sent_end.commands - sent_begin.commands < kWindow) return;
+  const Vector2d seen = (Ago(attitude).velocity - Ago(attitude + kWindow).velocity) / kWindow;
+  DisturbanceObserver::Sample sample;
+  sample.velocity = velocity;
+  sample.acceleration = acceleration;
+  sample.slip = (sent_end.commanded_velocity - sent_begin.commanded_velocity) / kWindow - seen;
+  sample.commanded =
+      (sent_end.commanded_acceleration - sent_begin.commanded_acceleration) / kWindow;
+  observer_.Observe(sample, kLearnEvery * kSample_s, delay_s_);
 }
 
 // Averages over the delays, each weighted by its likelihood given its residuals.
@@ -173,9 +209,14 @@ void FlightModel::Weigh() {
   answer_ /= sum;
 }
 
-Vector2d FlightModel::VelocityCommand(const Vector2d& velocity,
-                                      const Vector2d& acceleration) const {
-  return velocity + answer_(1) * acceleration + answer_(2) * velocity + answer_.tail<2>();
+void FlightModel::Command(SetPoint* set_point) {
+  const Vector2d velocity = set_point->velocity.head<2>();
+  const Vector2d acceleration = set_point->acceleration.head<2>();
+  set_point->velocity.head<2>() +=
+      answer_(1) * acceleration + answer_(2) * velocity + answer_.tail<2>();
+  if (!options_.is_used || !options_.control.takes_acceleration()) return;
+  fed_forward_ = observer_.FeedForward(velocity, acceleration);
+  set_point->acceleration.head<2>() += fed_forward_;
 }
 
 std::optional<AirEstimate> FlightModel::air() const {

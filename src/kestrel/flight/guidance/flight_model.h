@@ -11,6 +11,7 @@
 
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/poses/set_point.h"
+#include "kestrel/flight/guidance/disturbance_observer.h"
 #include "kestrel/flight/guidance/forgetting_regression.h"
 
 namespace kestrel {
@@ -20,18 +21,13 @@ struct FlightModelOptions {
   // The delay that is assumed until the flight has shown a better one.
   double delay_s = 0.12;  // of attitude and thrust after the autopilot's command
   double memory_s = 20;   // older measurements are forgotten
-  // Error of the velocity that wind and drag may leave before the flight has shown it: less for an
-  // autopilot that integrates well. A landing is too short to tell much of it from the catching up
-  // before it.
-  double push_sigma_mps = 0.3;
+  VelocityControl control;
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
     visitor("is_used", self.is_used, "", "use the response that is measured in flight");
     visitor("delay_s", self.delay_s, "s", "delay of attitude and thrust until it is measured");
     visitor("memory_s", self.memory_s, "s", "age after which measurements are forgotten");
-    visitor("push_sigma_mps", self.push_sigma_mps, "m/s",
-            "error of the velocity by wind and drag until it is measured, standard deviation");
   }
   std::vector<std::string> Validate() const;
 };
@@ -48,7 +44,9 @@ struct AirEstimate {
 // whatever the autopilot does inside: a velocity control with too little gain, drag that it does
 // not compensate, the wind, integrators. The four terms are fitted for each of several delays. The
 // delays are weighted by how well each explains the flight. The same equation then gives the
-// command.
+// command. For an autopilot that takes accelerations as they are, the air is fed forward in the
+// acceleration: the accelerations of the equation are those without it, and drag and push are what
+// it leaves.
 class FlightModel {
  public:
   // Throws InputError when the options are not valid.
@@ -66,10 +64,10 @@ class FlightModel {
   // Time from sending a set-point to its effect, s.
   double delay_s() const { return delay_s_; }
 
-  // Returns the horizontal velocity to command, beside 'acceleration', so that the UAV flies with
-  // 'velocity' and 'acceleration' when the command takes effect.
-  Eigen::Vector2d VelocityCommand(const Eigen::Vector2d& velocity,
-                                  const Eigen::Vector2d& acceleration) const;
+  // Takes the horizontal velocity and acceleration that the UAV is to have when the command takes
+  // effect, and replaces them by those to command. The next set-point observed is the one of the
+  // last call, within limits.
+  void Command(SetPoint* set_point);
 
   // Nothing until the UAV has flown at different velocities.
   std::optional<AirEstimate> air() const;
@@ -85,6 +83,7 @@ class FlightModel {
     Eigen::Vector2d lean{0, 0};  // horizontal part of the thrust's direction per vertical part
     Eigen::Vector2d commanded_velocity{0, 0};
     Eigen::Vector2d commanded_acceleration{0, 0};
+    Eigen::Vector2d fed_forward{0, 0};  // part of it
     int commands = 0;
   };
   struct Instant {
@@ -92,11 +91,13 @@ class FlightModel {
     Eigen::Vector3d velocity;
     Eigen::Vector2d lean;
     std::optional<SetPoint> sent;
+    Eigen::Vector2d fed_forward;
   };
 
   void AddSample(const Eigen::Vector3d& velocity, const Eigen::Vector2d& lean);
   void Learn();
   void LearnAir(const Sums& begin, const Sums& end, const Eigen::Vector3d& acceleration);
+  void ObserveDisturbance(const Eigen::Vector2d& velocity, const Eigen::Vector2d& acceleration);
   void Weigh();
   const Sums& Ago(int samples) const { return sums_[(count_ - 1 - samples) % kSamples]; }
 
@@ -108,6 +109,8 @@ class FlightModel {
   double link_delay_s_ = 0;
   std::array<ForgettingRegression<5>, kDelays> by_delay_;
   ForgettingRegression<3> by_lean_;
+  DisturbanceObserver observer_;
+  Eigen::Vector2d fed_forward_{0, 0};  // acceleration, by the last command
   double delay_s_;
   Eigen::Matrix<double, 5, 1> answer_;  // slack, lag, drag, push (2)
 };

@@ -29,8 +29,9 @@ double FlyCircle(const TestUavOptions& uav_options, const Vector3d& wind, double
     const Vector2d velocity = velocity_at(then_s);
     const Vector2d acceleration = kRate * Vector2d(-velocity.y(), velocity.x());
     SetPoint command;
-    command.velocity.head<2>() = model->VelocityCommand(velocity, acceleration);
+    command.velocity.head<2>() = velocity;
     command.acceleration.head<2>() = acceleration;
+    model->Command(&command);
     const UavState state = uav.State();
     model->Observe(TimeFromNanoseconds(0) + DurationFromSeconds(time_s), state.velocity_in_world,
                    state.world_from_body.rotation * Vector3d::UnitZ(), command, link_delay_s);
@@ -83,6 +84,18 @@ TEST(FlightModelTest, TheVelocityIsThatWantedOnACurveInTheWind) {
   }
 }
 
+// The velocity control of PX4 has a gain of 1.8: a drag of 1 per s would leave it 2.3 m/s behind.
+TEST(FlightModelTest, TheAirIsFedForwardToAnAutopilotThatTakesAccelerations) {
+  for (const double drag : {0.1, 0.35, 1.0}) {
+    TestUavOptions options = TestUavOptions::Px4();
+    options.drag = drag;
+    FlightModelOptions px4;
+    px4.control = options.Control();
+    FlightModel model(px4);
+    EXPECT_LT(FlyCircle(options, {2, -1.5, 0}, 0, &model), 0.12) << drag;
+  }
+}
+
 TEST(FlightModelTest, TheLinksDelayIsPartOfTheDelay) {
   TestUavOptions options = TestUavOptions::Px4();
   options.delay_s = 0.1;
@@ -103,11 +116,16 @@ TEST(FlightModelTest, GapsAndIrregularCallsDoNoHarm) {
     if (i % 50 > 5) sent = SetPoint{velocity, Vector3d::Zero(), std::nullopt};
     model.Observe(TimeFromNanoseconds(0) + DurationFromSeconds(time_s), velocity, Vector3d::UnitZ(),
                   sent, 0.02);
-    ASSERT_TRUE(model.VelocityCommand({1, 1}, {1, 1}).allFinite());
+    SetPoint command{{1, 1, 0}, {1, 1, 0}};
+    model.Command(&command);
+    ASSERT_TRUE(command.velocity.allFinite());
+    ASSERT_TRUE(command.acceleration.allFinite());
     ASSERT_GE(model.delay_s(), 0);
     ASSERT_LE(model.delay_s(), 0.5);
   }
-  EXPECT_LT((model.VelocityCommand({1, 0}, {0, 0}) - Vector2d(1, 0)).norm(), 0.3);
+  SetPoint command{{1, 0, 0}};
+  model.Command(&command);
+  EXPECT_LT((command.velocity - Vector3d(1, 0, 0)).norm(), 0.3);
 }
 
 }  // namespace

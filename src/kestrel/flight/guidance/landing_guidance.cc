@@ -430,7 +430,7 @@ SetPoint LandingGuidance::Search(const GuidanceInput& input, const Situation& no
   const double seconds = std::clamp(ToSeconds(input.now - last_), 0.0, kLongestStep_s);
   const Vector2d place = search_.Advance(input.now, road_, now.feet.head<2>(), seconds);
   if (*search_.step() != '\0') reason_ = search_.step();
-  SetPoint command = pursuit_.To(place, {now.feet.head<2>(), now.velocity.head<2>()}, model_,
+  SetPoint command = pursuit_.To(place, {now.feet.head<2>(), now.velocity.head<2>()}, &model_,
                                  options_.limits.max_speed_mps);
   command.velocity.z() = kHeightGain * (options_.search_altitude_m - now.feet.z());
   return command;
@@ -438,7 +438,7 @@ SetPoint LandingGuidance::Search(const GuidanceInput& input, const Situation& no
 
 SetPoint LandingGuidance::Pursue(const GuidanceInput& input, const Situation& now) {
   SetPoint command =
-      pursuit_.Above(*input.target, {now.feet.head<2>(), now.velocity.head<2>()}, model_);
+      pursuit_.Above(*input.target, {now.feet.head<2>(), now.velocity.head<2>()}, &model_);
   command.velocity.z() = ClimbRate(input, now);
   if (phase_ != GuidancePhase::kCommit) {
     const double most = stale_.MaxSink(now.height_m, input.link_delay_s);

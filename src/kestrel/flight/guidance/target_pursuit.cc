@@ -56,22 +56,20 @@ TargetPursuit::TargetPursuit(const GuidanceOptions& options)
   braking_ = std::min(braking_, kBrakingOnset_s * options.autopilot_jerk);
 }
 
-SetPoint TargetPursuit::To(const Vector2d& place, const Motion& uav, const FlightModel& model,
+SetPoint TargetPursuit::To(const Vector2d& place, const Motion& uav, FlightModel* model,
                            double max_speed_mps) const {
   SetPoint command;
   const Vector2d slip = -uav.velocity;
-  Close(place - uav.position + model.delay_s() * slip, slip, uav.velocity, Gain(model), &command);
+  Close(place - uav.position + model->delay_s() * slip, slip, uav.velocity, Gain(*model), &command);
   const double speed = command.velocity.norm();
   if (speed > max_speed_mps) command.velocity *= max_speed_mps / speed;
-  command.velocity.head<2>() =
-      model.VelocityCommand(command.velocity.head<2>(), command.acceleration.head<2>());
+  model->Command(&command);
   return command;
 }
 
-SetPoint TargetPursuit::Above(const TargetEstimate& target, const Motion& uav,
-                              const FlightModel& model) {
+SetPoint TargetPursuit::Above(const TargetEstimate& target, const Motion& uav, FlightModel* model) {
   const TurnState& motion = target.motion;
-  const double delay_s = model.delay_s();
+  const double delay_s = model->delay_s();
   const Vector2d offset = Vector2d(motion.position().head<2>()) - uav.position;
   const Vector3d velocity = Smoothed(target);
   const Vector2d slip = velocity.head<2>() - uav.velocity;
@@ -81,9 +79,8 @@ SetPoint TargetPursuit::Above(const TargetEstimate& target, const Motion& uav,
   command.velocity.z() = 0;
   command.velocity.head<2>() += integral_;
   command.acceleration = AccelerationAhead(motion, delay_s);
-  Close(offset + delay_s * slip, slip, uav.velocity, Gain(model), &command);
-  command.velocity.head<2>() =
-      model.VelocityCommand(command.velocity.head<2>(), command.acceleration.head<2>());
+  Close(offset + delay_s * slip, slip, uav.velocity, Gain(*model), &command);
+  model->Command(&command);
   return command;
 }
 

@@ -39,9 +39,9 @@ class TargetPursuit {
     Eigen::Vector2d velocity;
   };
   // Velocity and acceleration have no vertical parts.
-  SetPoint To(const Eigen::Vector2d& place, const Motion& uav, const FlightModel& model,
+  SetPoint To(const Eigen::Vector2d& place, const Motion& uav, FlightModel* model,
               double max_speed_mps) const;
-  SetPoint Above(const TargetEstimate& target, const Motion& uav, const FlightModel& model);
+  SetPoint Above(const TargetEstimate& target, const Motion& uav, FlightModel* model);
 
   // Forgets the target.
   void Reset();

@@ -37,6 +37,10 @@ struct TestUavOptions {
   static TestUavOptions Px4() {
     return {.p = 1.8, .i = 0.4, .attitude_lag_s = 0.08, .drag = 0.2, .max_tilt_deg = 45};
   }
+  // The control law as guidance reads it from the parameters.
+  VelocityControl Control() const {
+    return shaping_accel > 0 ? VelocityControl() : VelocityControl{p, i, 0};
+  }
   static TestUavOptions ArduCopter() {
     return {.p = 2,
             .i = 1,

@@ -33,6 +33,8 @@ constexpr std::string_view kPx4LossAction = "COM_OBL_RC_ACT", kPx4RadioLossActio
 constexpr std::string_view kPx4Timeout = "COM_OF_LOSS_T";
 constexpr double kMaxPx4Timeout_s = 1;  // it is on its way to rest already
 constexpr std::string_view kPx4PositionGain = "MPC_XY_P", kPx4HeightGain = "MPC_Z_P";
+constexpr std::string_view kPx4VelocityP = "MPC_XY_VEL_P_ACC", kPx4VelocityI = "MPC_XY_VEL_I_ACC",
+                           kPx4VelocityD = "MPC_XY_VEL_D_ACC";
 
 const LimitNames& NamesFor(AutopilotKind kind) {
   return kind == AutopilotKind::kPx4 ? kPx4Limits : kArduPilotLimits;
@@ -47,8 +49,9 @@ void WantGuidanceParameters(Autopilot* autopilot) {
     parameters.Want(name);
   }
   const bool is_px4 = autopilot->kind() == AutopilotKind::kPx4;
-  const std::array<std::string_view, 5> px4 = {kPx4LossAction, kPx4RadioLossAction, kPx4Timeout,
-                                               kPx4PositionGain, kPx4HeightGain};
+  const std::array<std::string_view, 8> px4 = {kPx4LossAction,   kPx4RadioLossAction, kPx4Timeout,
+                                               kPx4PositionGain, kPx4HeightGain,      kPx4VelocityP,
+                                               kPx4VelocityI,    kPx4VelocityD};
   const std::array<std::string_view, 4> ardupilot = {kArduPilotJerk, kArduPilotBraking,
                                                      kArduPilotVerticalJerk, kArduPilotTimeout};
   for (const std::string_view name : is_px4 ? std::span<const std::string_view>(px4)
@@ -70,9 +73,6 @@ GuidanceOptions OptionsFor(const Autopilot& autopilot, GuidanceOptions options,
   options.stream_before_start = options.stream_before_start || is_px4;
   // PX4's LAND would brake on a moving deck.
   options.land_in_contact = options.land_in_contact || !is_px4;
-  // PX4's velocity control leaves little to wind and drag.
-  constexpr double kPx4Push_mps = 0.1;
-  if (is_px4) options.model.push_sigma_mps = std::min(options.model.push_sigma_mps, kPx4Push_mps);
   // A value beyond what guidance counts on is as good as the last that it counts on.
   const auto read = [&](std::string_view name, double least, double most, double* value) {
     const auto found = autopilot.parameters().Find(name);
@@ -81,6 +81,12 @@ GuidanceOptions OptionsFor(const Autopilot& autopilot, GuidanceOptions options,
   if (options.autopilot_jerk == 0)
     read(kArduPilotJerk, kSlowestJerk, 1000, &options.autopilot_jerk);
   StaleOptions& stale = options.stale;
+  if (is_px4) {
+    VelocityControl& control = options.model.control;
+    read(kPx4VelocityP, 0, 20, &control.p);
+    read(kPx4VelocityI, 0, 20, &control.i);
+    read(kPx4VelocityD, 0, 0.9, &control.d);
+  }
   if (!is_px4) {
     read(kArduPilotTimeout, 0.1, 60, &stale.timeout_s);
     read(kArduPilotBraking, 0.1, 20, &stale.vertical_braking);
@@ -124,7 +130,8 @@ std::string WhyNotGuide(const Autopilot& autopilot, const GuidanceOptions& optio
   }
   if (const std::string unsafe = UnsafeLoss(autopilot);
       !unsafe.empty() && !options.accept_unsafe_loss) {
-    return unsafe + " (`kestrel doctor --fix` sets it; guidance.accept_unsafe_loss true flies so)";
+    return unsafe +
+           " (`kestrel doctor --fix` sets it; --set fly.guidance.accept_unsafe_loss=true flies so)";
   }
   return FlightLimits(limits, *home).WhyNot(position);
 }
