@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 namespace kestrel {
 namespace {
@@ -17,8 +18,9 @@ constexpr Duration kLongestStop = std::chrono::seconds(3);
 constexpr double kStands_mps = 0.4;
 constexpr Duration kVelocityAge = std::chrono::milliseconds(300);  // an older one is not used
 // ArduCopter shapes a wanted velocity gently (2.5 m/s^2, 1 m/s^2 down), and adds a wanted
-// acceleration as it is: the velocity is to end within kBraking_s.
-constexpr double kBraking_s = 0.5;
+// acceleration within its limits of jerk (PSC_JERK_NE and _D as they come): a braking that ends
+// faster than they allow would carry it backwards.
+constexpr double kJerk = 5;                                 // m/s^3
 constexpr double kMaxBraking = 4, kMaxVerticalBraking = 2;  // m/s^2
 constexpr Duration kListening = std::chrono::seconds(1);
 // An autopilot that is silent for so long is gone.
@@ -26,7 +28,7 @@ constexpr Duration kSilence = std::chrono::seconds(10);
 
 const char* TakeOverText(GuardTask task, AutopilotKind kind, bool has_ended) {
   if (task == GuardTask::kLand) {
-    return has_ended ? "Kestrel is gone, on the deck: LAND" : "Kestrel hangs, on the deck: LAND";
+    return has_ended ? "Kestrel is gone, at the deck: LAND" : "Kestrel hangs, at the deck: LAND";
   }
   if (kind == AutopilotKind::kPx4) {
     return has_ended ? "Kestrel is gone: stopping, then Hold"
@@ -34,6 +36,22 @@ const char* TakeOverText(GuardTask task, AutopilotKind kind, bool has_ended) {
   }
   return has_ended ? "Kestrel is gone: stopping, then BRAKE"
                    : "Kestrel hangs: stopping, then BRAKE";
+}
+
+// Takes 'velocity' and its change 'acceleration' on towards rest by one set-point.
+template <class Vector>
+void Brake(double max_braking, Vector&& velocity, Vector&& acceleration) {
+  const double seconds = ToSeconds(kSetPointPeriod);
+  const double speed = velocity.norm();
+  const double braking =
+      std::min({acceleration.norm() + kJerk * seconds, max_braking, std::sqrt(2 * kJerk * speed)});
+  if (speed <= braking * seconds) {
+    velocity.setZero();
+    acceleration.setZero();
+    return;
+  }
+  acceleration = -braking / speed * velocity;
+  velocity += seconds * acceleration;
 }
 
 }  // namespace
@@ -61,17 +79,17 @@ std::optional<Eigen::Vector3d> FlightGuard::Velocity(Time now) const {
   return velocity_;
 }
 
-// The heading is kept.
-SetPoint FlightGuard::Stop(Time now) const {
-  SetPoint stop;
-  const auto velocity = Velocity(now);
-  if (kind_ == AutopilotKind::kPx4 || !velocity) return stop;
-  stop.acceleration = -*velocity / kBraking_s;
-  const double braking = stop.acceleration.head<2>().norm();
-  if (braking > kMaxBraking) stop.acceleration.head<2>() *= kMaxBraking / braking;
-  stop.acceleration.z() =
-      std::clamp(stop.acceleration.z(), -kMaxVerticalBraking, kMaxVerticalBraking);
-  return stop;
+// The heading is kept. PX4 stops by itself as fast.
+SetPoint FlightGuard::Stop(Time now) {
+  if (kind_ == AutopilotKind::kPx4) return {};
+  if (!stop_) {
+    const auto velocity = Velocity(now);
+    if (!velocity) return {};
+    stop_ = SetPoint{*velocity};
+  }
+  Brake(kMaxBraking, stop_->velocity.head<2>(), stop_->acceleration.head<2>());
+  Brake(kMaxVerticalBraking, stop_->velocity.tail<1>(), stop_->acceleration.tail<1>());
+  return *stop_;
 }
 
 void FlightGuard::TakeRefusal() {

@@ -16,7 +16,7 @@ namespace kestrel {
 enum class GuardTask : std::uint8_t {
   kNothing,  // guidance does not fly
   kStop,     // guidance flies: the UAV is stopped and handed back
-  kLand,     // guidance holds it on the deck: the autopilot is asked to land
+  kLand,     // it is in the last decimetres or on the deck: the autopilot is asked to land
 };
 
 // Messages that the guard sends now.
@@ -57,7 +57,7 @@ class FlightGuard {
 
   GuardAction TakeOver(Time now);
   GuardAction Work(Time now);
-  SetPoint Stop(Time now) const;
+  SetPoint Stop(Time now);
   std::optional<Eigen::Vector3d> Velocity(Time now) const;
   std::optional<FlightMode> ModeToAsk(Time now) const;
   GuardAction HandBack(const char* text, Time now);
@@ -74,8 +74,9 @@ class FlightGuard {
   Time mode_told_{};
   Eigen::Vector3d velocity_{0, 0, 0};
   std::optional<Time> velocity_told_;
-  bool is_refused_ = false;  // the mode wanted first
-  Time since_{};             // beginning of the state
+  std::optional<SetPoint> stop_;  // the last one
+  bool is_refused_ = false;       // the mode wanted first
+  Time since_{};                  // beginning of the state
   Time set_point_due_{};
   Time mode_due_{};
 };

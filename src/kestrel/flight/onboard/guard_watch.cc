@@ -46,11 +46,15 @@ bool GuardWatch::Watch(Time now, const GuidedFlight& guided) {
 }
 
 GuardLife GuardWatch::Life(const GuidedFlight& guided) const {
+  const GuidancePhase phase = guided.phase();
+  // In the last decimetres a stop ends on the deck anyway, with the motors on.
+  const bool is_at_deck =
+      phase == GuidancePhase::kLanded || (guided.is_flying() && phase == GuidancePhase::kCommit);
   GuardTask task = GuardTask::kNothing;
-  if (guided.is_flying()) {
-    task = GuardTask::kStop;
-  } else if (guided.phase() == GuidancePhase::kLanded && autopilot_->is_guided_mode()) {
+  if (is_at_deck && autopilot_->is_guided_mode()) {
     task = GuardTask::kLand;
+  } else if (guided.is_flying()) {
+    task = GuardTask::kStop;
   }
   return LifeOf(task, *autopilot_, *connection_);
 }
