@@ -424,6 +424,9 @@ void Autopilot::SendRequests(Time now) {
     question->target_component = component_;
     connection_->Send(*question);
   }
+  // Without an origin the autopilot sends no position: those requests show nothing of the line.
+  const bool had_origin = std::exchange(has_origin_, origin().has_value());
+  if (has_origin_ && !had_origin) streams_.AskAgain(mavlink::LocalPositionNed::kId);
   StreamRequests::Request request;
   if (streams_.Next(now, &request)) SendStreamRequest(request);
   SendCommands(now);

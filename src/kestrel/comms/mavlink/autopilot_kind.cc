@@ -50,10 +50,12 @@ constexpr std::uint32_t kPx4Land = Px4CustomMode(4, 6);
 constexpr std::uint32_t kPx4Precland = Px4CustomMode(4, 9);
 constexpr std::uint32_t kPx4Offboard = Px4CustomMode(6, 0);
 
-constexpr std::array<std::pair<std::uint32_t, std::string_view>, 15> kPx4Modes = {
+constexpr std::array<std::pair<std::uint32_t, std::string_view>, 29> kPx4Modes = {
     {{Px4CustomMode(1, 0), "MANUAL"},
      {Px4CustomMode(2, 0), "ALTCTL"},
      {kPx4Position, "POSCTL"},
+     {Px4CustomMode(3, 1), "ORBIT"},
+     {Px4CustomMode(3, 2), "POSITION_SLOW"},
      {Px4CustomMode(4, 1), "READY"},
      {Px4CustomMode(4, 2), "TAKEOFF"},
      {kPx4Loiter, "LOITER"},
@@ -62,17 +64,29 @@ constexpr std::array<std::pair<std::uint32_t, std::string_view>, 15> kPx4Modes =
      {kPx4Land, "LAND"},
      {Px4CustomMode(4, 8), "FOLLOW"},
      {kPx4Precland, "PRECLAND"},
+     {Px4CustomMode(4, 10), "VTOL_TAKEOFF"},
+     {Px4CustomMode(4, 11), "EXTERNAL1"},
+     {Px4CustomMode(4, 12), "EXTERNAL2"},
+     {Px4CustomMode(4, 13), "EXTERNAL3"},
+     {Px4CustomMode(4, 14), "EXTERNAL4"},
+     {Px4CustomMode(4, 15), "EXTERNAL5"},
+     {Px4CustomMode(4, 16), "EXTERNAL6"},
+     {Px4CustomMode(4, 17), "EXTERNAL7"},
+     {Px4CustomMode(4, 18), "EXTERNAL8"},
+     {Px4CustomMode(4, 19), "COURSE"},
+     {Px4CustomMode(4, 20), "DESCEND"},
      {Px4CustomMode(5, 0), "ACRO"},
      {kPx4Offboard, "OFFBOARD"},
      {Px4CustomMode(7, 0), "STABILIZED"},
-     {Px4CustomMode(8, 0), "RATTITUDE"}}};
+     {Px4CustomMode(8, 0), "RATTITUDE"},
+     {Px4CustomMode(10, 0), "TERMINATION"}}};
 
 template <class Modes>
 std::string NameIn(const Modes& modes, std::uint32_t custom_mode) {
   for (const auto& [mode, name] : modes) {
     if (mode == custom_mode) return std::string(name);
   }
-  return fmt::format("mode {}", custom_mode);
+  return fmt::format("#{}", custom_mode);
 }
 
 std::uint32_t ArduCopterMode(FlightMode mode) {
@@ -165,7 +179,7 @@ std::uint32_t CustomModeOf(AutopilotKind kind, FlightMode mode) {
 std::string ModeName(AutopilotKind kind, std::uint32_t custom_mode) {
   if (kind == AutopilotKind::kArduPilot) return NameIn(kArduCopterModes, custom_mode);
   if (kind == AutopilotKind::kPx4) return NameIn(kPx4Modes, custom_mode);
-  return fmt::format("mode {}", custom_mode);
+  return fmt::format("#{}", custom_mode);
 }
 
 bool IsLandingMode(AutopilotKind kind, std::uint32_t custom_mode) {

@@ -128,6 +128,13 @@ TEST_F(AutopilotTest, SaysThatThereIsNoPositionYet) {
   EXPECT_EQ(EventsOf(AutopilotEventKind::kSlowStream), 0);
   EXPECT_EQ(EventsOf(AutopilotEventKind::kNoPosition), 1);
   EXPECT_THAT(TextOfEvent(AutopilotEventKind::kNoPosition), HasSubstr("has no origin"));
+  // The position follows the origin after a while: the line is not too slow.
+  Say(mavlink::GpsGlobalOrigin{-353632621, 1491652374, 584000});
+  for (int i = 0; i < 1000; ++i) {
+    Pass(0.01, i % 100 == 0);
+    Say(AttitudeAt(BootMs()));
+  }
+  EXPECT_EQ(EventsOf(AutopilotEventKind::kSlowStream), 0);
 }
 
 TEST_F(AutopilotTest, SaysWhatAPilotHasToDoInAFailsafe) {
@@ -137,6 +144,8 @@ TEST_F(AutopilotTest, SaysWhatAPilotHasToDoInAFailsafe) {
   EXPECT_THAT(FailsafeInWords(AutopilotKind::kPx4, Px4CustomMode(4, 3)),
               testing::AllOf(HasSubstr("LOITER"),
                              HasSubstr("give another mode, e.g. Hold, then OFFBOARD")));
+  EXPECT_THAT(FailsafeInWords(AutopilotKind::kPx4, 335806464), HasSubstr("(mode DESCEND)"));
+  EXPECT_THAT(FailsafeInWords(AutopilotKind::kPx4, 12), HasSubstr("(mode #12)"));
 }
 
 TEST_F(AutopilotTest, HurriesPx4ToTrustItsStamps) {
