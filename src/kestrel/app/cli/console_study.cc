@@ -40,9 +40,8 @@ KestrelOptions OptionsFor(const ConsoleArguments& given, const OptionArguments& 
                    FieldsOf(options));
   std::vector<std::string> settings;
   of_study.target.AppendTo(&settings, "landing.target");
-  settings.insert(settings.end(), given.source.options.settings.begin(),
-                  given.source.options.settings.end());
-  given.source.options.target.AppendTo(&settings, "landing.target");
+  const std::vector<std::string> own = given.source.options.Settings();
+  settings.insert(settings.end(), own.begin(), own.end());
   for (const std::string& setting : settings) SetOption(setting, &options);
   RequireValid(options);
   return options;

@@ -47,6 +47,8 @@ TEST_F(SimulateCommandTest, LandsOnTheTagThatIsAskedForAndOnNoOther) {
   EXPECT_THAT(Succeed(land + " --target-id 7").err, HasSubstr("found in 2"));
   EXPECT_THAT(Succeed(land + " --target-id 8").err, HasSubstr("found in 0"));
   ExpectInputError("land " + flight + " --target-id 7", "a ring-cross has no id");
+  ExpectInputError(land + " --target-id 7 --set landing.target.apriltag.id=1",
+                   "--target-id 7 and --set landing.target.apriltag.id=1");
 }
 
 TEST_F(SimulateCommandTest, SimulatesAHuntWithTheUsersCamera) {

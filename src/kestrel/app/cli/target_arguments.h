@@ -19,8 +19,12 @@ struct TargetArguments {
   // 'size_name': of the option for the size.
   void AddTo(CLI::App* command, const std::string& size_name = "--target-size");
 
-  // Adds settings, as of --set, over those that are there. 'section': the key of the target.
+  // Adds settings, as of --set, to those that are there. 'section': the key of the target. Throws
+  // InputError where one of those sets the same.
   void AppendTo(std::vector<std::string>* settings, const std::string& section) const;
+
+ private:
+  std::string size_option_ = "--target-size";
 };
 
 }  // namespace kestrel
