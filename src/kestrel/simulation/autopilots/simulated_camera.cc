@@ -131,15 +131,24 @@ bool SimulatedCamera::IsLeftOut(Time capture) const {
   return fault == CameraFault::kSlow && next_ % slower != 0;
 }
 
-// Returns the time of the next image: the newest one that is due, or the next one.
+// Returns the time of the next image: the newest one that is due and whose pose is known, or the
+// next one. Poses that come late delay the images and leave none out.
 Time SimulatedCamera::NextCapture() {
-  const double due = std::floor(ToSeconds(Now() - start_) * options_.rate_hz);
+  const double due = std::floor(ToSeconds(KnownTime() - start_) * options_.rate_hz);
   const auto newest = static_cast<std::int64_t>(due);
   if (newest > next_) {
     left_out_ += newest - next_;
     next_ = newest;
   }
   return start_ + DurationFromSeconds(static_cast<double>(next_) / options_.rate_hz);
+}
+
+// Returns the time of the newest pose, within what is waited for.
+Time SimulatedCamera::KnownTime() {
+  const Time now = Now();
+  const std::lock_guard lock(mutex_);
+  const Time oldest = now - DurationFromSeconds(options_.pose_wait_s);
+  return newest_pose_ ? std::clamp(newest_pose_->time, oldest, now) : now;
 }
 
 void SimulatedCamera::WaitForPose(Time capture, Time deadline) {
