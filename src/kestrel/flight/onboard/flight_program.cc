@@ -43,8 +43,8 @@ FlightProgram::FlightProgram(const FlightOptions& options, const TargetTrackerOp
       noise_(tracker.Noise()),
       landing_(parts.pattern_size_m / 2) {
   if (parts.connection == nullptr) return;
-  sender_.emplace(options, tracker, parts.profile, parts.pattern_size_m, parts.guides,
-                  parts.autopilot, parts.connection, say_);
+  sender_.emplace(options, tracker, parts.profile, parts.pattern_size_m, parts.sight_range_m,
+                  parts.guides, parts.autopilot, parts.connection, say_);
   if (parts.guides) {
     guided_.emplace(options, tracker, !parts.source_has_poses, parts.autopilot, parts.connection,
                     say_);

@@ -52,6 +52,7 @@ struct FlightParts {
   // Returns the true offset of the touch-down, in a simulation that knows it, see FlightEnd.
   std::function<std::optional<double>()> true_offset_m;
   double pattern_size_m = 1;  // outer diameter of the pattern; 0: it looks for none
+  double sight_range_m = 0;   // from which the camera sees it at most; 0: not known
 };
 
 // The program that flies: capture, vision, link and output have a thread each. Nobody waits at the

@@ -216,7 +216,7 @@ void GuidedFlight::SayWhenContactIsUnseen(const GuidanceInput& input) {
   said_unseen_contact_ = true;
   Tell(mavlink::kSeverityWarning,
        fmt::format("on the deck for {:g} s, and the autopilot does not see it: disarm by hand, or "
-                   "set guidance.disarm_after_s",
+                   "set fly.guidance.disarm_after_s",
                    kPatience_s));
 }
 

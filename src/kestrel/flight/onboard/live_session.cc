@@ -113,6 +113,7 @@ class LiveSession::Impl {
 
  private:
   void OpenVision();
+  double SightRange() const;
   void StayWithinSight();
   void OpenAutopilot();
   std::optional<ExposureDrive> Exposure();
@@ -152,7 +153,7 @@ LiveSession::Impl::Impl(LiveSessionParts parts, LiveSessionOptions options)
   if (parts_.autopilot.empty() && !parts_.has_poses) options_.flight.events.pose_wait_s = 0;
   if (!parts_.record.empty()) recording_.Start(parts_.record, parts_.replace);
   OpenVision();
-  if (parts_.guides && landing_ != nullptr) StayWithinSight();
+  if (!parts_.autopilot.empty() && landing_ != nullptr) StayWithinSight();
   if (!parts_.autopilot.empty()) OpenAutopilot();
   program_.emplace(options_.flight, options_.landing.tracker, ProgramParts(),
                    [this](const std::string& text) { Say(text); });
@@ -213,10 +214,19 @@ void LiveSession::Impl::OpenVision() {
   vision_->SetAltitude(options_.altitude_m);
 }
 
+double LiveSession::Impl::SightRange() const {
+  return ShapeOfTarget(options_.landing.target, options_.landing.detector)
+      .SightRange(parts_.calibration.intrinsics);
+}
+
 // A small pad, or a coarse image, shows nothing from the search altitude.
 void LiveSession::Impl::StayWithinSight() {
-  const double range_m = ShapeOfTarget(options_.landing.target, options_.landing.detector)
-                             .SightRange(parts_.calibration.intrinsics);
+  const double range_m = SightRange();
+  if (!parts_.guides) {
+    return Say(fmt::format(
+        "this camera sees the pad from {:.1f} m at most: begin the autopilot's landing below that",
+        range_m));
+  }
   GuidanceOptions& guidance = options_.flight.guidance;
   const double asked_m = guidance.search_altitude_m;
   guidance = guidance.WithinSight(range_m);
@@ -287,7 +297,8 @@ FlightParts LiveSession::Impl::ProgramParts() {
           .pattern_size_m =
               hunt_ != nullptr
                   ? 0
-                  : ShapeOfTarget(options_.landing.target, options_.landing.detector).diameter_m};
+                  : ShapeOfTarget(options_.landing.target, options_.landing.detector).diameter_m,
+          .sight_range_m = hunt_ != nullptr ? 0 : SightRange()};
 }
 
 void LiveSession::Impl::TakePose(const PoseSample& pose) {

@@ -29,12 +29,13 @@ Duration LinkDelay(const FlightOptions& options, const Autopilot& autopilot) {
 }
 
 TargetSender::TargetSender(const FlightOptions& options, const TargetTrackerOptions& tracker,
-                           std::optional<LinkProfile> profile, double size_m, bool is_guided,
-                           Autopilot* autopilot, Connection* connection,
+                           std::optional<LinkProfile> profile, double size_m, double sight_range_m,
+                           bool is_guided, Autopilot* autopilot, Connection* connection,
                            std::function<void(const std::string&)> say)
     : options_(options),
       profile_(profile),
       size_m_(size_m),
+      sight_range_m_(sight_range_m),
       is_guided_(is_guided),
       autopilot_(*autopilot),
       connection_(connection),
@@ -133,14 +134,24 @@ void TargetSender::SayPhase() {
   autopilot_.Announce(severity, "Kestrel: " + text);
 }
 
-// Tells them when the autopilot begins to land by it.
+// Tells them when the autopilot begins to land by it. Without a pattern in view it comes down where
+// it is.
 void TargetSender::SayLanding() {
-  const bool is_landing = autopilot_.is_landing_mode() && autopilot_.is_armed();
-  if (is_landing && !was_landing_) {
-    autopilot_.Announce(mavlink::kSeverityInfo,
-                        fmt::format("Kestrel: landing, pattern {}", ToString(phase())));
+  const bool begins = autopilot_.is_landing_mode() && autopilot_.is_armed() && !was_landing_;
+  was_landing_ = autopilot_.is_landing_mode() && autopilot_.is_armed();
+  if (!begins) return;
+  if (phase() == TargetPhase::kFound || phase() == TargetPhase::kContact || is_guided_ ||
+      sight_range_m_ <= 0) {
+    return autopilot_.Announce(mavlink::kSeverityInfo,
+                               fmt::format("Kestrel: landing, pattern {}", ToString(phase())));
   }
-  was_landing_ = is_landing;
+  say_(fmt::format(
+      "the autopilot lands, and the pattern is not in view: this camera sees it from {:.1f} m at "
+      "most. Stop the landing, go lower above the pattern, and begin it again",
+      sight_range_m_));
+  autopilot_.Announce(
+      mavlink::kSeverityWarning,
+      fmt::format("Kestrel: no pattern in view: LAND below {:.1f} m", sight_range_m_));
 }
 
 }  // namespace kestrel

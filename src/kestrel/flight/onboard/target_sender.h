@@ -26,11 +26,12 @@ Duration LinkDelay(const FlightOptions& options, const Autopilot& autopilot);
 // thread only.
 class TargetSender {
  public:
-  // 'profile': nothing: chosen by the heartbeat. 'size_m': diameter of the pattern. 'is_guided':
-  // the autopilot is to land by set-points, not by the targets. 'say': receives lines for the user.
+  // 'profile': nothing: chosen by the heartbeat. 'size_m': diameter of the pattern.
+  // 'sight_range_m': from which the camera sees it at most, 0: not known. 'is_guided': the
+  // autopilot is to land by set-points, not by the targets. 'say': receives lines for the user.
   TargetSender(const FlightOptions& options, const TargetTrackerOptions& tracker,
-               std::optional<LinkProfile> profile, double size_m, bool is_guided,
-               Autopilot* autopilot, Connection* connection,
+               std::optional<LinkProfile> profile, double size_m, double sight_range_m,
+               bool is_guided, Autopilot* autopilot, Connection* connection,
                std::function<void(const std::string&)> say);
 
   // Sends what is due at 'now'; true when it was the first message of a new frame.
@@ -54,6 +55,7 @@ class TargetSender {
   FlightOptions options_;
   std::optional<LinkProfile> profile_;
   double size_m_;
+  double sight_range_m_;
   bool is_guided_;
   Autopilot& autopilot_;
   Connection* connection_;
