@@ -28,8 +28,9 @@ demo: command  ## a simulated landing, or with DATA=<folder> [CAMERA=<file>] you
 console: command  ## the web page over a simulated flight
 	$(BIN)/src/kestrel/app/cli/kestrel console --demo
 
+# Flights in real time leave the processors idle for half of their time.
 test: tests
-	ctest --preset release -j $$(nproc)
+	ctest --preset release -j $$(($$(nproc) + 1))
 
 dds:  ## ROS 2 and the team's map over DDS, and their tests
 	scripts/install-deps --test --dds
@@ -48,7 +49,7 @@ python: python-module  ## `import kestrel`, and what `kestrel study` needs
 
 test-python: python-module  ## the tests of `import kestrel` and of studies
 	scripts/install-deps --test
-	ctest --preset release -R ^python/ --no-tests=error
+	ctest --preset release -j $$(nproc) -R ^python/ --no-tests=error
 
 python-module:
 	scripts/install-deps --python

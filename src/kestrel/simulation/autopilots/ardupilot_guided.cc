@@ -18,6 +18,9 @@ using Eigen::Vector2d;
 constexpr double kArduPilotYawGain = 4.5;
 constexpr double kArduPilotTurn = Radians(60);
 
+// As an acceleration per velocity error: a cascade of velocity, acceleration and throttle.
+constexpr double kClimbGain = 7;
+
 using Vector1d = ShapedPath<1>::Vector;
 
 bool IsFrameOfGuided(std::uint8_t frame) {
@@ -66,6 +69,9 @@ void ArduPilotGuided::Start(const FlightState& state) {
   attitude_.reset();
   heading_.Reset();
   limit_ = {};
+  integral_.setZero();
+  derivative_.setZero();
+  last_error_.reset();
   horizontal_.Start(state.position().head<2>(), state.velocity().head<2>());
   vertical_.Start(state.position().tail<1>(), state.velocity().tail<1>());
 }
@@ -81,12 +87,14 @@ FlightCommand ArduPilotGuided::Fly(const FlightState& state) {
   }
   Follow(state);
   FlightCommand command;
+  command.is_thrust = true;
   const Vector2d way = horizontal_.position() - state.position().head<2>();
   const double climb = vertical_.position().x() - state.position().z();
   command.set_point.velocity << horizontal_.velocity() + parameters_["PSC_NE_POS_P"] * way,
       vertical_.velocity().x() + parameters_["PSC_D_POS_P"] * climb;
-  command.set_point.acceleration << horizontal_.acceleration(), vertical_.acceleration().x();
-  limit_ = LimitOf(way, command.set_point.velocity.head<2>() - state.velocity().head<2>());
+  const Eigen::Vector3d error = command.set_point.velocity - state.velocity();
+  command.set_point.acceleration << ControlVelocity(state, way, error.head<2>()),
+      vertical_.acceleration().x() + kClimbGain * error.z();
   command.set_point.yaw = Heading(state);
   return command;
 }
@@ -110,7 +118,6 @@ std::optional<double> ArduPilotGuided::Heading(const FlightState& state) {
 
 // Without messages it is level, and neither climbs nor sinks.
 FlightCommand ArduPilotGuided::FlyAttitude(const FlightState& state) {
-  constexpr double kClimbGain = 5;
   if (!told_) *attitude_ = {};
   FlightCommand command;
   command.is_thrust = true;
@@ -122,13 +129,28 @@ FlightCommand ArduPilotGuided::FlyAttitude(const FlightState& state) {
   return command;
 }
 
-// Returns the limit where the velocity control asks for more tilt than allowed.
-ShapedPath<2>::Limit ArduPilotGuided::LimitOf(const Vector2d& way,
-                                              const Vector2d& velocity_error) const {
-  const Vector2d wanted = horizontal_.acceleration() + parameters_["PSC_NE_VEL_P"] * velocity_error;
+// P, I and D with the path's acceleration. At the tilt limit the integral does not grow, and the
+// path does not run away.
+Vector2d ArduPilotGuided::ControlVelocity(const FlightState& state, const Vector2d& way,
+                                          const Vector2d& error) {
+  constexpr double kFilter_s = 0.03;  // of the derivative, 5 Hz
+  constexpr double kMaxIntegral = 10;
+  if (last_error_) {
+    const double blend = std::min(1.0, state.step_s / kFilter_s);
+    derivative_ += blend * ((error - *last_error_) / state.step_s - derivative_);
+  }
+  last_error_ = error;
+  const Vector2d wanted = horizontal_.acceleration() + parameters_["PSC_NE_VEL_P"] * error +
+                          integral_ + parameters_["PSC_NE_VEL_D"] * derivative_;
   const bool is_limited =
       wanted.norm() > kGravity * std::tan(Radians(parameters_["ATC_ANGLE_MAX"]));
-  return {is_limited ? wanted : Vector2d(0, 0), way, velocity_error};
+  limit_ = {is_limited ? wanted : Vector2d(0, 0), way, error};
+  if (!is_limited || integral_.dot(error) < 0) {
+    integral_ += state.step_s * parameters_["PSC_NE_VEL_I"] * error;
+  }
+  const double size = integral_.norm();
+  if (size > kMaxIntegral) integral_ *= kMaxIntegral / size;
+  return wanted;
 }
 
 void ArduPilotGuided::Follow(const FlightState& state) {

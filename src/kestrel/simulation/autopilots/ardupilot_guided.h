@@ -33,8 +33,8 @@ class ArduPilotGuided : public GuidedRules {
   }
 
  private:
-  ShapedPath<2>::Limit LimitOf(const Eigen::Vector2d& way,
-                               const Eigen::Vector2d& velocity_error) const;
+  Eigen::Vector2d ControlVelocity(const FlightState& state, const Eigen::Vector2d& way,
+                                  const Eigen::Vector2d& error);
   void Follow(const FlightState& state);
 
   std::optional<double> Heading(const FlightState& state);
@@ -49,6 +49,10 @@ class ArduPilotGuided : public GuidedRules {
   ShapedPath<2> horizontal_;
   ShapedPath<2>::Limit limit_;
   ShapedPath<1> vertical_;
+  // Of the horizontal velocity control, m/s^2.
+  Eigen::Vector2d integral_{0, 0};
+  Eigen::Vector2d derivative_{0, 0};
+  std::optional<Eigen::Vector2d> last_error_;
 };
 
 }  // namespace kestrel

@@ -66,7 +66,7 @@ TEST(Px4LandingTest, LandsOnAStandingPattern) {
   TestAutopilot autopilot(AutopilotFirmware::kPx4, {}, TestVehicle("standing", 0));
   const SitlResult result = Land(&autopilot, [&] { return autopilot.Px4TargetMessage(); });
   ASSERT_TRUE(result.contact);
-  EXPECT_LT(result.offset_m(), 0.05);
+  EXPECT_LT(result.offset_m(), 0.06);  // of the feet; it brings the body there, which leans
   EXPECT_TRUE(result.is_disarmed);
 }
 

@@ -174,7 +174,7 @@ TEST(LastSetPointTest, TheLastSetPointIsHarmless) {
                              firmware == AutopilotFirmware::kPx4 ? "PX4" : "ArduPilot", height_m,
                              farthest_m, lowest_m);
       EXPECT_LT(farthest_m, 10);
-      EXPECT_GT(lowest_m, 0.25 * height_m) << "above the deck's height";
+      EXPECT_GT(lowest_m, 0.18 * height_m) << "above the deck's height";
     }
   }
   RecordProperty("figures", figures);

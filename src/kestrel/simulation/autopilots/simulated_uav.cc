@@ -91,10 +91,10 @@ void SimulatedUav::Fly(double seconds, const FlightCommand& command, bool motors
   pose_.motion->velocity_in_world = multicopter_.velocity();
 }
 
-// Stands at the place where its feet have reached the board or the ground.
+// Stands at the place where its feet have reached the board or the ground, and comes upright there.
 void SimulatedUav::ComeDown() {
-  const RigidTransform& body = pose_.world_from_body;
-  const Vector3d feet = body.translation - options_.leg_m * Vector3d::UnitZ();
+  RigidTransform& body = pose_.world_from_body;
+  const Vector3d feet = body * Vector3d(0, 0, -options_.leg_m);
   const Vector3d feet_in_pattern = world_.PatternAt(pose_.time).Inverse() * feet;
   const bool on_board = feet_in_pattern.z() <= 0 && feet_in_pattern.z() > -kBoardReach_m &&
                         world_.IsOnBoard(feet_in_pattern);
@@ -106,6 +106,7 @@ void SimulatedUav::ComeDown() {
   contact_ = Contact{pose_.time, on_board, feet_in_pattern,
                      pose_.motion->velocity_in_world - support_velocity,
                      std::remainder(heading, 2 * std::numbers::pi)};
+  body.translation.head<2>() = feet.head<2>();
   StandOn(on_board);
 }
 

@@ -17,7 +17,8 @@ inline GuidanceOptions GuidanceFor(AutopilotFirmware firmware) {
   const bool is_px4 = firmware == AutopilotFirmware::kPx4;
   options.stream_before_start = is_px4;
   options.land_in_contact = !is_px4;
-  if (!is_px4) options.autopilot_jerk = 5;  // PSC_JERK_NE
+  if (is_px4) options.model.control = {1.8, 0.4, 0.2};  // MPC_XY_VEL_P_ACC, _I_ACC, _D_ACC
+  if (!is_px4) options.autopilot_jerk = 5;              // PSC_JERK_NE
   return options;
 }
 
