@@ -93,6 +93,16 @@ TEST_F(FlyCommandTest, LandedBesideThePatternIsNoSuccess) {
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("drive straight"), HasSubstr("kestrel: ")));
 }
 
+// A tag of 5 cm is not seen from there: LAND comes down where it is.
+TEST_F(FlyCommandTest, ALandingOutOfSightIsSaidBeforeAndAtItsBegin) {
+  const Outcome outcome =
+      Run(std::string(
+              "fly sim:standing --autopilot sim:ardupilot --target apriltag --target-size 0.05") +
+          kNear);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("begin the autopilot's landing below that"),
+                                 HasSubstr("the autopilot lands, and the pattern is not in view")));
+}
+
 TEST_F(FlyCommandTest, PlaysARecordingInRealTime) {
   const std::string flight =
       Simulate("landing", "--scenario calm --seed 2 --set frames=10 --set rate_hz=10");
