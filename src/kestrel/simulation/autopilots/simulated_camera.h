@@ -31,7 +31,7 @@ struct SimulatedCameraOptions {
   double rate_hz = 20;
   double scale = 0.5;         // of the paper's image of 752x480
   double clock_offset_s = 0;  // t_nav = t_image + clock_offset_s; negative for a late stamp
-  double pose_wait_s = 0.4;  // longest wait of an image for its pose, which is then extrapolated
+  double pose_wait_s = 0.4;   // longest wait of an image for its pose, which is then extrapolated
   LensViewOptions lens;
   ShutterOptions shutter;
   SensorOptions sensor;
