@@ -140,8 +140,8 @@ Vector2d ArduPilotGuided::ControlVelocity(const FlightState& state, const Vector
     derivative_ += blend * ((error - *last_error_) / state.step_s - derivative_);
   }
   last_error_ = error;
-  const Vector2d wanted = horizontal_.acceleration() + parameters_["PSC_NE_VEL_P"] * error +
-                          integral_ + parameters_["PSC_NE_VEL_D"] * derivative_;
+  Vector2d wanted = horizontal_.acceleration() + parameters_["PSC_NE_VEL_P"] * error + integral_ +
+                    parameters_["PSC_NE_VEL_D"] * derivative_;
   const bool is_limited =
       wanted.norm() > kGravity * std::tan(Radians(parameters_["ATC_ANGLE_MAX"]));
   limit_ = {is_limited ? wanted : Vector2d(0, 0), way, error};
