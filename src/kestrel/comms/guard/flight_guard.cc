@@ -21,7 +21,7 @@ constexpr Duration kVelocityAge = std::chrono::milliseconds(300);  // an older o
 // acceleration within its limits of jerk (PSC_JERK_NE and _D as they come): a braking that ends
 // faster than they allow would carry it backwards.
 constexpr double kJerk = 5;                                 // m/s^3
-constexpr double kMaxBraking = 4, kMaxVerticalBraking = 2;  // m/s^2
+constexpr double kMaxBraking = 3, kMaxVerticalBraking = 2;  // m/s^2
 constexpr Duration kListening = std::chrono::seconds(1);
 // An autopilot that is silent for so long is gone.
 constexpr Duration kSilence = std::chrono::seconds(10);
@@ -149,7 +149,8 @@ GuardAction FlightGuard::Work(Time now) {
 std::optional<FlightMode> FlightGuard::ModeToAsk(Time now) const {
   if (task_ == GuardTask::kLand) return FlightMode::kLand;
   const auto velocity = Velocity(now);
-  const bool is_stopped = velocity && velocity->norm() < kStands_mps;
+  const bool is_led = stop_ && !stop_->velocity.isZero();
+  const bool is_stopped = velocity && velocity->norm() < kStands_mps && !is_led;
   if (!is_stopped && now - since_ < kLongestStop) return std::nullopt;
   return kind_ != AutopilotKind::kPx4 && is_refused_ ? FlightMode::kPilot : FlightMode::kHold;
 }

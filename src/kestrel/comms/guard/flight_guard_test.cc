@@ -75,7 +75,8 @@ TEST_F(FlightGuardTest, StopsAnArduCopterThatIsLeftAlone) {
   EXPECT_THAT(sent.text, HasSubstr("Kestrel hangs: stopping, then BRAKE"));
   EXPECT_TRUE(guard_.has_taken_over());
   velocity_ = {0, 0.1, 0.1};
-  EXPECT_THAT(BeSilent(20).modes, ::testing::ElementsAre(FlightMode::kHold));
+  EXPECT_THAT(BeSilent(20).modes, ::testing::IsEmpty()) << "it is still led";
+  EXPECT_THAT(BeSilent(1200).modes, ::testing::Contains(FlightMode::kHold));
 }
 
 // A path that follows with ArduCopter's jerk does not swing back: the braking ends as it began.
@@ -85,12 +86,12 @@ TEST_F(FlightGuardTest, BrakesToRestWithinTheJerkOfTheAutopilot) {
   BeSilent(195);
   Eigen::Vector3d before(0, 0, 0);
   Sent sent;
-  for (int ms = 0; ms < 2200; ms += 20) {
+  for (int ms = 0; ms < 2600; ms += 20) {
     sent = BeSilent(20);
     EXPECT_LE(sent.stop.velocity.y(), 0);
     EXPECT_LE(sent.stop.velocity.z(), 0);
-    EXPECT_LE(sent.stop.acceleration.y(), 4);
-    EXPECT_LE(sent.stop.acceleration.z(), 2);
+    EXPECT_LE(sent.stop.acceleration.y(), 3 + 1e-9);
+    EXPECT_LE(sent.stop.acceleration.z(), 2 + 1e-9);
     const Eigen::Vector3d change = sent.stop.acceleration - before;
     EXPECT_LE(change.cwiseAbs().maxCoeff(), 0.3) << "m/s^2 in 0.02 s, at " << ms << " ms";
     before = sent.stop.acceleration;

@@ -424,9 +424,6 @@ void Autopilot::SendRequests(Time now) {
     question->target_component = component_;
     connection_->Send(*question);
   }
-  // Without an origin the autopilot sends no position: those requests show nothing of the line.
-  const bool had_origin = std::exchange(has_origin_, origin().has_value());
-  if (has_origin_ && !had_origin) streams_.AskAgain(mavlink::LocalPositionNed::kId);
   StreamRequests::Request request;
   if (streams_.Next(now, &request)) SendStreamRequest(request);
   SendCommands(now);
@@ -518,15 +515,16 @@ void Autopilot::SendStreamRequest(const StreamRequests::Request& request) {
   if (request.requests >= kManyRequests) TellSlowStream(request);
 }
 
-// An autopilot without a position sends none, however fast the line is.
+// An autopilot without a position sends none, however fast the line is: ArduCopter for 20 s after
+// its estimator has an origin.
 void Autopilot::TellSlowStream(const StreamRequests::Request& request) {
   const bool is_attitude = request.id == mavlink::AttitudeQuaternion::kId;
-  if (!is_attitude && request.is_unanswered && !origin()) {
-    return TellOnce(AutopilotEventKind::kNoPosition, [] {
-      return std::string(
-          "the autopilot has no position yet: its estimator has no origin; it needs GNSS or "
-          "another "
-          "source of position, and some time");
+  if (!is_attitude && request.is_unanswered) {
+    return TellOnce(AutopilotEventKind::kNoPosition, [&] {
+      return fmt::format(
+          "the autopilot has no position yet{}: it needs GNSS or another source of position, and "
+          "some time",
+          origin() ? "" : ", its estimator has no origin");
     });
   }
   TellOnce(AutopilotEventKind::kSlowStream, [&] {

@@ -265,7 +265,6 @@ class Autopilot {
   Time heartbeat_due_{};
   Time questions_due_{};
   int questions_ = 0;
-  bool has_origin_ = false;  // known, as of the last requests
   std::uint16_t text_id_ = 0;
   AutopilotCounters counters_;
   int restarts_ = 0;

@@ -130,7 +130,7 @@ TEST_F(AutopilotTest, SaysThatThereIsNoPositionYet) {
   EXPECT_THAT(TextOfEvent(AutopilotEventKind::kNoPosition), HasSubstr("has no origin"));
   // The position follows the origin after a while: the line is not too slow.
   Say(mavlink::GpsGlobalOrigin{-353632621, 1491652374, 584000});
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < 2500; ++i) {
     Pass(0.01, i % 100 == 0);
     Say(AttitudeAt(BootMs()));
   }

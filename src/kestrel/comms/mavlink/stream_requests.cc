@@ -68,19 +68,11 @@ bool StreamRequests::Next(Time now, Request* request) {
 }
 
 void StreamRequests::AskAgain() {
-  for (Stream& stream : streams_) Forget(&stream);
-}
-
-void StreamRequests::AskAgain(std::uint32_t id) {
   for (Stream& stream : streams_) {
-    if (stream.id == id) Forget(&stream);
+    stream.requests = 0;
+    stream.has_come = false;
+    stream.due = {};
   }
-}
-
-void StreamRequests::Forget(Stream* stream) {
-  stream->requests = 0;
-  stream->has_come = false;
-  stream->due = {};
 }
 
 double StreamRequests::RateOf(std::uint32_t id) const {

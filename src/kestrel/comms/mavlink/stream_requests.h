@@ -36,8 +36,6 @@ class StreamRequests {
 
   // The autopilot has forgotten all requests.
   void AskAgain();
-  // The requests for message 'id' so far could have no answer.
-  void AskAgain(std::uint32_t id);
 
   // Rate over the last whole second, or over the last four messages that should have come; 1/s.
   double RateOf(std::uint32_t id) const;
@@ -55,7 +53,6 @@ class StreamRequests {
     Time due{};
   };
   Stream& Get(std::uint32_t id);
-  static void Forget(Stream* stream);
   static void Measure(Time now, Stream* stream);
 
   std::vector<Stream> streams_;
