@@ -28,9 +28,8 @@ demo: command  ## a simulated landing, or with DATA=<folder> [CAMERA=<file>] you
 console: command  ## the web page over a simulated flight
 	$(BIN)/src/kestrel/app/cli/kestrel console --demo
 
-# Flights in real time leave the processors idle for half of their time.
 test: tests
-	ctest --preset release -j $$(($$(nproc) + 1))
+	ctest --preset release -j $$(nproc)
 
 dds:  ## ROS 2 and the team's map over DDS, and their tests
 	scripts/install-deps --test --dds
