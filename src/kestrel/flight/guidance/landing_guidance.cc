@@ -181,11 +181,16 @@ GuidanceOutput LandingGuidance::Idle(const GuidanceInput& input) {
   return Output(hold, GuidanceRequest::kNone);
 }
 
-// Without a pose: flies on level for a moment, then stands still, then gives up.
+// Without a pose: flies on level for a moment, then stands still, then gives up. On the deck there
+// is nothing to give up: the autopilot would hold its place with the motors on.
 GuidanceOutput LandingGuidance::Blind(const GuidanceInput& input) {
   Remember(true, input.now, &poses_lost_);
   model_.Forgo();
-  if (IsLongerThan(options_.lose_pose_s, poses_lost_, input.now)) {
+  GuidanceRequest request = GuidanceRequest::kNone;
+  if (phase_ == GuidancePhase::kLanded) {
+    if (GivesUp(input)) return Idle(input);
+    request = RequestBlind(input);
+  } else if (IsLongerThan(options_.lose_pose_s, poses_lost_, input.now)) {
     has_given_up_ = true;
     End("the poses have stopped: gave up");
     return Idle(input);
@@ -195,11 +200,23 @@ GuidanceOutput LandingGuidance::Blind(const GuidanceInput& input) {
   on.yaw_rate.reset();
   if (phase_ != GuidancePhase::kLanded) on = stale_.Level(on);
   if (IsLongerThan(options_.hold_pose_s, poses_lost_, input.now)) {
-    on.velocity.setZero();
-    on.place.reset();
     reason_ = "the poses have stopped";
+    if (phase_ != GuidancePhase::kLanded) {
+      on.velocity.setZero();
+      on.place.reset();
+    }
   }
-  return Output(on, GuidanceRequest::kNone);
+  return Output(on, request);
+}
+
+// The request in contact without a pose: LAND, and where that does not end it, disarming.
+GuidanceRequest LandingGuidance::RequestBlind(const GuidanceInput& input) const {
+  const double wait_s = options_.lose_pose_s + options_.disarm_carried_s;
+  if (options_.disarm_carried_s > 0 && IsLongerThan(wait_s, poses_lost_, input.now)) {
+    return GuidanceRequest::kDisarm;
+  }
+  return IsLongerThan(options_.lose_pose_s, poses_lost_, input.now) ? GuidanceRequest::kLand
+                                                                    : GuidanceRequest::kNone;
 }
 
 GuidanceOutput LandingGuidance::Fly(const GuidanceInput& input) {

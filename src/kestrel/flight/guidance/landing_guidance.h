@@ -129,6 +129,7 @@ class LandingGuidance {
   // Set-points.
   GuidanceOutput Idle(const GuidanceInput& input);
   GuidanceOutput Blind(const GuidanceInput& input);
+  GuidanceRequest RequestBlind(const GuidanceInput& input) const;
   GuidanceOutput Fly(const GuidanceInput& input);
   SetPoint Search(const GuidanceInput& input, const Situation& now);
   SetPoint Pursue(const GuidanceInput& input, const Situation& now);

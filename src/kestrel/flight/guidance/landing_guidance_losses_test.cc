@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -217,6 +218,24 @@ TEST(LandingGuidanceLossesTest, NothingThatIsNotFiniteIsSent) {
     EXPECT_TRUE(flight.output.set_point->velocity.allFinite());
     EXPECT_TRUE(flight.output.set_point->acceleration.allFinite());
   }
+}
+
+TEST(LandingGuidanceLossesTest, EndsTheLandingWhenThePosesStopOnTheDeck) {
+  TestFlight flight;
+  flight.LandOnDeck();
+  ASSERT_EQ(flight.output.phase, Phase::kLanded);
+  std::vector<GuidanceRequest> requests;
+  flight.FlyUntil(
+      [&] {
+        EXPECT_EQ(flight.output.phase, Phase::kLanded);
+        EXPECT_LT(flight.output.set_point->velocity.z(), -0.3);
+        const GuidanceRequest request = flight.output.request;
+        if (requests.empty() || requests.back() != request) requests.push_back(request);
+        return request == GuidanceRequest::kDisarm;
+      },
+      6, [](GuidanceInput& input) { input.uav.reset(); });
+  EXPECT_THAT(requests, testing::ElementsAre(GuidanceRequest::kNone, GuidanceRequest::kLand,
+                                             GuidanceRequest::kDisarm));
 }
 
 }  // namespace

@@ -115,6 +115,7 @@ void FlightProgram::End(const FlightEnd& end) {
 void FlightProgram::EndByLanding(FlightEnd end) {
   const auto true_m = parts_.true_offset_m ? parts_.true_offset_m() : std::nullopt;
   if (end.offset_m && true_m) {
+    end.estimated_m = end.offset_m;
     end.offset_m = true_m;
     end.has_true_offset = true;
   }
@@ -350,6 +351,7 @@ LandingWatchInput FlightProgram::LandingInput(Time now) {
                           .stamped = autopilot.stamped(),
                           .body = {},
                           .pattern = {},
+                          .sight = {},
                           .has_contact = phase_ == TargetPhase::kContact,
                           .gave_up = {}};
   if (const auto pose = poses_.Predict(now, kPoseGap, {})) {
@@ -358,6 +360,10 @@ LandingWatchInput FlightProgram::LandingInput(Time now) {
                   pose->motion.velocity_in_world};
   }
   const TrackSnapshot& track = track_.Get();
+  if (track.sight) {
+    input.sight = {track.sight->time,
+                   track.sight->target_from_body * Eigen::Vector3d(0, 0, -options_.guidance.leg_m)};
+  }
   if (track.target && track.state != TrackState::kSearching) {
     const double ahead_s = std::max(ToSeconds(now - track.captured), 0.0);
     const TurnState target = Propagate(track.target->motion, ahead_s, noise_);

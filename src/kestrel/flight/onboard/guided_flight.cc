@@ -22,6 +22,7 @@ constexpr double kMaxFrameAge_s = 1;
 constexpr double kLinkAge_s = 0.5;  // after so long without a pose the link is away
 constexpr Duration kPermissionPeriod = std::chrono::milliseconds(500);
 constexpr Duration kAskPeriod = std::chrono::seconds(1);
+constexpr double kAskForLand_s = 10;
 
 const FlightOptions& CheckedRate(const FlightOptions& options) {
   if (options.rate_hz < kMinRate_hz) {
@@ -69,6 +70,7 @@ bool GuidedFlight::Fly(Time now, const TrackSnapshot& track, const PoseHistory& 
   SayWhetherItKeepsUp(output);
   SayWhenContactIsUnseen(input);
   Ask(now, output.request);
+  EndLostLanding(input, now);
   told_frame_ = track.captured;
   const bool is_allowed = is_begun_ || may_begin_;
   if (!output.set_point || !is_allowed) return false;
@@ -104,6 +106,11 @@ void GuidedFlight::KnowAutopilot(Time now) {
 void GuidedFlight::WatchMode(const GuidanceInput& input, Time now) {
   const bool is_mode = autopilot_.is_here() ? autopilot_.is_guided_mode() : was_mode_;
   if (is_mode && !was_mode_) is_given_ = true;
+  if (!is_mode && is_begun_ && phase() == GuidancePhase::kLanded && !input.uav) {
+    left_on_deck_ = now;
+    Tell(mavlink::kSeverityWarning,
+         "the autopilot has left its mode on the deck, without a position");
+  }
   if (!is_mode) is_given_ = is_begun_ = false;
   was_mode_ = is_mode;
   if (was_armed_ && !input.is_armed) guidance_->Rearm();
@@ -183,6 +190,19 @@ void GuidedFlight::Ask(Time now, GuidanceRequest request) {
       Tell(mavlink::kSeverityWarning, "disarming by force, in contact");
       autopilot_.DisarmByForce();
       return;
+  }
+}
+
+// An autopilot without a position leaves the mode by itself, and may hold its place on the deck
+// with the motors on. A pilot's mode is left alone.
+void GuidedFlight::EndLostLanding(const GuidanceInput& input, Time now) {
+  if (!left_on_deck_) return;
+  const bool is_over = !input.is_armed || is_begun_ || input.uav.has_value() ||
+                       ToSeconds(now - *left_on_deck_) > kAskForLand_s;
+  if (is_over) {
+    left_on_deck_.reset();
+  } else if (autopilot_.custom_mode() == CustomModeOf(kind_, FlightMode::kHold)) {
+    Ask(now, GuidanceRequest::kLand);
   }
 }
 

@@ -56,6 +56,7 @@ class GuidedFlight {
   void SayPhase(const GuidanceOutput& output);
   void SayWhetherItKeepsUp(const GuidanceOutput& output);
   void SayWhenContactIsUnseen(const GuidanceInput& input);
+  void EndLostLanding(const GuidanceInput& input, Time now);
   void Tell(std::uint8_t severity, const std::string& text);
 
   FlightOptions options_;
@@ -72,6 +73,7 @@ class GuidedFlight {
   bool is_given_ = false;  // the pilot has given the mode, and guidance has not begun yet
   bool is_begun_ = false;
   bool was_armed_ = false;
+  std::optional<Time> left_on_deck_;  // the mode was left in contact, without a position
   Time permission_due_{};
   bool may_begin_ = false;  // guidance may begin
   std::string refusal_;     // reason why it may not

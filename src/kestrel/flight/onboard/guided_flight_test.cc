@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,11 @@ class GuidedFlightTest : public testing::Test {
   // Receives Kestrel's packets.
   void Hear(const mavlink::Packet& packet) {
     if (packet.As<mavlink::SetPositionTargetLocalNed>()) ++set_points_;
+    const auto command = packet.As<mavlink::CommandLong>();
+    if (command && command->command == mavlink::kCommandDoSetMode) {
+      requested_modes_.insert(static_cast<std::uint32_t>(command->param2) << 16 |
+                              static_cast<std::uint32_t>(command->param3) << 24);
+    }
     if (const auto question = packet.As<mavlink::ParamRequestRead>()) {
       mavlink::ParamValue value;
       value.param_id = question->param_id;
@@ -71,7 +77,9 @@ class GuidedFlightTest : public testing::Test {
         if (has_home_) Say(home_);
       }
       for (const auto& answer : std::exchange(answers_, {})) Say(answer);
-      poses_.Add({now_, {Eigen::Quaterniond::Identity(), {3, 1, 8}}, BodyMotion()});
+      if (has_poses_) {
+        poses_.Add({now_, {Eigen::Quaterniond::Identity(), {3, 1, height_m_}}, BodyMotion()});
+      }
       if (i % 5 == 0) SeeTarget();
       autopilot_->Tick(now_);
       guided_->Fly(now_, track_, poses_);
@@ -106,6 +114,8 @@ class GuidedFlightTest : public testing::Test {
   std::uint8_t landed_ = mavlink::kLandedInAir;
   std::uint16_t ekf_flags_ = 0x3f;  // attitude, velocities and positions
   bool has_home_ = true;
+  bool has_poses_ = true;
+  double height_m_ = 8;
   mavlink::HomePosition home_{.latitude = 473977420, .longitude = 85455940, .altitude = 488000};
   float limit_ = 50;  // value of all limits of the autopilot
   std::map<std::string, float> parameters_ = {{"GUID_TIMEOUT", 0.3f}, {"COM_OF_LOSS_T", 0.3f},
@@ -121,6 +131,7 @@ class GuidedFlightTest : public testing::Test {
   std::unique_ptr<GuidedFlight> guided_;
   std::string said_;
   int set_points_ = 0;
+  std::set<std::uint32_t> requested_modes_;  // of PX4
 };
 
 TEST_F(GuidedFlightTest, FliesWhileThePilotGivesTheMode) {
@@ -211,6 +222,31 @@ TEST_F(GuidedFlightTest, ARateThatIsTooLowIsRefused) {
   FlightOptions options;
   options.rate_hz = 10;
   EXPECT_THROW(Start(mavlink::kAutopilotArduPilot, options), InputError);
+}
+
+// PX4 without GNSS leaves OFFBOARD on the deck, holds its place and stays armed.
+TEST_F(GuidedFlightTest, EndsALandingThatTheAutopilotLeavesWithoutAPosition) {
+  constexpr std::uint32_t kHold = (4 << 16) | (3 << 24);
+  for (const std::uint32_t mode : {kHold, kPositionControl}) {
+    said_.clear();
+    requested_modes_.clear();
+    has_poses_ = true;
+    height_m_ = 8;
+    heartbeat_.custom_mode = kPositionControl;
+    Start(mavlink::kAutopilotPx4);
+    Pass(2);
+    heartbeat_.custom_mode = kOffboard;
+    for (; height_m_ > 0.35; height_m_ -= 0.05) Pass(0.05);
+    Pass(2);
+    ASSERT_EQ(guided_->phase(), GuidancePhase::kLanded) << said_;
+    has_poses_ = false;
+    Pass(0.5);
+    heartbeat_.custom_mode = mode;
+    Pass(3);
+    EXPECT_THAT(said_, HasSubstr("left its mode on the deck, without a position"));
+    const std::uint32_t land = CustomModeOf(AutopilotKind::kPx4, FlightMode::kLand);
+    EXPECT_EQ(requested_modes_.contains(land), mode == kHold) << "a pilot's mode is left alone";
+  }
 }
 
 }  // namespace

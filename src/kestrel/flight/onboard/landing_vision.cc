@@ -52,6 +52,10 @@ TrackSnapshot LandingVision::Process(const Frame& frame, ObservationSink* sink) 
     snapshot_.seen = snapshot_.captured;
   }
   snapshot_.sighting = Sighting(observation);
+  if (observation.report.detection && camera_from_body_) {
+    const RigidTransform& camera_from_target = observation.report.detection->camera_from_pattern;
+    snapshot_.sight = {snapshot_.captured, camera_from_target.Inverse() * *camera_from_body_};
+  }
   snapshot_.detect_time = observation.detect_time;
   ++snapshot_.frames;
   if (observation.report.detection) ++snapshot_.detections;

@@ -13,6 +13,11 @@ constexpr double kFlownHeight_m = 1;     // a UAV that has risen or sunk by this
 constexpr double kAtRest_mps = 0.2;      // it neither rises nor sinks
 constexpr double kLargestSigma_m = 0.5;  // a pattern known no better is not known to be below
 constexpr double kStandingHeight_m = 0.6;
+// A UAV seen so low above the pattern has come down there, if it moves no faster than this until
+// touch-down, and is disarmed within this time where its position is not known.
+constexpr double kSeenHeight_m = 0.5;
+constexpr double kFastestSlip_mps = 2;
+constexpr double kSeenBefore_s = 20;
 constexpr Duration kShortestProof = std::chrono::milliseconds(500);
 constexpr Duration kLongestProof = std::chrono::seconds(10);
 
@@ -39,6 +44,8 @@ void LandingWatch::Observe(const LandingWatchInput& input) {
 void LandingWatch::Fly(const LandingWatchInput& input) {
   has_flown_ =
       has_flown_ || input.state == LandedState::kInAir || input.state == LandedState::kLanding;
+  if (input.sight) sight_ = input.sight;
+  has_body_ = input.body.has_value();
   if (!input.body) return;
   if (!armed_z_m_) armed_z_m_ = input.body->feet.z();
   has_flown_ = has_flown_ || std::abs(input.body->feet.z() - *armed_z_m_) > kFlownHeight_m;
@@ -67,10 +74,30 @@ bool LandingWatch::IsCertain(const LandingWatchInput& input) const {
 FlightEnd LandingWatch::Judge(const LandingWatchInput& input) const {
   if (pattern_radius_m_ == 0) return {FlightOutcome::kLanded};
   FlightEnd end = JudgePlace();
-  if (end.outcome == FlightOutcome::kOnPattern || input.gave_up.empty()) return end;
+  if (end.outcome == FlightOutcome::kOnPattern) return end;
+  if (const std::string why = WhySightCounts(end); !why.empty()) {
+    return {FlightOutcome::kOnPattern, sight_->feet.head<2>().norm(), "by what was seen: " + why};
+  }
+  if (input.gave_up.empty()) return end;
   end.outcome = FlightOutcome::kGaveUp;
   end.reason = input.gave_up;
   return end;
+}
+
+// Returns why the newest frame that showed the pattern counts more than the position, by which the
+// UAV is not on it; empty: it does not.
+std::string LandingWatch::WhySightCounts(const FlightEnd& by_place) const {
+  if (!sight_ || sight_->feet.z() > kSeenHeight_m) return "";
+  const double offset_m = sight_->feet.head<2>().norm();
+  if (offset_m > pattern_radius_m_) return "";
+  if (!has_body_) {
+    return ToSeconds(*disarmed_ - sight_->time) < kSeenBefore_s ? "the autopilot had no position"
+                                                                : "";
+  }
+  if (!by_place.offset_m) return "";
+  const double moved_m =
+      kFastestSlip_mps * std::max(ToSeconds(touched_down_ - sight_->time), 0.0) + kLargestSigma_m;
+  return *by_place.offset_m - offset_m > moved_m ? "the autopilot's position is wrong" : "";
 }
 
 FlightEnd LandingWatch::JudgePlace() const {

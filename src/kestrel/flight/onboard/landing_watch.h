@@ -29,7 +29,14 @@ struct LandingWatchInput {
     Eigen::Vector3d position;  // predicted to now
     Eigen::Matrix3d covariance;
   };
-  std::optional<Pattern> pattern;            // nothing: never seen, or lost for good
+  std::optional<Pattern> pattern;  // nothing: never seen, or lost for good
+  // The feet as the newest frame with the pattern showed them, from the pattern's centre, z
+  // upwards: it needs no pose.
+  struct Sight {
+    Time time;
+    Eigen::Vector3d feet;
+  };
+  std::optional<Sight> sight;                // nothing: never seen
   std::optional<double> heading_error = {};  // FlightEnd::heading_error, now
 
   bool has_contact = false;  // somebody has felt the pattern under the feet
@@ -39,7 +46,8 @@ struct LandingWatchInput {
 // Judges how a flight ends: the UAV is down when it is disarmed after it was in the air, unless the
 // autopilot has restarted, after which it is disarmed wherever it is. Where it is down follows from
 // the feet and the predicted pattern at touch-down, the last moment at which the UAV still rose or
-// sank: later the camera sees nothing any more, and a pattern on a vehicle drives on.
+// sank: later the camera sees nothing any more, and a pattern on a vehicle drives on. Where the
+// autopilot has lost its position, or it jumps, the newest frame shows where the UAV came down.
 class LandingWatch {
  public:
   // 'pattern_radius_m': so far from its centre it is still on the pattern; 0: there is no pattern.
@@ -66,6 +74,7 @@ class LandingWatch {
   bool IsCertain(const LandingWatchInput& input) const;
   FlightEnd Judge(const LandingWatchInput& input) const;
   FlightEnd JudgePlace() const;
+  std::string WhySightCounts(const FlightEnd& by_place) const;
 
   double pattern_radius_m_;
   bool has_flown_ = false;
@@ -75,6 +84,8 @@ class LandingWatch {
   double seen_offset_m_ = 0;         // at that time
   std::optional<Place> place_;       // at touch-down
   Time touched_down_{};
+  std::optional<LandingWatchInput::Sight> sight_;  // the newest before the disarming
+  bool has_body_ = false;                          // at the newest instant in flight
   std::optional<Time> disarmed_;
   std::optional<FlightEnd> end_;
 };

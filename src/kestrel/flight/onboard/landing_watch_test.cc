@@ -52,6 +52,7 @@ class LandingWatchTest : public ::testing::Test {
                            .stamped = {},
                            .body = {},
                            .pattern = {},
+                           .sight = {},
                            .gave_up = {}};
   bool stamps_ = true;
   LandingWatch watch_{kRadius_m};
@@ -129,6 +130,55 @@ TEST_F(LandingWatchTest, APatternThatWasNeverSeenIsNotLandedOn) {
   Pass(4, -0.5);
   Disarm();
   EXPECT_THAT(InWords(*watch_.end()), HasSubstr("never seen"));
+}
+
+// Comes down to 'height_m' in sight of the pattern, and then without a position.
+TEST_F(LandingWatchTest, LandedWhereItWasSeenWhenThePositionIsLost) {
+  const struct {
+    double offset_m, height_m;
+    const char* words;
+  } cases[] = {{0.03, 0.2,
+                "landed 0.03 m from the centre (estimated), by what was seen: the autopilot had no "
+                "position"},
+               {0.03, 0.8, "guidance gave up (the poses have stopped); down, and not known where"},
+               {0.7, 0.2, "guidance gave up (the poses have stopped); down, and not known where"}};
+  for (const auto& [offset_m, height_m, words] : cases) {
+    watch_ = LandingWatch(kRadius_m);
+    input_.is_armed = true;
+    input_.state = LandedState::kInAir;
+    input_.body = {{0, 0, 4}, Eigen::Vector3d::Zero()};
+    input_.pattern.reset();
+    Pass(1, -0.5);
+    input_.gave_up = "the poses have stopped";
+    input_.body.reset();
+    input_.sight = {input_.now, {offset_m, 0, height_m}};
+    Pass(4);
+    Disarm();
+    ASSERT_TRUE(watch_.end());
+    EXPECT_EQ(InWords(*watch_.end()), words);
+  }
+}
+
+TEST_F(LandingWatchTest, APositionThatJumpsIsNotBelieved) {
+  ComeDown(0.1);
+  input_.sight = {input_.now, {0.1, 0, 0.2}};
+  input_.body->feet.x() += 6;
+  Pass(0.3, -0.5);
+  Disarm();
+  ASSERT_TRUE(watch_.end());
+  EXPECT_EQ(InWords(*watch_.end()),
+            "landed 0.10 m from the centre (estimated), by what was seen: the autopilot's position "
+            "is wrong");
+}
+
+TEST_F(LandingWatchTest, APatternThatDroveOnIsNotLandedOn) {
+  ComeDown(0.1);
+  input_.sight = {input_.now, {0.1, 0, 0.4}};
+  input_.body->feet.x() += 2;
+  Pass(2, -0.2001);
+  Disarm();
+  ASSERT_TRUE(watch_.end());
+  EXPECT_EQ(watch_.end()->outcome, FlightOutcome::kBesidePattern);
 }
 
 TEST_F(LandingWatchTest, DisarmedHighAboveItHasNotLandedOnIt) {

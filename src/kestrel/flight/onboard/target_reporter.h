@@ -26,6 +26,12 @@ struct TrackSnapshot {
   std::optional<TargetEstimate> target;  // at 'captured', in the world
   // The target in this frame alone, seen from the UAV's pose at that time.
   std::optional<TargetReport> sighting;
+  // The newest frame that showed the target, without any pose: where the UAV's body was then.
+  struct Sight {
+    Time time;
+    RigidTransform target_from_body;
+  };
+  std::optional<Sight> sight;
   Duration detect_time{};
   int frames = 0;                          // so far
   int detections = 0;                      // frames that showed the target

@@ -14,6 +14,14 @@ const char* KindOfOffset(const FlightEnd& end) {
   return end.has_true_offset ? "true" : "estimated";
 }
 
+std::string OnPatternInWords(const FlightEnd& end) {
+  if (!end.offset_m) return "landed on the pattern";
+  const std::string estimate =
+      end.estimated_m ? fmt::format(", {:.2f} m estimated", *end.estimated_m) : "";
+  return fmt::format("landed {:.2f} m from the centre ({}){}", *end.offset_m, KindOfOffset(end),
+                     estimate);
+}
+
 // Place of the landing, for an end at which the UAV may be anywhere.
 std::string PlaceOf(const FlightEnd& end) {
   return end.offset_m
@@ -68,10 +76,8 @@ std::string InWords(const FlightEnd& end) {
     case FlightOutcome::kLanded:
       return "landed";
     case FlightOutcome::kOnPattern:
-      return (end.offset_m ? fmt::format("landed {:.2f} m from the centre ({})", *end.offset_m,
-                                         KindOfOffset(end))
-                           : "landed on the pattern") +
-             HeadingInWords(end);
+      return OnPatternInWords(end) + HeadingInWords(end) +
+             (end.reason.empty() ? "" : ", " + end.reason);
     case FlightOutcome::kBesidePattern:
       return fmt::format("landed {:.1f} m beside the pattern ({})", end.offset_m.value_or(0),
                          KindOfOffset(end));

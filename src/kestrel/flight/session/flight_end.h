@@ -28,11 +28,12 @@ struct FlightEnd {
   // Horizontal distance of the feet from the pattern's centre at touch-down, m; nothing: not known.
   // The one number that all outputs give.
   std::optional<double> offset_m = {};
-  std::string reason = {};  // why it is not known, or what failed
+  std::string reason = {};  // why it is not known, how it is known, or what failed
   // Angle of the nose off guidance.touchdown_heading at touch-down, rad, counter-clockwise from
   // above; nothing: any heading would do, or the pad's is not known.
   std::optional<double> heading_error = {};
   bool has_true_offset = false;  // the offset is a simulation's truth; false: Kestrel's estimate
+  std::optional<double> estimated_m = {};  // beside the truth, Kestrel's estimate of the offset
 };
 
 // Returns the end for people, as "landed 0.05 m from the centre (estimated)".
