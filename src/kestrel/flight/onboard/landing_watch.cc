@@ -1,23 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/flight/onboard/landing_watch.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
 #include <fmt/format.h>
 
+#include "kestrel/flight/guidance/since.h"
+
 namespace kestrel {
 namespace {
 
-constexpr double kFlownHeight_m = 1;     // a UAV that has risen or sunk by this has flown
-constexpr double kAtRest_mps = 0.2;      // it neither rises nor sinks
+constexpr double kFlownHeight_m = 1;  // a UAV that has risen or sunk by this has flown
+// It neither rises nor sinks below this speed, or below this share of the fastest one of the last
+// second: on contact a UAV that leans swings upright about its feet, while its velocity still
+// falls.
+constexpr double kAtRest_mps = 0.2;
+constexpr double kAtRestShare = 0.6;
+constexpr double kSinkMemory_s = 1;
 constexpr double kLargestSigma_m = 0.5;  // a pattern known no better is not known to be below
 constexpr double kStandingHeight_m = 0.6;
-// A UAV seen so low above the pattern has come down there, if it moves no faster than this until
-// touch-down, and is disarmed within this time where its position is not known.
+// A UAV seen so low above the pattern has come down there, if it is on the ground within this time
+// (PX4 takes 6 s to find it without a position); by a position that is right it has moved no faster
+// than this meanwhile.
 constexpr double kSeenHeight_m = 0.5;
 constexpr double kFastestSlip_mps = 2;
-constexpr double kSeenBefore_s = 20;
+constexpr double kSeenBefore_s = 8;
 constexpr Duration kShortestProof = std::chrono::milliseconds(500);
 constexpr Duration kLongestProof = std::chrono::seconds(10);
 
@@ -46,11 +55,11 @@ void LandingWatch::Fly(const LandingWatchInput& input) {
       has_flown_ || input.state == LandedState::kInAir || input.state == LandedState::kLanding;
   if (input.sight) sight_ = input.sight;
   has_body_ = input.body.has_value();
+  Remember(input.has_contact || input.state == LandedState::kOnGround, input.now, &on_ground_);
   if (!input.body) return;
   if (!armed_z_m_) armed_z_m_ = input.body->feet.z();
   has_flown_ = has_flown_ || std::abs(input.body->feet.z() - *armed_z_m_) > kFlownHeight_m;
-  const bool is_at_rest = input.has_contact || std::abs(input.body->velocity.z()) < kAtRest_mps;
-  if (is_at_rest) return;
+  if (input.has_contact || IsAtRest(input.now, std::abs(input.body->velocity.z()))) return;
   touched_down_ = input.now;
   place_.reset();
   if (!input.pattern) return;
@@ -62,6 +71,13 @@ void LandingWatch::Fly(const LandingWatchInput& input) {
   if (place_->offset_sigma_m > kLargestSigma_m) return;
   seen_ = input.now;
   seen_offset_m_ = place_->offset_m;
+}
+
+bool LandingWatch::IsAtRest(Time now, double speed_mps) {
+  fastest_mps_ *= std::exp(-ToSeconds(now - last_) / kSinkMemory_s);
+  fastest_mps_ = std::max(fastest_mps_, speed_mps);
+  last_ = now;
+  return speed_mps < std::max(kAtRest_mps, kAtRestShare * fastest_mps_);
 }
 
 // The first heartbeats of an autopilot that has restarted say "disarmed" as those of one that has
@@ -89,15 +105,12 @@ FlightEnd LandingWatch::Judge(const LandingWatchInput& input) const {
 std::string LandingWatch::WhySightCounts(const FlightEnd& by_place) const {
   if (!sight_ || sight_->feet.z() > kSeenHeight_m) return "";
   const double offset_m = sight_->feet.head<2>().norm();
-  if (offset_m > pattern_radius_m_) return "";
-  if (!has_body_) {
-    return ToSeconds(*disarmed_ - sight_->time) < kSeenBefore_s ? "the autopilot had no position"
-                                                                : "";
-  }
-  if (!by_place.offset_m) return "";
-  const double moved_m =
-      kFastestSlip_mps * std::max(ToSeconds(touched_down_ - sight_->time), 0.0) + kLargestSigma_m;
-  return *by_place.offset_m - offset_m > moved_m ? "the autopilot's position is wrong" : "";
+  const double blind_s = ToSeconds(on_ground_.value_or(*disarmed_) - sight_->time);
+  if (offset_m > pattern_radius_m_ || blind_s > kSeenBefore_s) return "";
+  if (!has_body_) return "the autopilot had no position";
+  const double moved_m = kFastestSlip_mps * std::max(blind_s, 0.0) + kLargestSigma_m;
+  const bool is_plausible = by_place.offset_m && *by_place.offset_m - offset_m < moved_m;
+  return is_plausible ? "" : "the autopilot's position is wrong";
 }
 
 FlightEnd LandingWatch::JudgePlace() const {

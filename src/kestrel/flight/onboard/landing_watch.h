@@ -71,6 +71,7 @@ class LandingWatch {
   };
 
   void Fly(const LandingWatchInput& input);
+  bool IsAtRest(Time now, double speed_mps);
   bool IsCertain(const LandingWatchInput& input) const;
   FlightEnd Judge(const LandingWatchInput& input) const;
   FlightEnd JudgePlace() const;
@@ -84,8 +85,11 @@ class LandingWatch {
   double seen_offset_m_ = 0;         // at that time
   std::optional<Place> place_;       // at touch-down
   Time touched_down_{};
+  double fastest_mps_ = 0;  // vertical speed of the last second
+  Time last_{};
   std::optional<LandingWatchInput::Sight> sight_;  // the newest before the disarming
   bool has_body_ = false;                          // at the newest instant in flight
+  std::optional<Time> on_ground_;                  // since when, by contact or by the autopilot
   std::optional<Time> disarmed_;
   std::optional<FlightEnd> end_;
 };

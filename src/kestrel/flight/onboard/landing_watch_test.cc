@@ -171,6 +171,18 @@ TEST_F(LandingWatchTest, APositionThatJumpsIsNotBelieved) {
             "is wrong");
 }
 
+// PX4's height without GNSS runs away by metres, on the ground as well.
+TEST_F(LandingWatchTest, AHeightThatRunsAwayIsNotBelieved) {
+  ComeDown(0.1);
+  input_.sight = {input_.now, {0.1, 0, 0.2}};
+  Pass(1, -0.5);
+  input_.state = LandedState::kOnGround;
+  Pass(4, -0.5);
+  Disarm();
+  ASSERT_TRUE(watch_.end());
+  EXPECT_THAT(InWords(*watch_.end()), HasSubstr("landed 0.10 m from the centre (estimated), by "));
+}
+
 TEST_F(LandingWatchTest, APatternThatDroveOnIsNotLandedOn) {
   ComeDown(0.1);
   input_.sight = {input_.now, {0.1, 0, 0.4}};
@@ -179,6 +191,16 @@ TEST_F(LandingWatchTest, APatternThatDroveOnIsNotLandedOn) {
   Disarm();
   ASSERT_TRUE(watch_.end());
   EXPECT_EQ(watch_.end()->outcome, FlightOutcome::kBesidePattern);
+}
+
+TEST_F(LandingWatchTest, APatternSeenLongAgoIsNotLandedOn) {
+  ComeDown(0.1);
+  input_.sight = {input_.now, {0.1, 0, 0.4}};
+  input_.pattern->covariance *= 1e6;
+  Pass(10, -0.2001);
+  Disarm();
+  ASSERT_TRUE(watch_.end());
+  EXPECT_EQ(watch_.end()->outcome, FlightOutcome::kDownSomewhere);
 }
 
 TEST_F(LandingWatchTest, DisarmedHighAboveItHasNotLandedOnIt) {
