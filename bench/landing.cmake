@@ -22,6 +22,12 @@ target_link_libraries(light_accuracy PRIVATE kestrel::codec kestrel::landing kes
 target_compile_definitions(light_accuracy
                            PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
 
+add_executable(step_ablation step_ablation.cc landing_frames.cc landing_score.cc)
+target_link_libraries(step_ablation PRIVATE kestrel::landing kestrel::recording kestrel::labelled_images CLI11::CLI11
+                                            fmt::fmt)
+target_compile_definitions(step_ablation
+                           PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
+
 add_executable(landing_benchmark landing_benchmark.cc apriltag_peer.cc landing_frames.cc
                                  landing_peers.cc landing_score.cc)
 add_executable(landing_speed landing_speed.cc apriltag_peer.cc landing_frames.cc landing_peers.cc
