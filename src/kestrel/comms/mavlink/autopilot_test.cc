@@ -137,6 +137,24 @@ TEST_F(AutopilotTest, SaysThatThereIsNoPositionYet) {
   EXPECT_EQ(EventsOf(AutopilotEventKind::kSlowStream), 0);
 }
 
+// The position begins between two of the requests, which come every 5 s by then.
+TEST_F(AutopilotTest, APositionThatBeginsIsNotSlow) {
+  for (int tenths = 0; tenths < 50; tenths += 3) {
+    Start();
+    events_.clear();
+    for (int i = 0; i < 2000 + 10 * tenths; ++i) {
+      Pass(0.01, i % 100 == 0);
+      Say(AttitudeAt(BootMs()));
+    }
+    for (int i = 0; i < 1000; ++i) {
+      Pass(0.01, i % 100 == 0);
+      if (i % 2 == 0) SayPose();
+    }
+    EXPECT_EQ(EventsOf(AutopilotEventKind::kNoPosition), 1);
+    EXPECT_EQ(EventsOf(AutopilotEventKind::kSlowStream), 0) << tenths;
+  }
+}
+
 TEST_F(AutopilotTest, SaysWhatAPilotHasToDoInAFailsafe) {
   Start();
   Say(mavlink::Heartbeat{mavlink::kTypeQuadrotor, kind_, 0, mode_, mavlink::kStateCritical, 3});

@@ -4,6 +4,11 @@
 #include <algorithm>
 
 namespace kestrel {
+namespace {
+
+constexpr Duration kQuick = std::chrono::milliseconds(1100);  // a whole measurement
+
+}  // namespace
 
 StreamRequests::Stream& StreamRequests::Get(std::uint32_t id) {
   for (Stream& stream : streams_) {
@@ -31,6 +36,7 @@ void StreamRequests::Count(std::uint32_t id) {
   for (Stream& stream : streams_) {
     if (stream.id != id) continue;
     ++stream.count;
+    stream.begins = !stream.has_come;
     stream.has_come = true;
     return;
   }
@@ -46,14 +52,24 @@ void StreamRequests::Measure(Time now, Stream* stream) {
   stream->counted_from = now;
 }
 
+// The requests before the first message say nothing about the rate, nor does the second in which it
+// came.
+void StreamRequests::Begin(Time now, Stream* stream) {
+  stream->begins = false;
+  stream->requests = std::min(stream->requests, 1);
+  stream->count = 0;
+  stream->counted_from = now;
+  stream->due = now + kQuick;
+}
+
 bool StreamRequests::Next(Time now, Request* request) {
   constexpr double kEnough = 0.7;
   constexpr int kQuickRequests = 5;
-  constexpr Duration kQuick = std::chrono::milliseconds(1100);  // a whole measurement
   constexpr Duration kSlow = std::chrono::seconds(5);
   constexpr Duration kSeldom = std::chrono::minutes(1);
   for (Stream& stream : streams_) {
     if (stream.rate_hz <= 0) continue;
+    if (stream.begins) Begin(now, &stream);
     Measure(now, &stream);
     if (now < stream.due) continue;
     if (stream.requests > 0 && stream.measured_hz >= kEnough * stream.rate_hz) continue;

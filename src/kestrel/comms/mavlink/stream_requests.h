@@ -48,11 +48,13 @@ class StreamRequests {
     int count = 0;
     Time counted_from{};
     bool has_come = false;
+    bool begins = false;  // the first message has come, and is not taken note of yet
     double measured_hz = 0;
     int requests = 0;
     Time due{};
   };
   Stream& Get(std::uint32_t id);
+  static void Begin(Time now, Stream* stream);
   static void Measure(Time now, Stream* stream);
 
   std::vector<Stream> streams_;
