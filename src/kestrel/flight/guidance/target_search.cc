@@ -44,8 +44,11 @@ Vector2d TargetSearch::Advance(Time now, const RoadMemory& road, const Vector2d&
       spiral_.Start(target->position,
                     {.wait_s = *road.Lap_s(), .radius_m = options_.search_radius_m});
     } else {
-      step_ = "searches around the place where it would be";
-      spiral_.Start(uav, {.wait_s = 0, .radius_m = options_.search_distance_m});
+      // A target that is not where it drove to has turned; on a lap it comes back to this place,
+      // and a second pass shows the lap.
+      step_ = "waits where the target was lost, then searches around the place";
+      spiral_.Start(lost_at_,
+                    {.wait_s = options_.search_wait_s, .radius_m = options_.search_distance_m});
     }
   }
   waited_s_ += seconds;

@@ -14,8 +14,8 @@ namespace kestrel {
 
 // Search for a target. One that was never seen is waited for at a place. One that was lost is first
 // expected where its road leads; once the UAV's way there and the camera's view are too short for
-// what is uncertain, it is waited for on its lap, or searched for on a spiral around the place;
-// after a while the search is over.
+// what is uncertain, it is waited for on its lap or where it was lost, and then searched for on a
+// spiral around the place; after a while the search is over.
 class TargetSearch {
  public:
   explicit TargetSearch(const GuidanceOptions& options) : options_(options), spiral_(options) {}

@@ -119,6 +119,23 @@ TEST(TargetSearchTest, FliesOnThenSearchesAround) {
       testing::AllOf(HasSubstr("flies on as it drove"), HasSubstr("searches around the place")));
 }
 
+// A fast target on a road that is not known yet passes the place where it was lost again.
+TEST(TargetSearchTest, WaitsWhereATargetWithoutALapWasLost) {
+  constexpr double kDriven_s = 4;
+  const RoadMemory road = Driven(Circle, kDriven_s);
+  TargetSearch search{GuidanceOptions()};
+  search.StartAfterLoss(AtSecond(kDriven_s), road, Circle(kDriven_s));
+  Vector2d uav = Circle(kDriven_s);
+  double nearest_m = 1e9;
+  for (double s = 0; s < 20; s += 0.1) {
+    const Vector2d way = search.Advance(AtSecond(kDriven_s + s), road, uav, 0.1) - uav;
+    uav += std::min(1.0, 0.7 / std::max(way.norm(), 1e-9)) * way;
+    if (s > 10) nearest_m = std::min(nearest_m, (uav - Circle(kDriven_s)).norm());
+  }
+  EXPECT_LT(nearest_m, 1);
+  EXPECT_THAT(search.step(), HasSubstr("waits where the target was lost"));
+}
+
 // From low above a small pad the camera sees little: the target is lost before the UAV has caught
 // up.
 TEST(TargetSearchTest, CatchesUpBeforeItSearchesAround) {
