@@ -2,9 +2,11 @@
 // Prints how well the landing pattern is found in different light: under shadows of UAVs and of
 // other things, in glare, darkness, dust and blur; and what is detected falsely in the same light.
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -29,6 +31,7 @@ struct Options {
   int stills = 200;
   int lookalikes = 3000;
   int counterfeits = 500;
+  std::string row;  // rows whose name contains this
   bool verbose = false;
   std::string keep;  // folder for the images of misses and false detections
 };
@@ -49,6 +52,26 @@ Row StillRow(StillCondition condition, std::span<const ShadowCaster> casters, in
   row.stills.max_altitude_m = max_altitude_m;
   row.stills.min_visible_fraction = min_visible;
   return row;
+}
+
+// Stills of a print so near that the image shows it whole or in part, in darkness.
+std::vector<Row> NightRows() {
+  struct View {
+    const char* name;
+    double least, most;  // part of the print in view
+    double lowest_m;
+  };
+  constexpr std::array<View, 3> kViews{{{"whole", 0.97, 1, 0.45},
+                                        {"three quarters in view", 0.65, 0.85, 0.3},
+                                        {"half in view", 0.4, 0.6, 0.3}}};
+  std::vector<Row> rows;
+  for (const View& view : kViews) {
+    Row& row = rows.emplace_back(StillRow(StillCondition::kNight, {}, -1, 0.8, view.least));
+    row.name += fmt::format(", to 0.8 m, {}", view.name);
+    row.stills.min_altitude_m = view.lowest_m;
+    row.stills.max_visible_fraction = view.most;
+  }
+  return rows;
 }
 
 std::vector<Row> StillRows() {
@@ -72,6 +95,7 @@ std::vector<Row> StillRows() {
   rows.push_back(rows.back());
   rows.back().name = "worn, to 14 m, a quarter in view";
   rows.back().stills.wear = 1;
+  for (const Row& row : NightRows()) rows.push_back(row);
   return rows;
 }
 
@@ -86,15 +110,18 @@ class Report {
         "|---|---|---|---|---|\n");
     std::uint64_t seed = kPatternSeed;
     for (const Row& row : StillRows()) {
+      const std::uint64_t first = std::exchange(seed, seed + kSeedsOfRow);
+      if (!IsWanted(row.name)) continue;
       const LandingStillMaker maker(row.stills);
-      const auto make = [&](std::size_t i) { return FrameFromStill(maker, row.name, seed + i); };
+      const auto make = [&](std::size_t i) { return FrameFromStill(maker, row.name, first + i); };
       PrintPatternRow(row.name, Score(options_.stills, make, detector_));
-      seed += kSeedsOfRow;
     }
     for (const LandingFrameSet& set : ReadLandingHard(options_.data_dir)) {
+      const std::string name = "another renderer's: " + set.name;
+      if (!IsWanted(name)) continue;
       const auto make = [&](std::size_t i) { return set.frames[i]; };
       const LandingPatternDetector detector(CameraModel(set.camera), {});
-      PrintPatternRow("another renderer's: " + set.name, Score(set.frames.size(), make, detector));
+      PrintPatternRow(name, Score(set.frames.size(), make, detector));
     }
   }
 
@@ -102,28 +129,38 @@ class Report {
     fmt::print("\n| without the pattern | taken for it, of |\n|---|---|\n");
     constexpr double kWhole = 1, kCutOff = 0.3;
     const int few = options_.counterfeits;
-    PrintLookalikeRow("look-alikes", LookalikeSet::kPlain, kWhole, options_.lookalikes);
-    PrintLookalikeRow("with counterfeits", LookalikeSet::kWithCounterfeits, kWhole, few);
-    PrintLookalikeRow("with counterfeits, cut off", LookalikeSet::kWithCounterfeits, kCutOff, few);
-    PrintLookalikeRow("held-out kinds", LookalikeSet::kHeldOut, kWhole, few);
-    PrintLookalikeRow("held-out kinds, cut off", LookalikeSet::kHeldOut, kCutOff, few);
+    std::vector<StillCondition> lights;
+    for (int i = 0; i < kStillConditions; ++i) lights.push_back(static_cast<StillCondition>(i));
+    PrintLookalikeRow("look-alikes", LookalikeSet::kPlain, lights, kWhole, options_.lookalikes);
+    for (const auto& [set, name] : {std::pair(LookalikeSet::kWithCounterfeits, "with counterfeits"),
+                                    std::pair(LookalikeSet::kHeldOut, "held-out kinds")}) {
+      PrintLookalikeRow(name, set, lights, kWhole, few);
+      PrintLookalikeRow(fmt::format("{}, cut off", name), set, lights, kCutOff, few);
+    }
+    lights = {StillCondition::kNight};
+    const LookalikeSet all = LookalikeSet::kWithCounterfeits;
+    PrintLookalikeRow("with counterfeits, night", all, lights, kWhole, few);
+    PrintLookalikeRow("with counterfeits, cut off, night", all, lights, kCutOff, few);
   }
 
  private:
+  bool IsWanted(const std::string& row) const { return row.find(options_.row) != row.npos; }
+
   // Uses each of the lights in turn.
-  void PrintLookalikeRow(const std::string& name, LookalikeSet set, double min_visible, int count) {
+  void PrintLookalikeRow(const std::string& name, LookalikeSet set,
+                         std::span<const StillCondition> lights, double min_visible, int count) {
+    const std::uint64_t seed = std::exchange(lookalike_seed_, lookalike_seed_ + kSeedsOfRow);
+    if (!IsWanted(name)) return;
     std::vector<LandingStillMaker> makers;
-    for (int i = 0; i < kStillConditions; ++i) {
+    for (const StillCondition light : lights) {
       LandingStillOptions options;
       options.min_altitude_m = 0.4;
       options.max_altitude_m = 14;
-      options.condition = static_cast<StillCondition>(i);
+      options.condition = light;
       options.lookalikes = set;
       options.min_lookalike_visible = min_visible;
       makers.emplace_back(options);
     }
-    const std::uint64_t seed = lookalike_seed_;
-    lookalike_seed_ += kSeedsOfRow;
     const auto make = [&](std::size_t i) {
       const LandingStillMaker& maker = makers[i % makers.size()];
       return FrameFromLookalikes(maker, ToString(maker.options().condition), seed + i);
@@ -187,6 +224,7 @@ int Run(int argc, char** argv) {
   app.add_option("--stills", options.stills, "rendered stills per row");
   app.add_option("--lookalikes", options.lookalikes, "stills of look-alikes, 0: none");
   app.add_option("--counterfeits", options.counterfeits, "stills of each harder set, 0: none");
+  app.add_option("--row", options.row, "only rows whose name contains this");
   app.add_flag("--verbose", options.verbose, "list what was missed or wrong, and why");
   app.add_option("--keep", options.keep, "folder for the images of these")
       ->check(CLI::ExistingDirectory);

@@ -243,7 +243,10 @@ std::optional<LandingStill> TruthOf(const LandingStillOptions& options,
   }
   const double visible_fraction =
       VisibleFraction(PrintOf(pattern), camera_from_pattern, renderer.lens());
-  if (visible_fraction < options.min_visible_fraction) return std::nullopt;
+  if (visible_fraction < options.min_visible_fraction ||
+      visible_fraction > options.max_visible_fraction) {
+    return std::nullopt;
+  }
   return LandingStill{.image = {},
                       .pattern = pattern,
                       .camera_from_pattern = camera_from_pattern,
@@ -305,6 +308,8 @@ std::vector<std::string> LandingStillOptions::Validate() const {
   require(max_tilt_deg >= 0 && max_tilt_deg <= 80, "max_tilt_deg", max_tilt_deg, "0 to 80");
   require(min_visible_fraction >= 0 && min_visible_fraction <= 1, "min_visible_fraction",
           min_visible_fraction, "0 to 1");
+  require(max_visible_fraction >= min_visible_fraction, "max_visible_fraction",
+          max_visible_fraction, "at least min_visible_fraction");
   require(min_ring_minor_px >= 0, "min_ring_minor_px", min_ring_minor_px, "0 or more");
   require(min_ring_major_px >= 0, "min_ring_major_px", min_ring_major_px, "0 or more");
   require(min_lookalike_minor_px >= 0, "min_lookalike_minor_px", min_lookalike_minor_px,
@@ -340,6 +345,8 @@ const char* ToString(StillCondition condition) {
       return "dust";
     case StillCondition::kBlur:
       return "blur";
+    case StillCondition::kNight:
+      return "night";
   }
   return "";
 }

@@ -26,8 +26,10 @@ enum class StillCondition {
   kGlare,          // a low sun, mirrored by a wet or glossy print
   kDark,           // little light and much noise
   kDust,
-  kBlur,  // out of focus, or moving
+  kBlur,   // out of focus, or moving
+  kNight,  // so little light that the noise is a tenth to a third of the contrast
 };
+// The conditions that the score is trained on; kNight is held out.
 inline constexpr int kStillConditions = 8;
 const char* ToString(StillCondition condition);  // "mixed", "shadow of a UAV", ...
 
@@ -45,6 +47,7 @@ struct LandingStillOptions {
   // The least part of the pattern (see LandingStill) that a still must show to be scored. A landing
   // leg may hide another tenth of it.
   double min_visible_fraction = 0.25;
+  double max_visible_fraction = 1;
   double min_ring_minor_px = 6;
   double min_ring_major_px = 13;
   // Smallest axes of a look-alike's circle in the image: by default those from which the eye can

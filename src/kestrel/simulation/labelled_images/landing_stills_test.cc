@@ -170,6 +170,9 @@ TEST(LandingStillMakerTest, ConditionsAreSeenInTheImage) {
   const MeanLevels mixed = LevelsUnder(StillCondition::kMixed);
   const MeanLevels dark = LevelsUnder(StillCondition::kDark);
   EXPECT_LT(dark.white - dark.ink, 0.5 * (mixed.white - mixed.ink));
+  const MeanLevels night = LevelsUnder(StillCondition::kNight);
+  EXPECT_LT(night.white, 45);
+  EXPECT_GT(night.white - night.ink, 8);
   EXPECT_GT(LevelsUnder(StillCondition::kDust).ink, mixed.ink + 20);
   EXPECT_GT(LevelsUnder(StillCondition::kGlare).ink, mixed.ink + 20);
   EXPECT_EQ(LevelsUnder(StillCondition::kUavShadow).shadows, kStills);

@@ -179,10 +179,22 @@ void AddLowSun(const StillLight& light, Random* random, Scene* scene) {
   for (int i = random->Integer(0, 3); i > 0; --i) AddGlare(light.center, radius_m, random, scene);
 }
 
+// Standard deviation of the noise, as a share of the contrast.
+double RandomNoise(const StillLight& light, Random* random) {
+  if (light.condition == StillCondition::kNight) return random->Uniform(0.12, 0.3);
+  // The noise that the eye can see through increases with the size.
+  const double most = light.condition == StillCondition::kDark
+                          ? std::clamp(0.003 * light.size_px, 0.05, 0.15)
+                          : 0.018;
+  return random->Uniform(0.003, most);
+}
+
 double RandomContrast(StillCondition condition, Random* random) {
   switch (condition) {
     case StillCondition::kDark:
       return 12 * std::pow(5, random->Uniform());
+    case StillCondition::kNight:
+      return random->Uniform(16, 36);
     case StillCondition::kGlare:
       return random->Uniform(150, 250);
     case StillCondition::kMixed:
@@ -224,17 +236,14 @@ ImagingOptions RandomImaging(const StillLight& light, Random* random) {
     imaging.haze = random->Uniform(0.1, 0.45);
   }
   imaging.haze_radiance = random->Uniform(0.4, 0.9);
-  imaging.black_level = random->Uniform(0, 15);
+  imaging.black_level = random->Uniform(0, condition == StillCondition::kNight ? 6 : 15);
   imaging.white_level = std::min(imaging.black_level + contrast, 255.0);
   imaging.gradient = random->Uniform(0, 0.5) * RandomDirection(random);
   const double most_blur_px = std::clamp(0.4 + 0.02 * light.size_px, 0.5, 1.0);
   imaging.blur_sigma_px = condition == StillCondition::kBlur
                               ? random->Uniform(1, 1 + 0.02 * std::min(light.size_px, 100.0))
                               : random->Uniform(0.4, most_blur_px);
-  // The noise that the eye can see through increases with the size.
-  const double most_noise =
-      condition == StillCondition::kDark ? std::clamp(0.003 * light.size_px, 0.05, 0.15) : 0.018;
-  imaging.read_noise = (1 - imaging.haze) * contrast * random->Uniform(0.003, most_noise);
+  imaging.read_noise = (1 - imaging.haze) * contrast * RandomNoise(light, random);
   imaging.shot_noise = random->Uniform(0, 2);
   imaging.noise_seed = random->Bits();
   return imaging;
