@@ -118,6 +118,29 @@ TEST_F(LandingPatternDetectorTest, FindsThePatternAtAllSizes) {
   }
 }
 
+// Ink of 5 and white of 25 gray values, with noise of 4: an eye sees rings of 130 to 240 px, though
+// not in single pixels.
+TEST_F(LandingPatternDetectorTest, FindsNearPatternsInTheNoiseOfDarkFrames) {
+  constexpr int kImages = 40;
+  Random random(5);
+  int found = 0;
+  for (int i = 0; i < kImages; ++i) {
+    const double distance = random.Uniform(0.9, 1.6);
+    const double axis = random.Uniform(0, 6), turn = random.Uniform(0, 6);
+    const Eigen::Vector3d place(random.Uniform(-0.2, 0.2), random.Uniform(-0.1, 0.1), distance);
+    const RigidTransform truth = PrintPose(place, 0.2, axis, turn);
+    cv::Mat image = Draw(SpokedPrint(pattern_, 4), truth);
+    image.convertTo(image, CV_8U, 0.125);
+    const LandingReport report = Detect(AddNoise(image, 4, &random));
+    if (!report.detection) continue;
+    ++found;
+    Eigen::Vector2d center;
+    camera_.Project(truth.translation, &center);
+    EXPECT_LT((report.detection->center_px - center).norm(), 1.5) << i;
+  }
+  EXPECT_GE(found, 38);
+}
+
 TEST_F(LandingPatternDetectorTest, OtherSignsAreNotThePattern) {
   const Print empty = [this](double x, double y) { return IsRing(pattern_, x, y); };
   const Print cross_only = [this](double x, double y) {

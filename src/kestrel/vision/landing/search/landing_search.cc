@@ -10,6 +10,12 @@ namespace {
 // first, which tell more than the fit as a whole. Areas seem larger by this factor.
 constexpr double kNearlyLarge = 1.1;
 
+RingSize SizeOf(const SearchStep& step) {
+  const bool is_small =
+      kPasses[step.pass].image_level == 0 || step.method == SearchMethod::kCutAreas;
+  return is_small ? RingSize::kSmall : RingSize::kNear;
+}
+
 cv::Rect AllOf(const cv::Mat& image) { return {0, 0, image.cols, image.rows}; }
 
 }  // namespace
@@ -59,9 +65,12 @@ void LandingSearch::TestPrediction() {
   if (!ring || !part) return;
   const Eigen::Vector2d diameters_px =
       RingDiametersPx(models_.camera, models_.options.pattern.outer_radius_m(), *ring);
-  image_.Choose(*part);
-  if (!IsSmallRing(kNearlyLarge * diameters_px)) near_prints_.TestPredicted(*ring, diameters_px);
+  if (!IsSmallRing(kNearlyLarge * diameters_px)) {
+    image_.Choose(*part, RingSize::kNear);
+    near_prints_.TestPredicted(*ring, diameters_px);
+  }
   if (!choice_.IsSure() && IsSmallRing(diameters_px)) {
+    image_.Choose(*part, RingSize::kSmall);
     small_prints_.TestPredicted(*ring, diameters_px);
   }
 }
@@ -79,7 +88,7 @@ void LandingSearch::TakeSteps() {
     if ((models_.options.skipped_steps >> (index % kSearchSteps)) & 1) continue;
     if (is_first_round ? !prior_.Suits(step) : is_likely_all && prior_.Suits(step)) continue;
     const cv::Rect& part = is_first_round ? likely : all;
-    image_.Choose(part);
+    image_.Choose(part, SizeOf(step));
     image_.Prepare();
     Take(step);
     if (choice_.IsSure()) return;

@@ -45,6 +45,7 @@ bool SearchedImageBuffers::Reserve(const cv::Mat& image) {
   if (width_px == image.cols && height_px == image.rows) return false;
   width_px = image.cols;
   height_px = image.rows;
+  noise.Reserve(image.size());
   // Runs the parts that depend on the size alone; reserves for those that depend on the content.
   pyramid.Build(image);
   for (std::size_t i = 0; i < kPasses.size(); ++i) {
@@ -64,11 +65,17 @@ std::size_t SearchedImageBuffers::most_points() const {
 }
 
 SearchedImage::SearchedImage(const cv::Mat& image, SearchedImageBuffers* buffers, SearchLog* log)
-    : image_(image), buffers_(*buffers), log_(*log) {}
+    : image_(image),
+      buffers_(*buffers),
+      without_noise_(buffers->noise.Filter(image)),
+      chosen_(&image),
+      log_(*log) {}
 
-void SearchedImage::Choose(const cv::Rect& part) {
-  if (part == part_) return;
+void SearchedImage::Choose(const cv::Rect& part, RingSize size) {
+  const cv::Mat* const chosen = size == RingSize::kNear ? &without_noise_ : &image_;
+  if (part == part_ && chosen == chosen_) return;
   part_ = part;
+  chosen_ = chosen;
   prepared_level_ = -1;
   is_traced_.fill(false);
 }
@@ -76,7 +83,7 @@ void SearchedImage::Choose(const cv::Rect& part) {
 void SearchedImage::Prepare(int last_level) {
   if (last_level <= prepared_level_) return;
   const SearchLog::Timer timer = log_.Time(LandingStage::kBinarize);
-  buffers_.pyramid.Build(image_(part_), last_level);
+  buffers_.pyramid.Build(whole()(part_), last_level);
   prepared_level_ = last_level;
 }
 

@@ -10,6 +10,7 @@
 #include "kestrel/core/image/black_top_hat.h"
 #include "kestrel/core/image/border_tracing.h"
 #include "kestrel/core/image/local_threshold.h"
+#include "kestrel/vision/landing/search/frame_noise.h"
 #include "kestrel/vision/landing/search/image_region.h"
 #include "kestrel/vision/landing/search/search_plan.h"
 #include "kestrel/vision/target/search_log.h"
@@ -20,6 +21,7 @@ namespace kestrel {
 struct SearchedImageBuffers {
   int width_px = 0;
   int height_px = 0;
+  NoiseFilter noise;
   TilePyramid pyramid;
   LocalThreshold threshold;
   BlackTopHat top_hat;
@@ -36,6 +38,10 @@ struct SearchedImageBuffers {
 // the pass's 'tile_level' + 2.
 void Binarize(const SearchPass& pass, SearchedImageBuffers* buffers);
 
+// The size of the rings that are searched for. Strokes hardly wider than the blur need every pixel,
+// and wide ones an image without noise.
+enum class RingSize { kSmall, kNear };
+
 // The part of an image that is searched: its pyramid of resolutions and the borders of its dark
 // areas.
 class SearchedImage {
@@ -43,11 +49,12 @@ class SearchedImage {
   // 'image': CV_8UC1. Image, buffers and log must outlive this.
   SearchedImage(const cv::Mat& image, SearchedImageBuffers* buffers, SearchLog* log);
 
-  // Selects the part to search. Prepare builds its pyramid up to 'last_level'.
-  void Choose(const cv::Rect& part);
+  // Selects the part to search, without its noise for near rings. Prepare builds its pyramid up to
+  // 'last_level'.
+  void Choose(const cv::Rect& part, RingSize size);
   void Prepare(int last_level = TilePyramid::kLevels - 1);
 
-  const cv::Mat& whole() const { return image_; }
+  const cv::Mat& whole() const { return *chosen_; }
   const cv::Rect& part() const { return part_; }
 
   // The part at 1 / 2^level of the resolution, and its location in the image.
@@ -60,6 +67,8 @@ class SearchedImage {
  private:
   const cv::Mat& image_;
   SearchedImageBuffers& buffers_;
+  const cv::Mat& without_noise_;
+  const cv::Mat* chosen_ = nullptr;
   SearchLog& log_;
   cv::Rect part_;
   int prepared_level_ = -1;
