@@ -27,6 +27,9 @@ target_link_libraries(step_ablation PRIVATE kestrel::landing kestrel::recording 
                                             fmt::fmt)
 target_compile_definitions(step_ablation
                            PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
+add_executable(sign_accuracy sign_accuracy.cc landing_frames.cc landing_score.cc landing_signs.cc)
+target_link_libraries(sign_accuracy PRIVATE kestrel::codec kestrel::landing kestrel::recording
+                                            kestrel::labelled_images CLI11::CLI11 fmt::fmt)
 
 add_executable(landing_benchmark landing_benchmark.cc apriltag_peer.cc landing_frames.cc
                                  landing_peers.cc landing_score.cc)
