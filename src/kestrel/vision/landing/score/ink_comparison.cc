@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <optional>
@@ -40,6 +41,7 @@ struct Ramp {
 };
 constexpr Ramp kIsInk{0.2f, 0.6f}, kIsDark{0.35f, 0.85f}, kIsInkOnly{0.7f, 0.95f};
 constexpr float kBeyondWhite = 0.15f;  // above lit white, share of the contrast
+constexpr float kVeiled = 0.2f;        // above the darkest ink, share of the contrast
 constexpr float kLeastContrast = GrayContrast::kLeast;
 constexpr float kLeastOfContrast = 0.25;  // share of the whole print's contrast, in any direction
 constexpr double kEnoughSeen = 0.25;      // least share of places in view by which a part is judged
@@ -105,7 +107,8 @@ class InkCorrelation {
 struct InkComparison::Levels {
   std::array<float, kSectors> white;      // level of white, in the shadows that are there
   std::array<float, kSectors> per_gray;   // 1 / (white - ink)
-  std::array<float, kSectors> highlight;  // gray value from which on a highlight hides ink
+  std::array<float, kSectors> highlight;  // gray value from which on a highlight may hide ink
+  float veiled = 0;                       // gray value from which on light lies on ink
   bool has_contrast = false;
 };
 
@@ -158,7 +161,6 @@ void InkComparison::AddPlaces() {
 
 // Two rows of places along each arm and around the ring.
 void InkComparison::AddInk() {
-  constexpr int kAlongArm = 11, kAroundSector = 12;
   const double first = kArmStart * pattern_.arm_width_m;
   const double step = (kArmReach * pattern_.arm_half_length_m - first) / (kAlongArm - 1);
   for (int k = 0; k < kArms; ++k) {
@@ -245,8 +247,7 @@ void InkComparison::AddLines(int quadrant) {
   }
 }
 
-InkComparison::Levels InkComparison::MeasureLevels(
-    const std::array<float, kMaxPlaces>& gray) const {
+InkComparison::Levels InkComparison::MeasureLevels(const Grays& gray) const {
   std::array<Histogram, kSectors> ink{}, white{};
   for (std::size_t i = 0; i < x_m_.size(); ++i) {
     if (gray[i] < 0) continue;
@@ -280,6 +281,10 @@ InkComparison::Levels InkComparison::MeasureLevels(
     lit[s] = *Quantile(of_white, kLitWhite);
     contrast[s] = levels.white[s] - ink_level[s];
   }
+  // The ink in the least light is the measure: light that lies on much of the print raises the
+  // rest.
+  const auto darkest = std::min_element(ink_level.begin(), ink_level.end());
+  levels.veiled = *darkest + kVeiled * (*std::max_element(lit.begin(), lit.end()) - *darkest);
   std::array<float, kSectors> contrasts = contrast;
   const float median = MedianInPlace(contrasts);
   levels.has_contrast = median >= kLeastContrast;
@@ -292,20 +297,54 @@ InkComparison::Levels InkComparison::MeasureLevels(
   return levels;
 }
 
-InkComparison::Darkness InkComparison::MeasureDarkness(const std::array<float, kMaxPlaces>& gray,
+InkComparison::Darkness InkComparison::MeasureDarkness(const Grays& gray,
                                                        const Levels& levels) const {
   Darkness darkness;
   for (std::size_t i = 0; i < x_m_.size(); ++i) {
     const int s = sector_[i];
     darkness.value[i] = (levels.white[s] - gray[i]) * levels.per_gray[s];
-    darkness.is_seen[i] = gray[i] >= 0 && (i >= ink_end_ || gray[i] < levels.highlight[s]);
+    darkness.is_seen[i] = gray[i] >= 0;
   }
+  HideInHighlights(gray, levels, &darkness);
   return darkness;
+}
+
+// Ink that a highlight hides is out of view. A highlight fades out, so that the ink next to what it
+// hides is veiled. Where that ink is as dark as elsewhere, or dark next to a sharp edge, white is
+// the board's: when overexposed it is as bright as a highlight.
+void InkComparison::HideInHighlights(const Grays& gray, const Levels& levels,
+                                     Darkness* darkness) const {
+  constexpr float kUnknown = std::numeric_limits<float>::infinity();
+  const auto known = [&](std::size_t place) { return gray[place] < 0 ? kUnknown : gray[place]; };
+  float hub = kUnknown;
+  for (const Range& arm : arm_) hub = std::min(hub, known(arm.begin));
+  for (int k = 0; k < kArms; ++k) {
+    for (std::size_t side = 0; side < kAcross; ++side) {
+      const auto place = [&](int row) { return arm_[k].begin + kAcross * row + side; };
+      const auto is_bright = [&](int row) {
+        return gray[place(row)] >= levels.highlight[sector_[place(row)]];
+      };
+      // Ink from the middle of the print to the ring.
+      std::array<float, kAlongArm + 2> ink;
+      ink.front() = hub;
+      ink.back() = known(BeyondArm(k));
+      for (int row = 0; row < kAlongArm; ++row) ink[row + 1] = known(place(row));
+      for (int row = 0; row < kAlongArm; ++row) {
+        if (!is_bright(row)) continue;
+        const int first = row;
+        while (row + 1 < kAlongArm && is_bright(row + 1)) ++row;
+        const float before = std::min(ink[first], ink[std::max(0, first - 1)]);
+        const float behind = std::min(ink[row + 2], ink[std::min(row + 3, kAlongArm + 1)]);
+        if (std::min(before, behind) < levels.veiled) continue;
+        for (int hidden = first; hidden <= row; ++hidden) darkness->is_seen[place(hidden)] = false;
+      }
+    }
+  }
 }
 
 double InkComparison::Doubt(const cv::Mat& image, const PatternView& view,
                             PrintDoubts* doubts) const {
-  std::array<float, kMaxPlaces> gray;
+  Grays gray;
   view.Sample(image, x_m_.data(), y_m_.data(), x_m_.size(), gray.data());
   const auto ink_seen = std::count_if(gray.begin(), gray.begin() + static_cast<int>(ink_end_),
                                       [](float value) { return value >= 0; });

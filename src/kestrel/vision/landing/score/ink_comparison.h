@@ -33,6 +33,8 @@ class InkComparison {
   static constexpr int kArms = LandingPattern::kArms;
   static constexpr int kSectors = 2 * kArms;  // every second one lies around an arm
   static constexpr int kLines = 5;            // between two arms: lines on which a spoke may lie
+  // Places on an arm, and on the ring in a sector; across their strokes.
+  static constexpr int kAlongArm = 11, kAroundSector = 12, kAcross = 2;
   static constexpr std::size_t kMaxPlaces = 1024;
 
   // A run of consecutive places.
@@ -50,8 +52,14 @@ class InkComparison {
   void AddPlace(double x_m, double y_m);
   template <typename Holds>
   Range AddGrid(const Holds& holds);
-  Levels MeasureLevels(const std::array<float, kMaxPlaces>& gray) const;
-  Darkness MeasureDarkness(const std::array<float, kMaxPlaces>& gray, const Levels& levels) const;
+  using Grays = std::array<float, kMaxPlaces>;
+  // Index of a place on the ring beyond the end of an arm.
+  std::size_t BeyondArm(int arm) const {
+    return arm_.back().end + kAcross * kAroundSector * (2 * arm) + kAroundSector;
+  }
+  Levels MeasureLevels(const Grays& gray) const;
+  Darkness MeasureDarkness(const Grays& gray, const Levels& levels) const;
+  void HideInHighlights(const Grays& gray, const Levels& levels, Darkness* darkness) const;
   // Set the doubts about arms and the white between them, and about the white around the ring.
   void DoubtCross(const Darkness& darkness, PrintDoubts* doubts) const;
   void DoubtBoard(const Darkness& darkness, PrintDoubts* doubts) const;
@@ -60,8 +68,8 @@ class InkComparison {
   double extent_m_;
   std::vector<float> x_m_, y_m_;
   std::vector<std::uint8_t> sector_;
-  std::array<Range, kArms> arm_;
-  std::size_t ink_end_ = 0;  // the places before this index are on arms and ring
+  std::array<Range, kArms> arm_;  // from the middle of the print outwards
+  std::size_t ink_end_ = 0;       // the places before this index are on arms and ring
   // White between two arms: 'hub_' near the middle of the print, 'quadrant_' all of it.
   std::array<Range, kArms> hub_, quadrant_;
   std::array<Range, kSectors> board_;                                       // white around the ring

@@ -42,20 +42,40 @@ class InkComparisonTest : public ::testing::Test {
   // 'transmission': share of the light that remains where 'is_shaded', in the plane of the print.
   cv::Mat Shade(const cv::Mat& image, double transmission, const Print& is_shaded) const {
     cv::Mat shaded = image.clone();
-    const RigidTransform pattern_from_camera = pose_.Inverse();
     for (int v = 0; v < image.rows; ++v) {
       for (int u = 0; u < image.cols; ++u) {
-        Eigen::Vector3d ray;
-        camera_.Unproject({static_cast<double>(u), static_cast<double>(v)}, &ray);
-        ray = pattern_from_camera.rotation * ray;
-        const Eigen::Vector3d& origin = pattern_from_camera.translation;
-        const Eigen::Vector3d point = origin - origin.z() / ray.z() * ray;
+        const Eigen::Vector2d point = PrintPoint(u, v);
         std::uint8_t& gray = shaded.at<std::uint8_t>(v, u);
         if (is_shaded(point.x(), point.y()))
           gray = cv::saturate_cast<std::uint8_t>(transmission * gray);
       }
     }
     return shaded;
+  }
+
+  // Adds light around a point of the print, 'gray' in its middle.
+  cv::Mat Shine(const cv::Mat& image, const Eigen::Vector2d& at, double sigma_m,
+                double gray) const {
+    cv::Mat lit = image.clone();
+    for (int v = 0; v < image.rows; ++v) {
+      for (int u = 0; u < image.cols; ++u) {
+        const double distance = (PrintPoint(u, v) - at).norm() / sigma_m;
+        std::uint8_t& pixel = lit.at<std::uint8_t>(v, u);
+        pixel =
+            cv::saturate_cast<std::uint8_t>(pixel + gray * std::exp(-0.5 * distance * distance));
+      }
+    }
+    return lit;
+  }
+
+  // Returns the point of the print (m) that a pixel shows.
+  Eigen::Vector2d PrintPoint(int u, int v) const {
+    const RigidTransform pattern_from_camera = pose_.Inverse();
+    Eigen::Vector3d ray;
+    camera_.Unproject({static_cast<double>(u), static_cast<double>(v)}, &ray);
+    ray = pattern_from_camera.rotation * ray;
+    const Eigen::Vector3d& origin = pattern_from_camera.translation;
+    return (origin - origin.z() / ray.z() * ray).head<2>();
   }
 
   const LandingPattern pattern_{};
@@ -129,16 +149,33 @@ TEST_F(InkComparisonTest, AFlatImageIsUnlikeThePrint) {
   EXPECT_EQ(compared[PrintDoubt::kUnlike], 0);
 }
 
-// A highlight that saturates the image hides the ink of an arm. It does not speak against the
-// print.
+// A highlight that saturates the image hides the ink of an arm, and veils the ink around. What it
+// hides does not speak against the print, unlike a patch of white as large.
 TEST_F(InkComparisonTest, AHighlightHidesAnArm) {
-  cv::Mat image = Draw(print_);
-  Eigen::Vector2d pixel;
-  camera_.Project(pose_ * Eigen::Vector3d(0.2, 0, 0), &pixel);
-  const int half = 14;
-  image(cv::Rect(static_cast<int>(pixel.x()) - half, static_cast<int>(pixel.y()) - half, 2 * half,
-                 2 * half)) = 255;
-  EXPECT_LT(Compare(image)[PrintDoubt::kInklessArm], 0.1);
+  const cv::Mat even = Draw(print_);
+  for (const double sigma_m : {0.06, 0.2}) {
+    const cv::Mat lit = Shine(even, {0.2, 0}, sigma_m, 400);
+    EXPECT_LT(Compare(lit)[PrintDoubt::kInklessArm], 0.6) << sigma_m;
+  }
+  const Print patched = [this](double x, double y) {
+    return print_(x, y) && std::hypot(x - 0.2, y) > 0.12;
+  };
+  EXPECT_GT(Compare(1.5 * Draw(patched))[PrintDoubt::kInklessArm], 0.65);
+}
+
+// White between sharp edges is no highlight, however bright the board is.
+TEST_F(InkComparisonTest, AnOverexposedBoardHidesNoArm) {
+  for (const int arms : {0, 1, 2, 3}) {
+    const Print sign = [&](double x, double y) {
+      const bool is_cross = std::min(std::abs(x), std::abs(y)) < 0.05 && std::hypot(x, y) < 0.39;
+      const int arm = std::abs(x) > std::abs(y) ? (x > 0 ? 3 : 1) : (y > 0 ? 0 : 2);
+      return IsRing(pattern_, x, y) || (is_cross && arm < arms);
+    };
+    EXPECT_GT(Compare(1.5 * Draw(sign))[PrintDoubt::kInklessArm], 0.9) << arms;
+    const cv::Mat beside = Shine(1.5 * Draw(sign), {-0.3, -0.3}, 0.15, 300);
+    EXPECT_GT(Compare(beside)[PrintDoubt::kInklessArm], 0.9) << arms;
+  }
+  EXPECT_LT(Compare(1.5 * Draw(print_))[PrintDoubt::kInklessArm], 0.03);
 }
 
 }  // namespace
