@@ -77,14 +77,15 @@ class LandingPipeline::Impl {
   struct Sighting {
     Time time;
     Eigen::Vector3d center_in_camera;
-    std::optional<Eigen::Quaterniond> rotation_in_camera;  // where the pad has one heading
+    std::optional<Eigen::Quaterniond> rotation_in_camera;  // where the pad has a heading
     std::optional<std::int32_t> id;
   };
-  // Last detection of a pad with one heading in the world.
+  // Last detection of a pad with a heading in the world.
   struct Heading {
     Time time;
     Eigen::Quaterniond rotation_in_world;
     std::optional<std::int32_t> id;
+    int symmetry;  // number of headings under which the pad looked the same
   };
 
   // The search for tags of the wrong id, and the memory of it.
@@ -345,11 +346,13 @@ void LandingPipeline::Impl::Remember(const LandingObservation& observation) {
   if (!detection) return;
   const RigidTransform& pose = detection->camera_from_pattern;
   last_ = {observation.time, pose.translation, {}, detection->id};
-  if (detection->heading_symmetry != 1) return;
+  if (detection->heading_symmetry == 0) return;
   last_->rotation_in_camera = pose.rotation;
   if (!observation.world_from_camera || !is_track_trusted_) return;
+  // The ring alone does not tell the heading that its tags have told before.
+  if (heading_ && heading_->symmetry < detection->heading_symmetry) return;
   heading_ = {observation.time, observation.world_from_camera->rotation * pose.rotation,
-              detection->id};
+              detection->id, detection->heading_symmetry};
 }
 
 LandingPipeline::LandingPipeline(const CameraCalibration& calibration,

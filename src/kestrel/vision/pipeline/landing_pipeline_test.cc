@@ -550,7 +550,9 @@ TEST_F(OwnDetectorTest, AHeadingIsKnownUpToTheTurnsOfThePad) {
   ASSERT_TRUE(seen.yaw_in_world);
   EXPECT_NEAR(*seen.yaw_in_world, kYaw - std::numbers::pi, 1e-6);
   EXPECT_FALSE(seen.target->has_yaw());
-  EXPECT_FALSE(hint_.rotation_in_camera);
+  // The pad is followed in the orientation in which it was seen.
+  ASSERT_TRUE(hint_.rotation_in_camera);
+  EXPECT_LT(hint_.rotation_in_camera->angularDistance(CameraFromPattern().rotation), 0.02);
 }
 
 TEST_F(OwnDetectorTest, ADiscHasNoYaw) {

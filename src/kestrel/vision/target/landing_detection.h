@@ -56,8 +56,8 @@ struct LandingHint {
   // Expected centre of the pattern (m), and its standard deviation per axis.
   std::optional<Eigen::Vector3d> center_in_camera;
   double center_sigma_m = 0.5;
-  // Expected orientation of the pad, camera_from_pattern, and which pad it is. Both come from the
-  // last detection, if that had one heading and an id.
+  // Expected orientation of the pad, camera_from_pattern, one of those under which it looks the
+  // same, and which pad it is. Both come from the last detection, if that had a heading and an id.
   std::optional<Eigen::Quaterniond> rotation_in_camera;
   std::optional<std::int32_t> id;
   // Height of the camera above the pattern, m.
