@@ -256,9 +256,11 @@ HelipadModel::Contrast HelipadModel::ContrastAt(std::span<const float> gray, std
   return {sum / static_cast<float>(count), largest};
 }
 
-HelipadAgreement HelipadModel::Compare(std::span<const float> gray, double stroke_px) const {
+HelipadAgreement HelipadModel::Compare(std::span<const float> gray, double stroke_px,
+                                       DimSample dim) const {
   constexpr double kLeastContrast = 0.02;
-  constexpr double kLeast = 0.45;  // of the usual contrast, of a sample that agrees
+  constexpr float kLeastDimContrast = 0.1F;  // of ink in a shadow
+  constexpr double kLeast = 0.45;            // of the usual contrast, of a sample that agrees
   HelipadAgreement agreement;
   std::array<float, kMostHelipadSamples> means, largest;
   std::size_t count = 0;
@@ -276,6 +278,7 @@ HelipadAgreement HelipadModel::Compare(std::span<const float> gray, double strok
     if (std::isnan(largest[i])) continue;
     // In one light with it: where the edge of a shadow runs, the others say little.
     const bool agrees = largest[i] / usual > kLeast;
+    if (!agrees && dim == DimSample::kUnknown && largest[i] > kLeastDimContrast) continue;
     const auto part = static_cast<std::size_t>(samples[i].part);
     ++seen[part];
     right[part] += agrees;

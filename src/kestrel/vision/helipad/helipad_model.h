@@ -50,6 +50,10 @@ struct FigureMoments {
 };
 FigureMoments MomentsOf(std::span<const Eigen::Vector2d> corners);
 
+// What a sample tells whose contrast is less than usual but clear: on a pad that is followed it is
+// in a shadow, in a search it is as likely another figure.
+enum class DimSample { kWrong, kUnknown };
+
 // Agreement of the gray values of the samples with the H.
 struct HelipadAgreement {
   // Natural logarithm of how much likelier an H of one ink on one ground is than any gray values:
@@ -70,7 +74,7 @@ struct HelipadModel {
   // Compares gray values of all samples, negative where out of view, with the H. A sample is held
   // against those of the other colour beside it, so that the edge of a shadow does not matter.
   // 'stroke_px': width of a stroke in the image.
-  HelipadAgreement Compare(std::span<const float> gray, double stroke_px) const;
+  HelipadAgreement Compare(std::span<const float> gray, double stroke_px, DimSample dim) const;
 
   // Returns how much gray values of all samples, negative where out of view, look like the H: the
   // mean contrast of a sample over its root mean square, 1 where all have the same.

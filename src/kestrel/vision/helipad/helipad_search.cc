@@ -129,7 +129,7 @@ int HelipadSearch::EdgesInView(const RigidTransform& pose) const {
   return count;
 }
 
-double HelipadSearch::QualityOf(const AlignedBoard& aligned, double prior) {
+double HelipadSearch::QualityOf(const AlignedBoard& aligned, double prior, DimSample dim) {
   const RigidTransform& pose = aligned.camera_from_board;
   const double stroke_px = StrokePx(pose);
   if (stroke_px < kLeastStrokePx) return 0;
@@ -138,7 +138,8 @@ double HelipadSearch::QualityOf(const AlignedBoard& aligned, double prior) {
   if (aligned.rms_px > std::max(kMostMisfitPx, kMostMisfitStrokes * stroke_px)) return 0;
   if (aligned.edges < kLeastExplained * EdgesInView(pose)) return 0;
   SampleAt(pose, helipad_.pad.places);
-  const HelipadAgreement agreement = helipad_.pad.Compare(buffers_.samples.Read(image_), stroke_px);
+  const HelipadAgreement agreement =
+      helipad_.pad.Compare(buffers_.samples.Read(image_), stroke_px, dim);
   // A leg with what is beside it, at least.
   constexpr int kFewestParts = 3;
   if (agreement.parts < kFewestParts || agreement.worst_share < kLeastRight) return 0;
@@ -149,7 +150,9 @@ void HelipadSearch::Take(const RigidTransform& pose, double prior, DetectionMeth
   const std::optional<AlignedBoard> aligned = Align(pose);
   if (!aligned) return;
   log_.Reach(LandingStage::kMatch, "what is at the edges does not look like the H");
-  const double quality = QualityOf(*aligned, prior);
+  const DimSample dim =
+      method == DetectionMethod::kFollowed ? DimSample::kUnknown : DimSample::kWrong;
+  const double quality = QualityOf(*aligned, prior, dim);
   if (quality < helipad_.min_quality) return;
   if (is_found() && quality <= report_.detection->quality) return;
   log_.Reach(LandingStage::kLocate, "no pose explains the edges");

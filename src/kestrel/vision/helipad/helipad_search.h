@@ -46,7 +46,7 @@ class HelipadSearch final : public BoardSearch {
   // 'prior': logarithm of the odds against a helipad at any of the places that were tried.
   void Take(const RigidTransform& pose, double prior, DetectionMethod method);
   // Returns the probability that the pad is there.
-  double QualityOf(const AlignedBoard& aligned, double prior);
+  double QualityOf(const AlignedBoard& aligned, double prior, DimSample dim);
   // Number of points of the H's edges that the image should show.
   int EdgesInView(const RigidTransform& pose) const;
   void Report(const AlignedBoard& found, double quality, DetectionMethod method);

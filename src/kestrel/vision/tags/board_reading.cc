@@ -98,14 +98,15 @@ TagGrid InPlaceOf(const PrintedTag& tag, bool inverted, const TagFamily& family,
 }  // namespace
 
 BoardReading ReadBoard(const cv::Mat& image, const CameraModel& camera, const BoardModel& board,
-                       const RigidTransform& camera_from_board, BoardSamples* samples) {
+                       const RigidTransform& camera_from_board, BoardSamples* samples,
+                       DimCell dim) {
   BoardReading reading;
   for (std::size_t index = 0; index < board.tags.size(); ++index) {
     const TagModel& tag = board.tags[index];
     const double cell_px = CellPx(camera, camera_from_board, tag);
     if (cell_px < kLeastCellPx) continue;
     const TagAgreement agreement = CompareCells(
-        tag, cell_px, ReadCellsAt(image, camera, camera_from_board, tag, cell_px, samples));
+        tag, cell_px, ReadCellsAt(image, camera, camera_from_board, tag, cell_px, samples), dim);
     if (agreement.wrong > tag.most_wrong || agreement.evidence <= 0) continue;
     reading.evidence += agreement.evidence;
     reading.parts.Add({"tag", index, cell_px * tag.grid().border_width});

@@ -27,7 +27,8 @@ struct BoardReading {
 // its bits are wrong than may be misread. 'samples': room for the cells of a tag. Does not
 // allocate.
 BoardReading ReadBoard(const cv::Mat& image, const CameraModel& camera, const BoardModel& board,
-                       const RigidTransform& camera_from_board, BoardSamples* samples);
+                       const RigidTransform& camera_from_board, BoardSamples* samples,
+                       DimCell dim = DimCell::kWrong);
 
 // The tags that another board of the same layout may have: those of the same families whose ids
 // are not on the board.

@@ -12,6 +12,8 @@ namespace {
 
 constexpr int kNeighbors = 2;             // cells around a cell that it is held against
 constexpr double kLeastCellContrast = 5;  // gray values, between white and black cells
+constexpr double kLeastDimContrast =
+    0.4;  // logarithm, of a white cell in the shadow above black ones
 
 // Sums over the cells of one colour.
 struct ColorSum {
@@ -27,10 +29,11 @@ double PlaceBetween(double value, double black, double white, bool is_white) {
 }
 
 // Returns the place of a cell's gray value between those of the cells around it of the other colour
-// (-1) and of its own colour (1); 0 where there are none. Lens and pixels mix gray values, a shadow
-// multiplies them: of the places by gray values and by their logarithms the better one counts.
+// (-1) and of its own colour (1); 0 where there are none, or where a shadow hides its colour. Lens
+// and pixels mix gray values, a shadow multiplies them: of the places by gray values and by their
+// logarithms the better one counts.
 double CellAgreement(const TagGrid& grid, std::span<const float> gray, std::span<const float> log,
-                     int column, int row) {
+                     int column, int row, DimCell dim) {
   ColorSum sums[2];  // of black and of white cells
   for (int y = std::max(0, row - kNeighbors); y <= std::min(grid.width - 1, row + kNeighbors);
        ++y) {
@@ -53,8 +56,11 @@ double CellAgreement(const TagGrid& grid, std::span<const float> gray, std::span
       PlaceBetween(gray[i], black.gray / black.count, white.gray / white.count, is_white);
   const double log_contrast = white.log / white.count - black.log / black.count;
   if (!(log_contrast > 0)) return by_gray;
-  return std::max(by_gray,
-                  PlaceBetween(log[i], black.log / black.count, white.log / white.count, is_white));
+  const double place = std::max(
+      by_gray, PlaceBetween(log[i], black.log / black.count, white.log / white.count, is_white));
+  const bool is_dim =
+      dim == DimCell::kUnknown && is_white && log[i] - black.log / black.count > kLeastDimContrast;
+  return is_dim ? std::max(0.0, place) : place;
 }
 
 // A clear match tells 'information'; a clear mismatch weighs more, as print and light are seldom
@@ -173,12 +179,13 @@ double CellInformation(const TagGrid& grid, const std::vector<bool>& is_data) {
   return std::min(by_corners, by_edges);
 }
 
-TagAgreement CompareCells(const TagModel& tag, double cell_px, std::span<const float> gray) {
-  return CompareCells(tag.grid(), tag.is_data, cell_px, gray);
+TagAgreement CompareCells(const TagModel& tag, double cell_px, std::span<const float> gray,
+                          DimCell dim) {
+  return CompareCells(tag.grid(), tag.is_data, cell_px, gray, dim);
 }
 
 TagAgreement CompareCells(const TagGrid& grid, const std::vector<bool>& is_data, double cell_px,
-                          std::span<const float> gray) {
+                          std::span<const float> gray, DimCell dim) {
   constexpr double kBorderWeight = 0.1;     // of a mismatch: what surrounds a tag may be anything
   constexpr double kCorrelationPx = 1.5;    // nearer samples are alike by lens and pixels
   constexpr std::size_t kMostCells = 1296;  // of a fractal marker, 32 bits a side
@@ -194,7 +201,7 @@ TagAgreement CompareCells(const TagGrid& grid, const std::vector<bool>& is_data,
     for (int column = 0; column < grid.width; ++column) {
       const int i = row * grid.width + column;
       if (grid.cells[i] == TagCell::kNone || gray[i] < 0) continue;
-      const double here = CellAgreement(grid, gray, log, column, row);
+      const double here = CellAgreement(grid, gray, log, column, row, dim);
       if (!is_data[i]) {  // alike in all tags and in windows: a match tells nothing
         agreement.evidence += kBorderWeight * CellEvidence(here, 0);
         continue;
