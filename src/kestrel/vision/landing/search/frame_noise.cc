@@ -108,7 +108,7 @@ FrameNoise MeasureNoise(const cv::Mat& image) {
 }
 
 void NoiseFilter::Reserve(cv::Size size) {
-  padded_.resize(static_cast<std::size_t>(size.width + 2 * kBinomialReach));
+  padded_.resize(static_cast<std::size_t>(size.width) + 2 * kBinomialReach);
   rows_.resize(static_cast<std::size_t>(size.area()));
   filtered_.create(size, CV_8UC1);
 }
