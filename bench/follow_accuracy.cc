@@ -29,6 +29,7 @@
 #include "kestrel/simulation/scene/paint.h"
 #include "kestrel/simulation/scene/solids.h"
 #include "kestrel/vision/pipeline/landing_pipeline.h"
+#include "pad_settings.h"
 #include "report_main.h"
 
 namespace kestrel {
@@ -41,12 +42,6 @@ constexpr double kDuration_s = 3;
 // A pose farther off is false.
 constexpr double kFalse_m = 0.04;
 constexpr double kFalseTurn = Radians(5);
-
-struct Settings {
-  TargetOptions target;
-  int descents = 20;  // under the shadow of each UAV
-  std::uint64_t seed = 1;
-};
 
 struct Sighting {
   double altitude_m = 0;
@@ -278,14 +273,14 @@ void PrintHead(const std::string& kind, std::string_view shadow) {
   fmt::print("| altitude | frames | found | false | error median |\n|---|---|---|---|---|\n");
 }
 
-void Run(const Settings& settings) {
+void Run(const PadSettings& settings) {
   cv::setNumThreads(1);
   TargetOptions target = settings.target;
   target.size_m = kPadSize_m;
   std::vector<std::vector<Sighting>> all;
   std::uint64_t kind = 0;
   for (const ShadowCaster& uav : UavShadowCasters()) {
-    std::vector<std::vector<Sighting>> descents(settings.descents);
+    std::vector<std::vector<Sighting>> descents(settings.count);
     ForEachIndex(descents.size(), [&](std::size_t i) {
       descents[i] = FlyDown(target, uav, Hash(settings.seed + i, kind));
     });
@@ -306,12 +301,8 @@ void Run(const Settings& settings) {
 
 int main(int argc, char** argv) {
   CLI::App app("Pads that are followed to the ground under the shadow of the UAV");
-  kestrel::Settings settings;
-  app.add_option("--target", settings.target.kind, "Kind of the pad (ring-cross)");
-  app.add_option("--board", settings.target.nested.board, "Board of nested and ring-with-tags");
-  app.add_option("--descents", settings.descents, "Number of descents under each shadow (20)")
-      ->check(CLI::Range(1, 100000));
-  app.add_option("--seed", settings.seed, "Seed of the first descent (1)");
+  kestrel::PadSettings settings{.target = {}, .count = 20};
+  kestrel::AddOptions(&app, "descents", "Number of descents under each shadow", &settings);
   CLI11_PARSE(app, argc, argv);
   return kestrel::ReportMain([&] {
     kestrel::Run(settings);

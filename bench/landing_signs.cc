@@ -32,7 +32,7 @@ Tell OnCircle(double radius_m, double least_share) {
   return tell;
 }
 
-// Where the pattern has an arm.
+// Returns points on an arm of the pattern.
 Tell OnArm(double angle) {
   Tell tell;
   for (const double along_m : {0.12, 0.18, 0.24, 0.3}) {

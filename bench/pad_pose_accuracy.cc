@@ -24,6 +24,7 @@
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/vision/helipad/test_helipad_images.h"
 #include "kestrel/vision/targets/make_target_detector.h"
+#include "pad_settings.h"
 #include "report_main.h"
 
 namespace kestrel {
@@ -43,12 +44,6 @@ struct Sighting {
 struct Descent {
   std::vector<std::optional<Sighting>> frames;  // from high to low; nothing where it is not found
   std::vector<double> altitudes_m;
-};
-
-struct Settings {
-  TargetOptions target;
-  int descents = 10;
-  std::uint64_t seed = 1;
 };
 
 std::uint32_t PartsOf(const LandingDetection& detection) {
@@ -176,14 +171,14 @@ void PrintJumps(const std::vector<Descent>& descents) {
   }
 }
 
-void Run(const Settings& settings) {
+void Run(const PadSettings& settings) {
   cv::setNumThreads(1);
   const CameraModel camera(PaperCamera());
   const PadRenderer renderer(camera);
   const LandingPatternDetectorOptions ring;
   const auto detector = MakeTargetDetector(camera, settings.target, ring);
   const TargetPrint print = PrintOfTarget(settings.target, ring.pattern);
-  std::vector<Descent> descents(settings.descents);
+  std::vector<Descent> descents(settings.count);
   ForEachIndex(descents.size(), [&](std::size_t i) {
     descents[i] = FlyDown(*detector, print, renderer, settings.seed + i);
   });
@@ -197,14 +192,8 @@ void Run(const Settings& settings) {
 
 int main(int argc, char** argv) {
   CLI::App app("Errors of a pad's pose in units of its covariance");
-  kestrel::Settings settings;
-  app.add_option("--target", settings.target.kind, "Kind of the pad (ring-cross)");
-  app.add_option("--board", settings.target.nested.board,
-                 "Board of nested and ring-with-tags (built in)");
-  app.add_option("--descents", settings.descents,
-                 "Number of descents, each with the next seed (10)")
-      ->check(CLI::Range(1, 100000));
-  app.add_option("--seed", settings.seed, "Seed of the first descent (1)");
+  kestrel::PadSettings settings{.target = {}, .count = 10};
+  kestrel::AddOptions(&app, "descents", "Number of descents, each with the next seed", &settings);
   CLI11_PARSE(app, argc, argv);
   return kestrel::ReportMain([&] {
     kestrel::Run(settings);

@@ -17,6 +17,7 @@
 #include "kestrel/vision/helipad/test_helipad_images.h"
 #include "kestrel/vision/targets/make_target_detector.h"
 #include "kestrel/vision/targets/test_pad_search.h"
+#include "pad_settings.h"
 #include "report_main.h"
 
 namespace kestrel {
@@ -24,23 +25,17 @@ namespace {
 
 constexpr std::array<double, 12> kExtents{8, 10, 12, 14, 16, 18, 20, 23, 26, 30, 35, 40};  // px
 
-struct Settings {
-  TargetOptions target;
-  int frames = 40;
-  std::uint64_t seed = 1;
-};
-
 // Returns the part of the frames at 'altitude' in which the pad is found at its place.
 double FoundAt(const TargetDetector& detector, const TargetPrint& print,
-               const PadRenderer& renderer, double altitude, const Settings& settings) {
-  std::vector<char> found(settings.frames);
+               const PadRenderer& renderer, double altitude, const PadSettings& settings) {
+  std::vector<char> found(settings.count);
   ForEachIndex(found.size(), [&](std::size_t i) {
     found[i] = IsFoundFrom(altitude, detector, print, renderer, settings.seed + i);
   });
-  return static_cast<double>(std::count(found.begin(), found.end(), 1)) / settings.frames;
+  return static_cast<double>(std::count(found.begin(), found.end(), 1)) / settings.count;
 }
 
-void PrintRange(const CameraModel& camera, const Settings& settings) {
+void PrintRange(const CameraModel& camera, const PadSettings& settings) {
   const LandingPatternDetectorOptions ring;
   const auto detector = MakeTargetDetector(camera, settings.target, ring);
   const TargetPrint print = PrintOfTarget(settings.target, ring.pattern);
@@ -53,7 +48,7 @@ void PrintRange(const CameraModel& camera, const Settings& settings) {
   }
 }
 
-void Run(const Settings& settings) {
+void Run(const PadSettings& settings) {
   cv::setNumThreads(1);
   fmt::print("| pad | image | altitude | extent | found |\n|---|---|---|---|---|\n");
   PrintRange(CameraModel(PaperCamera()), settings);
@@ -65,14 +60,9 @@ void Run(const Settings& settings) {
 
 int main(int argc, char** argv) {
   CLI::App app("Extent in the image from which a pad is found");
-  kestrel::Settings settings;
-  app.add_option("--target", settings.target.kind, "Kind of the pad (ring-cross)");
+  kestrel::PadSettings settings{.target = {}, .count = 40};
+  kestrel::AddOptions(&app, "frames", "Frames for each extent", &settings);
   app.add_option("--family", settings.target.apriltag.family, "Family of an apriltag (tag36h11)");
-  app.add_option("--board", settings.target.nested.board,
-                 "Board of nested and ring-with-tags (built in)");
-  app.add_option("--frames", settings.frames, "Frames for each extent (40)")
-      ->check(CLI::Range(1, 100000));
-  app.add_option("--seed", settings.seed, "Seed of the first frame (1)");
   CLI11_PARSE(app, argc, argv);
   return kestrel::ReportMain([&] {
     kestrel::Run(settings);

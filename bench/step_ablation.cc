@@ -49,7 +49,7 @@ const char* ToString(SearchMethod method) {
   return "";
 }
 
-// What is left out: a name, and the bits of the steps.
+// Part of the search that is left out: its name, and the bits of its steps.
 using Skipped = std::pair<std::string, std::uint32_t>;
 
 std::vector<Skipped> AllSkipped() {

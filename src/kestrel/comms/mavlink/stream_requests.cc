@@ -36,7 +36,7 @@ void StreamRequests::Count(std::uint32_t id) {
   for (Stream& stream : streams_) {
     if (stream.id != id) continue;
     ++stream.count;
-    stream.begins = !stream.has_come;
+    stream.begins = stream.begins || !stream.has_come;
     stream.has_come = true;
     return;
   }
@@ -56,7 +56,8 @@ void StreamRequests::Measure(Time now, Stream* stream) {
 // came.
 void StreamRequests::Begin(Time now, Stream* stream) {
   stream->begins = false;
-  stream->requests = std::min(stream->requests, 1);
+  if (stream->requests == 0) return;
+  stream->requests = 1;
   stream->count = 0;
   stream->counted_from = now;
   stream->due = now + kQuick;

@@ -106,7 +106,8 @@ void GuidedFlight::KnowAutopilot(Time now) {
 void GuidedFlight::WatchMode(const GuidanceInput& input, Time now) {
   const bool is_mode = autopilot_.is_here() ? autopilot_.is_guided_mode() : was_mode_;
   if (is_mode && !was_mode_) is_given_ = true;
-  if (!is_mode && is_begun_ && phase() == GuidancePhase::kLanded && !input.uav) {
+  const bool is_landing = autopilot_.custom_mode() == CustomModeOf(kind_, FlightMode::kLand);
+  if (!is_mode && is_begun_ && phase() == GuidancePhase::kLanded && !input.uav && !is_landing) {
     left_on_deck_ = now;
     Tell(mavlink::kSeverityWarning,
          "the autopilot has left its mode on the deck, without a position");

@@ -59,7 +59,10 @@ void LandingWatch::Fly(const LandingWatchInput& input) {
   if (!input.body) return;
   if (!armed_z_m_) armed_z_m_ = input.body->feet.z();
   has_flown_ = has_flown_ || std::abs(input.body->feet.z() - *armed_z_m_) > kFlownHeight_m;
-  if (input.has_contact || IsAtRest(input.now, std::abs(input.body->velocity.z()))) return;
+  if (input.has_contact) return;
+  const double speed_mps = std::abs(input.body->velocity.z());
+  RememberSpeed(input.now, speed_mps);
+  if (speed_mps < std::max(kAtRest_mps, kAtRestShare * fastest_mps_)) return;
   touched_down_ = input.now;
   place_.reset();
   if (!input.pattern) return;
@@ -73,11 +76,10 @@ void LandingWatch::Fly(const LandingWatchInput& input) {
   seen_offset_m_ = place_->offset_m;
 }
 
-bool LandingWatch::IsAtRest(Time now, double speed_mps) {
+void LandingWatch::RememberSpeed(Time now, double speed_mps) {
   fastest_mps_ *= std::exp(-ToSeconds(now - last_) / kSinkMemory_s);
   fastest_mps_ = std::max(fastest_mps_, speed_mps);
   last_ = now;
-  return speed_mps < std::max(kAtRest_mps, kAtRestShare * fastest_mps_);
 }
 
 // The first heartbeats of an autopilot that has restarted say "disarmed" as those of one that has

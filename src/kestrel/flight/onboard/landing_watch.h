@@ -71,7 +71,7 @@ class LandingWatch {
   };
 
   void Fly(const LandingWatchInput& input);
-  bool IsAtRest(Time now, double speed_mps);
+  void RememberSpeed(Time now, double speed_mps);
   bool IsCertain(const LandingWatchInput& input) const;
   FlightEnd Judge(const LandingWatchInput& input) const;
   FlightEnd JudgePlace() const;
@@ -85,7 +85,7 @@ class LandingWatch {
   double seen_offset_m_ = 0;         // at that time
   std::optional<Place> place_;       // at touch-down
   Time touched_down_{};
-  double fastest_mps_ = 0;  // vertical speed of the last second
+  double fastest_mps_ = 0;  // largest vertical speed, forgotten within seconds
   Time last_{};
   std::optional<LandingWatchInput::Sight> sight_;  // the newest before the disarming
   bool has_body_ = false;                          // at the newest instant in flight

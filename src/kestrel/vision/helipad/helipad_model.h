@@ -11,6 +11,7 @@
 #include "kestrel/core/image/log_gray.h"
 #include "kestrel/vision/helipad/helipad.h"
 #include "kestrel/vision/tags/board_model.h"
+#include "kestrel/vision/tags/board_samples.h"
 
 namespace kestrel {
 
@@ -49,10 +50,6 @@ struct FigureMoments {
   double Compactness() const;
 };
 FigureMoments MomentsOf(std::span<const Eigen::Vector2d> corners);
-
-// What a sample tells whose contrast is less than usual but clear: on a pad that is followed it is
-// in a shadow, in a search it is as likely another figure.
-enum class DimSample { kWrong, kUnknown };
 
 // Agreement of the gray values of the samples with the H.
 struct HelipadAgreement {

@@ -150,9 +150,7 @@ void HelipadSearch::Take(const RigidTransform& pose, double prior, DetectionMeth
   const std::optional<AlignedBoard> aligned = Align(pose);
   if (!aligned) return;
   log_.Reach(LandingStage::kMatch, "what is at the edges does not look like the H");
-  const DimSample dim =
-      method == DetectionMethod::kFollowed ? DimSample::kUnknown : DimSample::kWrong;
-  const double quality = QualityOf(*aligned, prior, dim);
+  const double quality = QualityOf(*aligned, prior, DimSampleIn(method));
   if (quality < helipad_.min_quality) return;
   if (is_found() && quality <= report_.detection->quality) return;
   log_.Reach(LandingStage::kLocate, "no pose explains the edges");

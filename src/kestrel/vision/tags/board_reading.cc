@@ -99,7 +99,7 @@ TagGrid InPlaceOf(const PrintedTag& tag, bool inverted, const TagFamily& family,
 
 BoardReading ReadBoard(const cv::Mat& image, const CameraModel& camera, const BoardModel& board,
                        const RigidTransform& camera_from_board, BoardSamples* samples,
-                       DimCell dim) {
+                       DimSample dim) {
   BoardReading reading;
   for (std::size_t index = 0; index < board.tags.size(); ++index) {
     const TagModel& tag = board.tags[index];

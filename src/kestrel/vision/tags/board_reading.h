@@ -28,7 +28,7 @@ struct BoardReading {
 // allocate.
 BoardReading ReadBoard(const cv::Mat& image, const CameraModel& camera, const BoardModel& board,
                        const RigidTransform& camera_from_board, BoardSamples* samples,
-                       DimCell dim = DimCell::kWrong);
+                       DimSample dim = DimSample::kWrong);
 
 // The tags that another board of the same layout may have: those of the same families whose ids
 // are not on the board.

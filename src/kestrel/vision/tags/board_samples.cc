@@ -10,10 +10,9 @@
 namespace kestrel {
 namespace {
 
-constexpr int kNeighbors = 2;             // cells around a cell that it is held against
-constexpr double kLeastCellContrast = 5;  // gray values, between white and black cells
-constexpr double kLeastDimContrast =
-    0.4;  // logarithm, of a white cell in the shadow above black ones
+constexpr int kNeighbors = 2;              // cells around a cell that it is held against
+constexpr double kLeastCellContrast = 5;   // gray values, between white and black cells
+constexpr double kLeastDimContrast = 0.4;  // of logarithms: a shaded white cell to black ones
 
 // Sums over the cells of one colour.
 struct ColorSum {
@@ -33,7 +32,7 @@ double PlaceBetween(double value, double black, double white, bool is_white) {
 // and pixels mix gray values, a shadow multiplies them: of the places by gray values and by their
 // logarithms the better one counts.
 double CellAgreement(const TagGrid& grid, std::span<const float> gray, std::span<const float> log,
-                     int column, int row, DimCell dim) {
+                     int column, int row, DimSample dim) {
   ColorSum sums[2];  // of black and of white cells
   for (int y = std::max(0, row - kNeighbors); y <= std::min(grid.width - 1, row + kNeighbors);
        ++y) {
@@ -58,8 +57,8 @@ double CellAgreement(const TagGrid& grid, std::span<const float> gray, std::span
   if (!(log_contrast > 0)) return by_gray;
   const double place = std::max(
       by_gray, PlaceBetween(log[i], black.log / black.count, white.log / white.count, is_white));
-  const bool is_dim =
-      dim == DimCell::kUnknown && is_white && log[i] - black.log / black.count > kLeastDimContrast;
+  const bool is_dim = dim == DimSample::kUnknown && is_white &&
+                      log[i] - black.log / black.count > kLeastDimContrast;
   return is_dim ? std::max(0.0, place) : place;
 }
 
@@ -180,12 +179,12 @@ double CellInformation(const TagGrid& grid, const std::vector<bool>& is_data) {
 }
 
 TagAgreement CompareCells(const TagModel& tag, double cell_px, std::span<const float> gray,
-                          DimCell dim) {
+                          DimSample dim) {
   return CompareCells(tag.grid(), tag.is_data, cell_px, gray, dim);
 }
 
 TagAgreement CompareCells(const TagGrid& grid, const std::vector<bool>& is_data, double cell_px,
-                          std::span<const float> gray, DimCell dim) {
+                          std::span<const float> gray, DimSample dim) {
   constexpr double kBorderWeight = 0.1;     // of a mismatch: what surrounds a tag may be anything
   constexpr double kCorrelationPx = 1.5;    // nearer samples are alike by lens and pixels
   constexpr std::size_t kMostCells = 1296;  // of a fractal marker, 32 bits a side

@@ -12,6 +12,7 @@
 
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/vision/tags/board_model.h"
+#include "kestrel/vision/target/landing_detection.h"
 
 namespace kestrel {
 
@@ -84,18 +85,22 @@ struct TagAgreement {
 // show them as well; so does a checker. At most log 2, for a picture at random.
 double CellInformation(const TagGrid& grid, const std::vector<bool>& is_data);
 
-// What a white cell tells that is darker than the white around it and lighter than the black. In a
-// search it is as likely another print as a shadow; on a tag that is followed it is a shadow.
-enum class DimCell { kWrong, kUnknown };
+// Meaning of a sample of a print with less contrast than usual, but clear contrast: a white cell
+// darker than the white around it, and lighter than the black. On a pad that is followed it is in a
+// shadow; in a search another print is as likely.
+enum class DimSample { kWrong, kUnknown };
+inline DimSample DimSampleIn(DetectionMethod method) {
+  return method == DetectionMethod::kFollowed ? DimSample::kUnknown : DimSample::kWrong;
+}
 
 // Compares gray values of all cells of a tag, of 'cell_px' each and negative where out of view,
 // with its bits. A cell is held against the white and the black cells around it, so that the edge
 // of a shadow over the tag does not matter. A match counts by CellInformation, less where the cells
 // are so small that lens and pixels make them alike.
 TagAgreement CompareCells(const TagModel& tag, double cell_px, std::span<const float> gray,
-                          DimCell dim = DimCell::kWrong);
+                          DimSample dim = DimSample::kWrong);
 // The same for a tag of these cells. 'is_data': as TagModel's.
 TagAgreement CompareCells(const TagGrid& grid, const std::vector<bool>& is_data, double cell_px,
-                          std::span<const float> gray, DimCell dim = DimCell::kWrong);
+                          std::span<const float> gray, DimSample dim = DimSample::kWrong);
 
 }  // namespace kestrel

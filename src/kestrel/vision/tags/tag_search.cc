@@ -105,9 +105,9 @@ void TagSearch::Take(const RigidTransform& pose, double prior, DetectionMethod m
   const std::optional<AlignedBoard> aligned = Align(pose);
   if (!aligned) return;
   log_.Reach(LandingStage::kMatch, "the cells do not look like the tag");
-  const DimCell dim = method == DetectionMethod::kFollowed ? DimCell::kUnknown : DimCell::kWrong;
-  const BoardReading reading = ReadBoard(image_, models_.camera, tags_.board,
-                                         aligned->camera_from_board, &buffers_.samples, dim);
+  const BoardReading reading =
+      ReadBoard(image_, models_.camera, tags_.board, aligned->camera_from_board, &buffers_.samples,
+                DimSampleIn(method));
   const double quality = 1 / (1 + std::exp(prior - reading.evidence));
   if (quality < tags_.min_quality) return;
   if (is_found() && quality <= report_.detection->quality) return;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kShadowFrames = 12;
 
-// Where the shadow's middle falls on a pad of 1 m, and the radius of the body that casts it.
+// Shadow on a pad of 1 m: its middle, and the radius of the body that casts it.
 struct OwnShadow {
   std::string kind;
   double x, y, radius;
@@ -76,7 +76,7 @@ class OwnShadowTest : public testing::TestWithParam<OwnShadow> {
   PadRenderer renderer_{camera_};
 };
 
-TEST_P(OwnShadowTest, WhatIsFollowedStaysFollowed) { EXPECT_EQ(Found(target_), kShadowFrames); }
+TEST_P(OwnShadowTest, FollowedPadStaysFollowed) { EXPECT_EQ(Found(target_), kShadowFrames); }
 
 class TagShadowTest : public OwnShadowTest {};
 
