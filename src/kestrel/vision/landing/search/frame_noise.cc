@@ -60,16 +60,17 @@ class Roughness {
   int count_ = 0;
 };
 
-class NoiseMeasurement {
+// Calls 'add' with each pair of rows of the sample.
+template <class Add>
+void ForRowPairs(const cv::Mat& image, const Add& add) {
+  const int step = std::max(2, image.rows / kRowPairs);
+  for (int y = step / 2; y + 1 < image.rows; y += step) add(image.ptr(y), image.ptr(y + 1));
+}
+
+// Means of runs of pixels.
+class ContrastMeasurement {
  public:
   void Add(const std::uint8_t* upper, const std::uint8_t* lower, int width) {
-    const auto sum = [&](int x) { return upper[x] + upper[x + 1] + lower[x] + lower[x + 1]; };
-    for (int x = 2; x + 3 < width; x += kSampleStep) {
-      // Clipped noise is no measure.
-      if (upper[x] == 0 || upper[x] == 255) continue;
-      fine_.Add(upper[x - 1], upper[x], upper[x + 1]);
-      coarse_.Add(sum(x - 2), sum(x), sum(x + 2));
-    }
     for (int x = 0; x + kRunPx <= width && runs_count_ < runs_.size(); x += kRunPx) {
       int total = 0;
       for (int i = x; i < x + kRunPx; ++i) total += upper[i] + lower[i];
@@ -77,34 +78,45 @@ class NoiseMeasurement {
     }
   }
 
-  FrameNoise Result() {
-    if (runs_count_ == 0) return {};
-    const double fine = fine_.Sigma(), coarse = coarse_.Sigma() / 4;
+  double Result() {
+    if (runs_count_ == 0) return 0;
     const std::span<float> runs = std::span(runs_).first(runs_count_);
     const auto rank = [&](double share) {
       return RankedInPlace(runs, static_cast<std::size_t>(share * (runs_count_ - 1)));
     };
     const double dark = rank(kDarkShare);
-    // With the variances of noise and texture: fine^2 = n + t, coarse^2 = n / 4 + t.
-    return {std::sqrt(std::max(0.0, 4.0 / 3 * (fine * fine - coarse * coarse))),
-            rank(kBrightShare) - dark};
+    return rank(kBrightShare) - dark;
   }
 
  private:
-  Roughness fine_, coarse_;
   std::array<float, 4096> runs_;
   std::size_t runs_count_ = 0;
 };
 
 }  // namespace
 
-FrameNoise MeasureNoise(const cv::Mat& image) {
-  NoiseMeasurement measurement;
-  const int step = std::max(2, image.rows / kRowPairs);
-  for (int y = step / 2; y + 1 < image.rows; y += step) {
-    measurement.Add(image.ptr(y), image.ptr(y + 1), image.cols);
-  }
+double MeasureContrast(const cv::Mat& image) {
+  ContrastMeasurement measurement;
+  ForRowPairs(image, [&](const std::uint8_t* upper, const std::uint8_t* lower) {
+    measurement.Add(upper, lower, image.cols);
+  });
   return measurement.Result();
+}
+
+double MeasureNoise(const cv::Mat& image) {
+  Roughness fine, coarse;
+  ForRowPairs(image, [&](const std::uint8_t* upper, const std::uint8_t* lower) {
+    const auto sum = [&](int x) { return upper[x] + upper[x + 1] + lower[x] + lower[x + 1]; };
+    for (int x = 2; x + 3 < image.cols; x += kSampleStep) {
+      // Clipped noise is no measure.
+      if (upper[x] == 0 || upper[x] == 255) continue;
+      fine.Add(upper[x - 1], upper[x], upper[x + 1]);
+      coarse.Add(sum(x - 2), sum(x), sum(x + 2));
+    }
+  });
+  // With the variances of noise and texture: fine^2 = n + t, coarse^2 = n / 4 + t.
+  const double of_one = fine.Sigma(), of_four = coarse.Sigma() / 4;
+  return std::sqrt(std::max(0.0, 4.0 / 3 * (of_one * of_one - of_four * of_four)));
 }
 
 void NoiseFilter::Reserve(cv::Size size) {
@@ -114,9 +126,10 @@ void NoiseFilter::Reserve(cv::Size size) {
 }
 
 const cv::Mat& NoiseFilter::Filter(const cv::Mat& image) {
-  const FrameNoise noise = MeasureNoise(image);
-  if (noise.sigma <= kHidingNoise * noise.contrast) return image;
-  Smooth(image, std::clamp(kWantedContrast / std::max(1.0, noise.contrast), 1.0, kMostGain));
+  const double contrast = MeasureContrast(image);
+  const bool is_dark = contrast <= kWantedContrast;
+  if (!is_dark || MeasureNoise(image) <= kHidingNoise * contrast) return image;
+  Smooth(image, std::min(kWantedContrast / std::max(1.0, contrast), kMostGain));
   return filtered_;
 }
 
