@@ -76,21 +76,27 @@ std::vector<Skipped> AllSkipped() {
   return all;
 }
 
-// Stills in each light from these heights.
-LandingFrameSet MakeStills(int per_light, double min_altitude_m, double max_altitude_m) {
+// Stills in each light, or in one.
+LandingFrameSet MakeStills(int per_light, LandingStillOptions options, bool each_light = true) {
   LandingFrameSet set{"own", PaperCamera(), {}};
-  for (int light = 0; light < kStillConditions; ++light) {
-    LandingStillOptions options;
-    options.condition = static_cast<StillCondition>(light);
-    options.min_altitude_m = min_altitude_m;
-    options.max_altitude_m = max_altitude_m;
-    options.min_visible_fraction = 0.25;
+  for (int light = 0; light < (each_light ? kStillConditions : 1); ++light) {
+    if (each_light) options.condition = static_cast<StillCondition>(light);
     const LandingStillMaker maker(options);
     for (int i = 0; i < per_light; ++i) {
       set.frames.push_back(FrameFromStill(maker, ToString(options.condition), kSeed + i));
     }
   }
   return set;
+}
+
+LandingStillOptions StillsFrom(double min_altitude_m, double max_altitude_m,
+                               double max_visible_fraction = 1) {
+  LandingStillOptions options;
+  options.min_altitude_m = min_altitude_m;
+  options.max_altitude_m = max_altitude_m;
+  options.min_visible_fraction = 0.25;
+  options.max_visible_fraction = max_visible_fraction;
+  return options;
 }
 
 LandingFrameSet MakeLookalikes(int count) {
@@ -135,30 +141,48 @@ int False(const LandingTally& tally) {
   return tally.wrong + tally.false_detections + tally.partial_found - tally.partial_right;
 }
 
+// A column of the table.
+struct Column {
+  const char* name;
+  std::vector<LandingFrameSet> sets;
+  bool is_timed = false;
+};
+
+std::vector<Column> MakeColumns(const Options& options) {
+  LandingStillOptions night = StillsFrom(0.3, 0.8);
+  night.condition = StillCondition::kNight;
+  return {{"real", ReadLandingReal(options.data_dir), true},
+          {"hard", ReadLandingHard(options.data_dir)},
+          {"own below 2 m", {MakeStills(options.stills, StillsFrom(0.35, 2))}},
+          {"own above", {MakeStills(options.stills, StillsFrom(2, 14))}},
+          {"cut off, below 1.2 m", {MakeStills(options.stills, StillsFrom(0.3, 1.2, 0.75))}},
+          {"cut off, above 3 m", {MakeStills(options.stills, StillsFrom(3, 14, 0.85))}},
+          {"night, below 0.8 m", {MakeStills(4 * options.stills, night, false)}},
+          {"none", {MakeLookalikes(options.lookalikes)}, true}};
+}
+
 int Report(const Options& options) {
-  const std::vector<LandingFrameSet> real = ReadLandingReal(options.data_dir);
-  const std::vector<LandingFrameSet> hard = ReadLandingHard(options.data_dir);
-  const std::vector<LandingFrameSet> near = {MakeStills(options.stills, 0.35, 2)};
-  const std::vector<LandingFrameSet> far = {MakeStills(options.stills, 2, 14)};
-  const std::vector<LandingFrameSet> none = {MakeLookalikes(options.lookalikes)};
-  if (real.empty() || hard.empty()) {
-    fmt::print("skipped: landing_real and landing_hard are not both in {}\n\n", options.data_dir);
+  const std::vector<Column> columns = MakeColumns(options);
+  std::string head = "| without |", rule = "|---|";
+  for (const Column& column : columns) {
+    std::size_t frames = 0;
+    for (const LandingFrameSet& set : column.sets) frames += set.frames.size();
+    head += fmt::format(" {}, of {}{} |", column.name, frames,
+                        column.is_timed ? "; ms of a frame" : "");
+    rule += "---|";
   }
-  fmt::print(
-      "| without | real: found | hard: found | own below 2 m | own above | false, all | a real "
-      "frame, ms | one without the pattern, ms |\n|---|---|---|---|---|---|---|---|\n");
+  fmt::print("{} false |\n{}---|\n", head, rule);
   for (const auto& [name, bits] : AllSkipped()) {
-    const std::uint32_t skipped = bits | SkippedAlways(options.skip);
-    const Result by_real = Score(real, skipped), by_hard = Score(hard, skipped);
-    const Result by_near = Score(near, skipped), by_far = Score(far, skipped);
-    const Result by_none = Score(none, skipped);
     int falsely = 0;
-    for (const Result* result : {&by_real, &by_hard, &by_near, &by_far, &by_none}) {
-      falsely += False(result->tally);
+    fmt::print("| {} |", name);
+    for (const Column& column : columns) {
+      const Result result = Score(column.sets, bits | SkippedAlways(options.skip));
+      falsely += False(result.tally);
+      fmt::print(" {}", Found(result.tally));
+      if (column.is_timed) fmt::print("; {:.2f}", result.ms);
+      fmt::print(" |");
     }
-    fmt::print("| {} | {} | {} | {} | {} | {} | {:.2f} | {:.2f} |\n", name, Found(by_real.tally),
-               Found(by_hard.tally), Found(by_near.tally), Found(by_far.tally), falsely, by_real.ms,
-               by_none.ms);
+    fmt::print(" {} |\n", falsely);
     std::fflush(stdout);
   }
   return 0;

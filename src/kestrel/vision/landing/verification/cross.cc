@@ -30,8 +30,8 @@ const DirectionTable& Directions() {
 
 }  // namespace
 
-std::optional<double> FindArmAngle(const cv::Mat& image, const PatternView& view,
-                                   const LandingPattern& pattern, double min_contrast) {
+std::optional<ArmDirection> FindArms(const cv::Mat& image, const PatternView& view,
+                                     const LandingPattern& pattern) {
   // For each direction modulo a right angle: how much darker it is than the image beside it, as the
   // mean over the half arms and radii in view.
   std::array<float, kPerQuarter> sum{};
@@ -59,13 +59,13 @@ std::optional<double> FindArmAngle(const cv::Mat& image, const PatternView& view
     if (seen[i] >= kMinSeen) depth[i] = sum[i] / static_cast<float>(seen[i]);
   }
   const auto best = std::max_element(depth.begin(), depth.end());
-  if (*best < min_contrast) return std::nullopt;
+  if (*best <= 0) return std::nullopt;
   const auto index = static_cast<int>(best - depth.begin());
   const double left = depth[(index + kPerQuarter - 1) % kPerQuarter];
   const double right = depth[(index + 1) % kPerQuarter];
   const double curvature = left - 2 * *best + right;
   const double shift = curvature < 0 ? 0.5 * (left - right) / curvature : 0;
-  return (index + shift) * 2 * std::numbers::pi / kRingDirections;
+  return ArmDirection{(index + shift) * 2 * std::numbers::pi / kRingDirections, *best};
 }
 
 }  // namespace kestrel

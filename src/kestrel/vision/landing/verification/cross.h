@@ -10,11 +10,16 @@
 
 namespace kestrel {
 
-// Returns the direction of an arm of the cross inside of a ring (rad in the plane of the view,
-// modulo pi / 2): the one that is darkest against what lies beside it, over the half arms in view,
-// whatever hides the others. Nothing when no direction is darker by 'min_contrast' gray values. It
-// is a proposal: another figure in the ring has such a direction, too.
-std::optional<double> FindArmAngle(const cv::Mat& image, const PatternView& view,
-                                   const LandingPattern& pattern, double min_contrast);
+// The direction of an arm of a cross.
+struct ArmDirection {
+  double angle;     // rad in the plane of a view, modulo pi / 2
+  double contrast;  // gray values, of the arms and what lies beside them
+};
+
+// Returns the direction inside of a ring that is darkest against what lies beside it, over the half
+// arms in view, whatever hides the others; nothing when no direction is darker. It is a proposal:
+// another figure in the ring has such a direction, too.
+std::optional<ArmDirection> FindArms(const cv::Mat& image, const PatternView& view,
+                                     const LandingPattern& pattern);
 
 }  // namespace kestrel

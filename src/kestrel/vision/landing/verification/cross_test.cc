@@ -14,19 +14,19 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 const LandingPattern kPattern{};
 
-class FindArmAngleTest : public ::testing::Test {
+class FindArmsTest : public ::testing::Test {
  protected:
   // Finds the direction in a print seen from straight above, in the view of its ring. The image
   // shows the columns from 'first_column' on.
-  std::optional<double> Find(const Print& print, double angle, int first_column = 0,
-                            int shadow_column = 0) const {
+  std::optional<ArmDirection> Find(const Print& print, double angle, int first_column = 0,
+                                   int shadow_column = 0) const {
     const RigidTransform pose = PrintPose({0, 0, 1.2}, 0, 0, 0);
     RigidTransform turned = pose;
     turned.rotation *= Eigen::Quaterniond(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()));
     cv::Mat image = DrawPrint(camera_, kPattern, print, turned);
     if (shadow_column > 0) image.colRange(0, shadow_column) *= 0.4;
     const PatternView view(camera_, pose, 0.6, {{first_column, 0}, 0});
-    return FindArmAngle(image.colRange(first_column, image.cols), view, kPattern, 10);
+    return FindArms(image.colRange(first_column, image.cols), view, kPattern);
   }
   static double ErrorModuloRightAngle(double found, double angle) {
     return std::abs(std::remainder(found - angle, std::numbers::pi / 2));
@@ -36,27 +36,29 @@ class FindArmAngleTest : public ::testing::Test {
   const Print pattern_ = SpokedPrint(kPattern, 4);
 };
 
-TEST_F(FindArmAngleTest, FindsTheArms) {
+TEST_F(FindArmsTest, FindsTheArms) {
   for (double angle = 0; angle < 1.57; angle += 0.2) {
     const auto found = Find(pattern_, angle);
     ASSERT_TRUE(found) << angle;
-    EXPECT_LT(ErrorModuloRightAngle(*found, angle), 2 * kDegree) << angle;
+    EXPECT_LT(ErrorModuloRightAngle(found->angle, angle), 2 * kDegree) << angle;
   }
 }
 
-TEST_F(FindArmAngleTest, FindsThemInHalfOfThePrintAndAcrossShadow) {
+TEST_F(FindArmsTest, FindsThemInHalfOfThePrintAndAcrossShadow) {
   for (double angle = 0; angle < 1.57; angle += 0.2) {
     const auto cut_off = Find(pattern_, angle, 165);
     ASSERT_TRUE(cut_off) << angle;
-    EXPECT_LT(ErrorModuloRightAngle(*cut_off, angle), 4 * kDegree) << angle;
+    EXPECT_LT(ErrorModuloRightAngle(cut_off->angle, angle), 4 * kDegree) << angle;
     const auto shadowed = Find(pattern_, angle, 0, 150);
     ASSERT_TRUE(shadowed) << angle;
-    EXPECT_LT(ErrorModuloRightAngle(*shadowed, angle), 4 * kDegree) << angle;
+    EXPECT_LT(ErrorModuloRightAngle(shadowed->angle, angle), 4 * kDegree) << angle;
   }
 }
 
-TEST_F(FindArmAngleTest, EmptyRingHasNone) {
-  EXPECT_FALSE(Find([](double x, double y) { return IsRing(kPattern, x, y); }, 0));
+TEST_F(FindArmsTest, EmptyRingHasNoContrast) {
+  const auto found = Find([](double x, double y) { return IsRing(kPattern, x, y); }, 0);
+  EXPECT_LT(found ? found->contrast : 0, 10);
+  EXPECT_GT(Find(pattern_, 0)->contrast, 100);
 }
 
 }  // namespace

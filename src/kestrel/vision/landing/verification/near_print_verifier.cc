@@ -14,9 +14,9 @@
 namespace kestrel {
 namespace {
 
-// Least agreement of a pose that is located. A pose beside the print may miss an arm, and the edges
-// may still bring it into place.
-constexpr double kWorthLocating = 0.4;
+// Least contrast of the arms of a print that is aligned, as a share of the ring's. A pose beside
+// the print, or a shadow, may take the rest.
+constexpr double kLeastArms = 0.2;
 // Distance of the centres of two rings that count as the same where one was seen to be something
 // else, as a share of the shorter axis.
 constexpr double kSameSign = 0.12;
@@ -52,6 +52,11 @@ Eigen::Vector2d CenterPx(const PatternLocation& location, const PrintAlignment& 
 
 double MeanDiameter(const PrintFinding& finding) { return std::sqrt(finding.diameters_px.prod()); }
 
+RigidTransform Turned(const RigidTransform& pose, double angle) {
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()));
+  return {pose.rotation * turn, pose.translation};
+}
+
 double LogShare(double length_px, double of_px) {
   constexpr double kLeast = 1e-4;
   return std::log(std::max(kLeast, length_px / of_px));
@@ -60,7 +65,6 @@ double LogShare(double length_px, double of_px) {
 }  // namespace
 
 void NearPrintBuffers::Reserve() {
-  cross_lines.Reserve();
   tested.Reserve();
   refused.Reserve();
 }
@@ -79,8 +83,7 @@ void NearPrintVerifier::Test(const RingCandidate& ring) {
   const double diameter_px = ring.diameters_px.x();
   bool has_cross = false;
   for (const int pose : order.poses) {
-    std::optional<Hypothesis> print = FindCross(PatternPose(ring.poses[pose], 0), diameter_px);
-    if (print) print = Compare(print->camera_from_pattern, diameter_px);
+    const auto print = FindCross(PatternPose(ring.poses[pose], 0), diameter_px);
     has_cross |= print.has_value();
     if (print && TestPrint(*print, ring.diameters_px, ring.reach_px, ring.poses, order)) return;
   }
@@ -91,8 +94,7 @@ void NearPrintVerifier::Test(const RingCandidate& ring) {
       const auto refined = RefineRing(ring.poses[pose], farther * ring.reach_px, kRefinements);
       if (!refined) continue;
       is_whole |= refined->is_whole;
-      std::optional<Hypothesis> print = FindCross(refined->camera_from_pattern, diameter_px);
-      if (print) print = Compare(print->camera_from_pattern, diameter_px);
+      const auto print = FindCross(refined->camera_from_pattern, diameter_px);
       has_cross |= print.has_value();
       if (print && TestPrint(*print, ring.diameters_px, ring.reach_px, ring.poses, order)) return;
     }
@@ -127,30 +129,30 @@ void NearPrintVerifier::TestCross(const RigidTransform& pose, const ImageRegion&
   const double angle =
       std::atan2(search_.models.options.pattern.outer_radius_m(), pose.translation.norm());
   const double diameter_px = 2 * search_.models.camera.intrinsics().fx_px * angle;
-  const std::optional<Hypothesis> print = Compare(pose, diameter_px);
-  if (!print) return;
+  const PatternView view(search_.models.camera, pose, search_.models.ring_probe.extent_m(), region);
+  if (!view.valid()) return;
+  const auto arms = FindArms(search_.image.At(region.level), view, search_.models.options.pattern);
+  if (!arms || arms->contrast < GrayContrast::kLeastRing) return;
   const double reach_px = std::max(kLeastReachPx, region.scale() + kCrossReach * diameter_px);
   const CirclePose ring{pose.translation, pose.rotation * Eigen::Vector3d::UnitZ()};
-  TestPrint(*print, Eigen::Vector2d::Constant(diameter_px), reach_px, {&ring, 1}, {});
+  TestPrint({Turned(pose, arms->angle), arms->contrast}, Eigen::Vector2d::Constant(diameter_px),
+            reach_px, {&ring, 1}, {});
 }
 
-// Returns the print whose ring lies as that of 'ring', turned as the cross inside. Not yet compared
-// with the image.
+// Returns the print whose ring lies as that of 'ring', turned as the cross inside, if it has arms.
 std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::FindCross(
     const RigidTransform& ring, double diameter_px) {
   const SearchLog::Timer timer = search_.log.Time(LandingStage::kCross);
   const ImageRegion region = search_.image.RegionAt(ViewLevel(diameter_px));
   const cv::Mat image = search_.image.At(region.level);
-  const PatternView view(search_.models.camera, ring, search_.models.matcher.extent_m(), region);
+  const RingProbe& probe = search_.models.ring_probe;
+  const PatternView view(search_.models.camera, ring, probe.extent_m(), region);
   if (!view.valid()) return std::nullopt;
-  const double contrast = search_.models.matcher.RingContrast(image, view);
+  const double contrast = probe.Contrast(image, view);
   if (contrast < GrayContrast::kLeastRing) return std::nullopt;
-  const std::optional<double> angle =
-      FindArmAngle(image, view, search_.models.options.pattern, GrayContrast::kLeastRing / 2);
-  if (!angle) return std::nullopt;
-  RigidTransform turned = ring;
-  turned.rotation *= Eigen::Quaterniond(Eigen::AngleAxisd(*angle, Eigen::Vector3d::UnitZ()));
-  return Hypothesis{turned, contrast};
+  const auto arms = FindArms(image, view, search_.models.options.pattern);
+  if (!arms || arms->contrast < kLeastArms * contrast) return std::nullopt;
+  return Hypothesis{Turned(ring, arms->angle), contrast};
 }
 
 // Fits a ring to the edges of both of its circles before its inside is examined: where the ring is
@@ -163,26 +165,13 @@ std::optional<RingLocation> NearPrintVerifier::RefineRing(const CirclePose& ring
                                            search_.prior.LevelPrior(ring.normal));
 }
 
-// Returns nothing for a pose under which the image does not resemble the print at all.
-std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::Compare(const RigidTransform& pose,
-                                                                        double diameter_px) {
-  const SearchLog::Timer timer = search_.log.Time(LandingStage::kMatch);
-  search_.log.Reach(LandingStage::kMatch, "ring and cross do not look like the pattern");
-  const ImageRegion region = search_.image.RegionAt(ViewLevel(diameter_px));
-  const PatternView view(search_.models.camera, pose, search_.models.matcher.extent_m(), region);
-  if (!view.valid()) return std::nullopt;
-  const PatternMatch match = search_.models.matcher.Match(search_.image.At(region.level), view);
-  if (match.Agreement() < kWorthLocating) return std::nullopt;
-  return Hypothesis{pose, match.contrast};
-}
-
 // True when the print is accepted as the pattern. Whether it looks like the pattern is decided by
 // the image alone; the lens decides only where it is.
 bool NearPrintVerifier::TestPrint(const Hypothesis& print, const Eigen::Vector2d& diameters_px,
                                   double reach_px, std::span<const CirclePose> rings,
                                   const PriorKnowledge::Order& order) {
   const SearchLog::Timer timer = search_.log.Time(LandingStage::kLocate);
-  search_.log.Reach(LandingStage::kLocate, "ring and cross have too few edges");
+  search_.log.Reach(LandingStage::kMatch, "ring and cross have too few edges");
   const ImageRegion region = search_.image.RegionAt(ViewLevel(diameters_px.x()));
   const cv::Mat image = search_.image.At(region.level);
   PrintAlignment alignment{PlaneWarp(search_.models.camera, print.camera_from_pattern,
@@ -193,6 +182,7 @@ bool NearPrintVerifier::TestPrint(const Hypothesis& print, const Eigen::Vector2d
                   reach_px, min_step, &alignment)) {
     return false;
   }
+  search_.log.Reach(LandingStage::kLocate, "no pose explains the edges");
   const PatternView view(alignment.warp, search_.models.ink.extent_m(), region);
   if (!view.valid()) return false;
   PrintFinding finding;

@@ -121,8 +121,7 @@ std::optional<PrintFinding> SmallPrintVerifier::FindingOf(const SmallPatternFitt
   const PatternView view(search_.models.camera, pose, search_.models.ink.extent_m(), {});
   if (!view.valid()) return std::nullopt;
   const double seen = search_.models.ink.Doubt(search_.image.whole(), view, &finding.doubts);
-  finding.method =
-      seen < PrintPlaces::kWhole ? DetectionMethod::kPartial : DetectionMethod::kRing;
+  finding.method = seen < PrintPlaces::kWhole ? DetectionMethod::kPartial : DetectionMethod::kRing;
   finding.doubts[PrintDoubt::kHidden] = 1 - seen;
   DoubtGrayValues(fit, &finding.doubts);
   DoubtView(finding.diameters_px, finding.relative_sigma(), &finding.doubts);
@@ -152,10 +151,10 @@ SmallPatternFitter::Start SmallPrintVerifier::FindStart(const CirclePose& pose,
 // Returns the direction of an arm of a small cross.
 std::optional<double> SmallPrintVerifier::ArmAngle(const CirclePose& pose) {
   const PatternView view(search_.models.camera, PatternPose(pose, 0),
-                         search_.models.matcher.extent_m(), {});
+                         search_.models.ring_probe.extent_m(), {});
   if (!view.valid()) return std::nullopt;
-  return FindArmAngle(search_.image.whole(), view, search_.models.options.pattern,
-                      GrayContrast::kLeastRing / 2);
+  const auto arms = FindArms(search_.image.whole(), view, search_.models.options.pattern);
+  return arms ? std::optional(arms->angle) : std::nullopt;
 }
 
 }  // namespace kestrel
