@@ -30,6 +30,7 @@
 #include "landing_frames.h"
 #include "landing_hardships.h"
 #include "landing_score.h"
+#include "landing_signs.h"
 #include "landing_variants.h"
 #include "print_score_training.h"
 #include "report_main.h"
@@ -93,6 +94,9 @@ class StillSources {
     AddLookalikes();
     AddWorn();
     for (int c = 1; c < kStillConditions; ++c) AddFlatLookalikes(c, 80);
+    for (const SignKind& kind : SignKinds()) {
+      if (!kind.is_held_out) AddSigns(kind);
+    }
   }
 
   std::vector<TrainingSource> Take() { return std::move(sources_); }
@@ -107,7 +111,8 @@ class StillSources {
       {{kLowest, 1}, {1, 2}, {2, 4}, {4, 8}, {8, kHighest}}};
 
   void AddPatterns() {
-    constexpr std::array<int, kStillConditions> kStills{500, 600, 400, 300, 500, 500, 250, 250};
+    constexpr std::array<int, kStillConditions> kStills{500, 600, 400, 300, 500,
+                                                        500, 250, 250, 400};
     for (int c = 0; c < kStillConditions; ++c) {
       for (const AltitudeBin& bin : kBins) {
         LandingStillOptions options = OptionsOf(c);
@@ -116,6 +121,14 @@ class StillSources {
         AddPattern(fmt::format("{}, {}", ToString(options.condition), bin.Name()), options,
                    kStills[c] / static_cast<int>(kBins.size()));
       }
+    }
+    // Below 3 m most prints are cut off by the image.
+    constexpr int kCut = 90;
+    for (int c = 0; c < kStillConditions; ++c) {
+      LandingStillOptions options = OptionsOf(c);
+      options.max_altitude_m = 3;
+      options.max_visible_fraction = 0.75;
+      AddPattern(fmt::format("{}, cut off", ToString(options.condition)), options, kCut);
     }
     constexpr int kBent = 60;
     for (const PrintError& print : PrintErrors().subspan(1)) {
@@ -221,6 +234,23 @@ class StillSources {
           folder, fmt::format("{}_{}", name, i), [&] { return maker->PlaceLookalikes(first + i); },
           [&] { return maker->MakeLookalikes(first + i); });
       return FrameFromLookalikes(still, name, first + i);
+    };
+  }
+
+  // Adds a sign, or the pattern, in all lights and exposures, whole and cut off.
+  void AddSigns(const SignKind& kind) {
+    constexpr std::size_t kSeeds = 3, kExposures = kSignWhites.size();
+    TrainingSource source;
+    source.name = std::string("sign, ") + kind.name;
+    std::replace(source.name.begin(), source.name.end(), ' ', '_');
+    source.camera = PaperCamera();
+    source.count = static_cast<std::size_t>(scale_ * kSeeds * kSignLights * 2) * kExposures;
+    source.changes = {Change::kNone, Change::kOtherCamera};
+    sources_.push_back(std::move(source));
+    sources_.back().make = [&kind, first = FirstSeed()](std::size_t i) {
+      const auto light = static_cast<SignLight>(i / kExposures % kSignLights);
+      const bool is_cut_off = i / kExposures / kSignLights % 2 == 1;
+      return RenderSign(kind, light, is_cut_off, first + i / kExposures)[i % kExposures];
     };
   }
 

@@ -85,7 +85,7 @@ void LandingSearch::TakeSteps() {
     const int index = (first + i) % (2 * static_cast<int>(kSearchSteps));
     const bool is_first_round = index < static_cast<int>(kSearchSteps);
     const SearchStep& step = kSteps[index % kSearchSteps];
-    if ((models_.options.skipped_steps >> (index % kSearchSteps)) & 1) continue;
+    if ((models_.skipped_steps >> (index % kSearchSteps)) & 1) continue;
     if (is_first_round ? !prior_.Suits(step) : is_likely_all && prior_.Suits(step)) continue;
     const cv::Rect& part = is_first_round ? likely : all;
     image_.Choose(part, SizeOf(step));
