@@ -130,6 +130,29 @@ class StillSources {
       options.max_visible_fraction = 0.75;
       AddPattern(fmt::format("{}, cut off", ToString(options.condition)), options, kCut);
     }
+    // A lens of 90 degrees shows no ring in the last decimetres.
+    constexpr int kNarrow = 60;
+    for (int c = 0; c < kStillConditions; ++c) {
+      LandingStillOptions options = OptionsOf(c);
+      options.camera = {.width_px = 640,
+                        .height_px = 480,
+                        .fx_px = 320,
+                        .fy_px = 320,
+                        .cx_px = 319.5,
+                        .cy_px = 239.5,
+                        .distortion_model = DistortionModel::kNone,
+                        .distortion = {}};
+      options.min_altitude_m = 0.2;
+      options.max_altitude_m = 1.2;
+      options.max_tilt_deg = 20;
+      options.min_visible_fraction = 0.15;
+      AddPattern(fmt::format("{}, lens of 90 degrees", ToString(options.condition)), options,
+                 kNarrow);
+      options.lookalikes = LookalikeSet::kWithCounterfeits;
+      options.max_altitude_m = kHighest;
+      options.min_lookalike_visible = kCutOff;
+      AddLookalike("look-alikes in a lens of 90 degrees", options, kNarrow);
+    }
     constexpr int kBent = 60;
     for (const PrintError& print : PrintErrors().subspan(1)) {
       LandingStillOptions options = OptionsOf(0);
@@ -199,7 +222,7 @@ class StillSources {
     TrainingSource source;
     source.name = name;
     std::replace(source.name.begin(), source.name.end(), ' ', '_');
-    source.camera = PaperCamera();
+    source.camera = options.camera;
     source.count = static_cast<std::size_t>(scale_ * count);
     source.changes = {Change::kNone, Change::kOtherCamera};
     if (options.condition == StillCondition::kMixed) source.changes.push_back(Change::kHardToSee);

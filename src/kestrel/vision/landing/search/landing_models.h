@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 
 #include "kestrel/core/camera/camera_model.h"
@@ -36,6 +37,8 @@ struct LandingModels {
   SmallPatternFitter small;
   // Steps of the search plan that are left out, a bit each: a benchmark measures what each finds.
   std::uint32_t skipped_steps = 0;
+  // The clock that bounds a search; a test has its own.
+  std::chrono::steady_clock::time_point (*now)() = &std::chrono::steady_clock::now;
 };
 
 }  // namespace kestrel

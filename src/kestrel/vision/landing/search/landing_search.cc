@@ -34,7 +34,7 @@ LandingSearch::LandingSearch(const LandingModels& models, const cv::Mat& image,
     : models_(models),
       hint_(hint),
       buffers_(*buffers),
-      start_(std::chrono::steady_clock::now()),
+      start_(models.now()),
       log_(&report_),
       prior_(hint, models.options, models.camera),
       image_(image, &buffers->image, &log_),
@@ -133,7 +133,7 @@ bool LandingSearch::IsOutOfTime() const {
   const double told_ms = models_.options.max_search_ms;
   const double limit_ms = told_ms > 0 ? told_ms : hint_.max_search_ms;
   if (limit_ms == 0) return false;
-  const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start_;
+  const std::chrono::duration<double, std::milli> spent = models_.now() - start_;
   return spent.count() > limit_ms;
 }
 
