@@ -70,7 +70,8 @@ std::string NameOf(unsigned bit) {
 }
 
 // Returns a still whose image is kept in a folder: it is read if it exists, else rendered and
-// written. Empty folder: nothing is kept.
+// written. Empty folder: nothing is kept. The seeds follow from the order of the sources: a new one
+// comes last, or the folder is emptied.
 template <class Still>
 Still Kept(const std::string& folder, const std::string& name, const std::function<Still()>& place,
            const std::function<Still()>& render) {
@@ -97,6 +98,7 @@ class StillSources {
     for (const SignKind& kind : SignKinds()) {
       if (!kind.is_held_out) AddSigns(kind);
     }
+    AddNarrowLens();
   }
 
   std::vector<TrainingSource> Take() { return std::move(sources_); }
@@ -118,8 +120,10 @@ class StillSources {
         LandingStillOptions options = OptionsOf(c);
         options.min_altitude_m = bin.min_m;
         options.max_altitude_m = bin.max_m;
+        // At night small prints drown in noise.
+        const bool is_seen = options.condition != StillCondition::kNight || bin.max_m <= 2;
         AddPattern(fmt::format("{}, {}", ToString(options.condition), bin.Name()), options,
-                   kStills[c] / static_cast<int>(kBins.size()));
+                   is_seen ? kStills[c] / static_cast<int>(kBins.size()) : 0);
       }
     }
     // Below 3 m most prints are cut off by the image.
@@ -129,29 +133,6 @@ class StillSources {
       options.max_altitude_m = 3;
       options.max_visible_fraction = 0.75;
       AddPattern(fmt::format("{}, cut off", ToString(options.condition)), options, kCut);
-    }
-    // A lens of 90 degrees shows no ring in the last decimetres.
-    constexpr int kNarrow = 60;
-    for (int c = 0; c < kStillConditions; ++c) {
-      LandingStillOptions options = OptionsOf(c);
-      options.camera = {.width_px = 640,
-                        .height_px = 480,
-                        .fx_px = 320,
-                        .fy_px = 320,
-                        .cx_px = 319.5,
-                        .cy_px = 239.5,
-                        .distortion_model = DistortionModel::kNone,
-                        .distortion = {}};
-      options.min_altitude_m = 0.2;
-      options.max_altitude_m = 1.2;
-      options.max_tilt_deg = 20;
-      options.min_visible_fraction = 0.15;
-      AddPattern(fmt::format("{}, lens of 90 degrees", ToString(options.condition)), options,
-                 kNarrow);
-      options.lookalikes = LookalikeSet::kWithCounterfeits;
-      options.max_altitude_m = kHighest;
-      options.min_lookalike_visible = kCutOff;
-      AddLookalike("look-alikes in a lens of 90 degrees", options, kNarrow);
     }
     constexpr int kBent = 60;
     for (const PrintError& print : PrintErrors().subspan(1)) {
@@ -181,6 +162,32 @@ class StillSources {
       AddLookalike("held-out look-alikes cut off", cut, kHeldOut);
     }
     AddFlatLookalikes(0, 200);
+  }
+
+  // A lens of 90 degrees shows no ring in the last decimetres.
+  void AddNarrowLens() {
+    constexpr int kNarrow = 60;
+    for (int c = 0; c < kStillConditions; ++c) {
+      LandingStillOptions options = OptionsOf(c);
+      options.camera = {.width_px = 640,
+                        .height_px = 480,
+                        .fx_px = 320,
+                        .fy_px = 320,
+                        .cx_px = 319.5,
+                        .cy_px = 239.5,
+                        .distortion_model = DistortionModel::kNone,
+                        .distortion = {}};
+      options.min_altitude_m = 0.2;
+      options.max_altitude_m = 1.2;
+      options.max_tilt_deg = 20;
+      options.min_visible_fraction = 0.15;
+      AddPattern(fmt::format("{}, lens of 90 degrees", ToString(options.condition)), options,
+                 kNarrow);
+      options.lookalikes = LookalikeSet::kWithCounterfeits;
+      options.max_altitude_m = kHighest;
+      options.min_lookalike_visible = kCutOff;
+      AddLookalike("look-alikes in a lens of 90 degrees", options, kNarrow);
+    }
   }
 
   // Adds prints and look-alikes that are dirty and scraped.
@@ -463,6 +470,7 @@ void ReportHardships(const PrintScore& score, const std::vector<ScoredFrame>& fr
 struct Options {
   std::string output, findings, images;
   double scale = 1;
+  bool keeps_small = false;
 };
 
 void Run(const Options& options) {
@@ -477,7 +485,11 @@ void Run(const Options& options) {
       frames.begin(), frames.end(), [](const ScoredFrame& frame) { return !frame.is_held_out; });
   const std::vector<ScoredFrame> tests(held_out, frames.end());
   frames.erase(held_out, frames.end());
-  const PrintScore score = TrainPrintScore(frames);
+  PrintScore score = TrainPrintScore(frames);
+  if (options.keeps_small) {
+    constexpr auto kSmall = static_cast<std::size_t>(PrintKind::kAsAWhole);
+    score[kSmall] = kPrintWeights[kSmall];
+  }
   Report("Stills that were trained on", score, frames);
   Report("Held-out stills", score, tests);
   ReportHardships(score, tests);
@@ -496,6 +508,7 @@ int main(int argc, char** argv) {
                  "File of findings: read when it is there, else written");
   app.add_option("--images", options.images, "Folder that keeps the rendered stills")
       ->check(CLI::ExistingDirectory);
+  app.add_flag("--keep-small", options.keeps_small, "The weights of small prints stay as they are");
   app.add_option("--scale", options.scale, "Share of the stills, of 8,700");
   CLI11_PARSE(app, argc, argv);
   cv::setNumThreads(1);
