@@ -44,7 +44,7 @@ foreach(program landing_benchmark landing_speed)
                              PRIVATE KESTREL_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
 endforeach()
 
-add_executable(train_print_score train_print_score.cc print_score_training.cc landing_falsehoods.cc
+add_executable(train_print_score train_print_score.cc print_score_training.cc landing_falsehoods.cc landing_signs.cc
                                  landing_frames.cc landing_hardships.cc landing_score.cc
                                  landing_variants.cc)
 target_link_libraries(train_print_score PRIVATE kestrel::codec kestrel::landing kestrel::recording

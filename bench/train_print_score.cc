@@ -30,6 +30,7 @@
 #include "landing_frames.h"
 #include "landing_hardships.h"
 #include "landing_score.h"
+#include "landing_signs.h"
 #include "landing_variants.h"
 #include "print_score_training.h"
 #include "report_main.h"
@@ -69,7 +70,8 @@ std::string NameOf(unsigned bit) {
 }
 
 // Returns a still whose image is kept in a folder: it is read if it exists, else rendered and
-// written. Empty folder: nothing is kept.
+// written. Empty folder: nothing is kept. The seeds follow from the order of the sources: a new one
+// comes last, or the folder is emptied.
 template <class Still>
 Still Kept(const std::string& folder, const std::string& name, const std::function<Still()>& place,
            const std::function<Still()>& render) {
@@ -93,6 +95,10 @@ class StillSources {
     AddLookalikes();
     AddWorn();
     for (int c = 1; c < kStillConditions; ++c) AddFlatLookalikes(c, 80);
+    for (const SignKind& kind : SignKinds()) {
+      if (!kind.is_held_out) AddSigns(kind);
+    }
+    AddNarrowLens();
   }
 
   std::vector<TrainingSource> Take() { return std::move(sources_); }
@@ -107,15 +113,26 @@ class StillSources {
       {{kLowest, 1}, {1, 2}, {2, 4}, {4, 8}, {8, kHighest}}};
 
   void AddPatterns() {
-    constexpr std::array<int, kStillConditions> kStills{500, 600, 400, 300, 500, 500, 250, 250};
+    constexpr std::array<int, kStillConditions> kStills{500, 600, 400, 300, 500,
+                                                        500, 250, 250, 400};
     for (int c = 0; c < kStillConditions; ++c) {
       for (const AltitudeBin& bin : kBins) {
         LandingStillOptions options = OptionsOf(c);
         options.min_altitude_m = bin.min_m;
         options.max_altitude_m = bin.max_m;
+        // At night small prints drown in noise.
+        const bool is_seen = options.condition != StillCondition::kNight || bin.max_m <= 2;
         AddPattern(fmt::format("{}, {}", ToString(options.condition), bin.Name()), options,
-                   kStills[c] / static_cast<int>(kBins.size()));
+                   is_seen ? kStills[c] / static_cast<int>(kBins.size()) : 0);
       }
+    }
+    // Below 3 m most prints are cut off by the image.
+    constexpr int kCut = 90;
+    for (int c = 0; c < kStillConditions; ++c) {
+      LandingStillOptions options = OptionsOf(c);
+      options.max_altitude_m = 3;
+      options.max_visible_fraction = 0.75;
+      AddPattern(fmt::format("{}, cut off", ToString(options.condition)), options, kCut);
     }
     constexpr int kBent = 60;
     for (const PrintError& print : PrintErrors().subspan(1)) {
@@ -145,6 +162,32 @@ class StillSources {
       AddLookalike("held-out look-alikes cut off", cut, kHeldOut);
     }
     AddFlatLookalikes(0, 200);
+  }
+
+  // A lens of 90 degrees shows no ring in the last decimetres.
+  void AddNarrowLens() {
+    constexpr int kNarrow = 60;
+    for (int c = 0; c < kStillConditions; ++c) {
+      LandingStillOptions options = OptionsOf(c);
+      options.camera = {.width_px = 640,
+                        .height_px = 480,
+                        .fx_px = 320,
+                        .fy_px = 320,
+                        .cx_px = 319.5,
+                        .cy_px = 239.5,
+                        .distortion_model = DistortionModel::kNone,
+                        .distortion = {}};
+      options.min_altitude_m = 0.2;
+      options.max_altitude_m = 1.2;
+      options.max_tilt_deg = 20;
+      options.min_visible_fraction = 0.15;
+      AddPattern(fmt::format("{}, lens of 90 degrees", ToString(options.condition)), options,
+                 kNarrow);
+      options.lookalikes = LookalikeSet::kWithCounterfeits;
+      options.max_altitude_m = kHighest;
+      options.min_lookalike_visible = kCutOff;
+      AddLookalike("look-alikes in a lens of 90 degrees", options, kNarrow);
+    }
   }
 
   // Adds prints and look-alikes that are dirty and scraped.
@@ -186,7 +229,7 @@ class StillSources {
     TrainingSource source;
     source.name = name;
     std::replace(source.name.begin(), source.name.end(), ' ', '_');
-    source.camera = PaperCamera();
+    source.camera = options.camera;
     source.count = static_cast<std::size_t>(scale_ * count);
     source.changes = {Change::kNone, Change::kOtherCamera};
     if (options.condition == StillCondition::kMixed) source.changes.push_back(Change::kHardToSee);
@@ -221,6 +264,23 @@ class StillSources {
           folder, fmt::format("{}_{}", name, i), [&] { return maker->PlaceLookalikes(first + i); },
           [&] { return maker->MakeLookalikes(first + i); });
       return FrameFromLookalikes(still, name, first + i);
+    };
+  }
+
+  // Adds a sign, or the pattern, in all lights and exposures, whole and cut off.
+  void AddSigns(const SignKind& kind) {
+    constexpr std::size_t kSeeds = 3, kExposures = kSignWhites.size();
+    TrainingSource source;
+    source.name = std::string("sign, ") + kind.name;
+    std::replace(source.name.begin(), source.name.end(), ' ', '_');
+    source.camera = PaperCamera();
+    source.count = static_cast<std::size_t>(scale_ * kSeeds * kSignLights * 2) * kExposures;
+    source.changes = {Change::kNone, Change::kOtherCamera};
+    sources_.push_back(std::move(source));
+    sources_.back().make = [&kind, first = FirstSeed()](std::size_t i) {
+      const auto light = static_cast<SignLight>(i / kExposures % kSignLights);
+      const bool is_cut_off = i / kExposures / kSignLights % 2 == 1;
+      return RenderSign(kind, light, is_cut_off, first + i / kExposures)[i % kExposures];
     };
   }
 
@@ -410,6 +470,7 @@ void ReportHardships(const PrintScore& score, const std::vector<ScoredFrame>& fr
 struct Options {
   std::string output, findings, images;
   double scale = 1;
+  bool keeps_small = false;
 };
 
 void Run(const Options& options) {
@@ -424,7 +485,11 @@ void Run(const Options& options) {
       frames.begin(), frames.end(), [](const ScoredFrame& frame) { return !frame.is_held_out; });
   const std::vector<ScoredFrame> tests(held_out, frames.end());
   frames.erase(held_out, frames.end());
-  const PrintScore score = TrainPrintScore(frames);
+  PrintScore score = TrainPrintScore(frames);
+  if (options.keeps_small) {
+    constexpr auto kSmall = static_cast<std::size_t>(PrintKind::kAsAWhole);
+    score[kSmall] = kPrintWeights[kSmall];
+  }
   Report("Stills that were trained on", score, frames);
   Report("Held-out stills", score, tests);
   ReportHardships(score, tests);
@@ -443,6 +508,7 @@ int main(int argc, char** argv) {
                  "File of findings: read when it is there, else written");
   app.add_option("--images", options.images, "Folder that keeps the rendered stills")
       ->check(CLI::ExistingDirectory);
+  app.add_flag("--keep-small", options.keeps_small, "The weights of small prints stay as they are");
   app.add_option("--scale", options.scale, "Share of the stills, of 8,700");
   CLI11_PARSE(app, argc, argv);
   cv::setNumThreads(1);

@@ -142,7 +142,7 @@ void BindLandingDetection(py::module_& module) {
              "Of the pose's error, float64 6 x 6: translation in the camera frame (m^2), rotation "
              "vector in the camera frame (rad^2).")
       .Field("method", &Detection::method,
-             "'quadrants', 'thinning', 'lines', 'partial', 'tags', 'letter', 'followed', 'other'.")
+             "'ring', 'partial', 'tags', 'letter', 'followed', 'other'.")
       .Field("quality", &Detection::quality, "Probability that it is the pad, 0 to 1.")
       .Field("semi_major_px", &Detection::semi_major_px, "Half of its longest extent, px.")
       .Field("semi_minor_px", &Detection::semi_minor_px, "Half of its extent across, px.")

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Enums are words in Python: "lines", "tracking". They are those of the tables and the command.
+// Enums are words in Python: "ring", "tracking". They are those of the tables and the command.
 
 #include <array>
 #include <string>

@@ -7,7 +7,7 @@ const shape = (layer: Shape["layer"], run: 1 | 2, label = ""): Shape => ({ layer
 
 const shapes = [
   shape("prediction", 1),
-  shape("detection", 1, "quadrants 0.93"),
+  shape("detection", 1, "ring 0.93"),
   shape("prediction", 2),
   shape("truth", 2, "lost"),
   shape("rejected", 2, "lines 0.61"),
@@ -17,7 +17,7 @@ const shapes = [
 test("over one picture the second run is a layer of its own, with what it found alone", () => {
   expect(together(shapes).map(({ layer, label }) => [layer, label])).toEqual([
     ["prediction", ""],
-    ["detection", "quadrants 0.93"],
+    ["detection", "ring 0.93"],
     ["second", "second: lines 0.61"],
     ["second", ""],
   ]);

@@ -95,12 +95,8 @@ std::vector<Eigen::Vector3d> TrackEllipse(const TurnState& motion) {
 // The recognised parts of the pattern.
 const char* InWords(DetectionMethod method) {
   switch (method) {
-    case DetectionMethod::kQuadrants:
+    case DetectionMethod::kRing:
       return "whole pattern";
-    case DetectionMethod::kThinning:
-      return "pattern, by the arms of its cross";
-    case DetectionMethod::kLines:
-      return "pattern, by the edges of its cross";
     case DetectionMethod::kPartial:
       return "part of the pattern";
     case DetectionMethod::kTags:

@@ -86,7 +86,7 @@ class ReplayConsoleTest : public testing::Test {
     for (std::size_t i = 0; i < kFrames / 2; ++i) {
       ReplayFrame& frame = result.frames[i];
       frame.mark = FrameMark::kFound;
-      frame.shapes = {{OverlayLayer::kDetection, {{188, 120}}, "quadrants 0.93"},
+      frame.shapes = {{OverlayLayer::kDetection, {{188, 120}}, "ring 0.93"},
                       {OverlayLayer::kPrediction, {{100, 50}}, ""}};
       frame.facts = {{"found", "yes"}};
     }
@@ -194,7 +194,7 @@ TEST_F(ReplayConsoleTest, DetectsAgainWithOtherOptions) {
   }
   EXPECT_EQ(shapes[0]["layer"], "detection");
   EXPECT_EQ(shapes[0]["run"], 2);
-  EXPECT_EQ(shapes[0]["label"], "quadrants 0.93");
+  EXPECT_EQ(shapes[0]["label"], "ring 0.93");
 }
 
 TEST_F(ReplayConsoleTest, SaysWhatEachRunFoundInTheFrame) {

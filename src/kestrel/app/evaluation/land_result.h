@@ -35,7 +35,7 @@ class LandResult {
  private:
   struct Row {
     DetectionRow detection;
-    DetectionMethod method = DetectionMethod::kQuadrants;
+    DetectionMethod method = DetectionMethod::kRing;
     double quality = 0;
     double misfit_px = 0;
     std::optional<std::int32_t> id;

@@ -61,7 +61,7 @@ TEST(ObservationFileTest, WritesALanding) {
   EXPECT_DOUBLE_EQ(result.number<double>(4), 15);
   EXPECT_EQ(result.bytes(5), "tracking");
   const ProtobufFields detection = result.message(7);
-  EXPECT_EQ(detection.bytes(1), "quadrants");
+  EXPECT_EQ(detection.bytes(1), "ring");
   EXPECT_DOUBLE_EQ(detection.message(3).number<double>(1), 32);  // 0 is a corner, not a centre
   EXPECT_THAT(detection.doubles(5), ElementsAre(0.01, 0, 0, 0, 0.01, 0, 0, 0, 0.01));
   const ProtobufFields target = result.message(8);

@@ -40,7 +40,7 @@ inline LandingObservation ObservedLanding(Time time) {
   found.camera_from_pattern.translation = {0, 0, 2};
   found.covariance.setIdentity();
   found.covariance *= 0.01;
-  found.method = DetectionMethod::kQuadrants;
+  found.method = DetectionMethod::kRing;
   found.quality = 0.9;
   observation.report.detection = found;
   observation.report.reached = LandingStage::kFound;

@@ -48,8 +48,4 @@ class BitImage {
 // Writes the complement of 'image' to 'inverse'.
 void InvertBits(const BitImage& image, BitImage* inverse);
 
-// Morphological closing with the cross of five pixels: fills gaps and notches of one or two pixels.
-// Pixels outside of the image are clear. 'scratch' is overwritten.
-void CloseBits(BitImage* image, BitImage* scratch);
-
 }  // namespace kestrel

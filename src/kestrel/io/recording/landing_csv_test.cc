@@ -14,7 +14,7 @@ LandingObservation Found() {
   detection.camera_from_pattern.translation = {0.1, -0.2, 3};
   detection.covariance.setZero();
   detection.covariance.diagonal().head<3>() = Eigen::Vector3d(0.0001, 0.0004, 0.0009);
-  detection.method = DetectionMethod::kLines;
+  detection.method = DetectionMethod::kRing;
   detection.quality = 0.875;
   detection.misfit_px = 0.125;
   LandingObservation observation;
@@ -29,7 +29,7 @@ auto Commas(const std::string& line) { return std::count(line.begin(), line.end(
 
 TEST(LandingCsv, RowOfADetectionWithoutPose) {
   EXPECT_EQ(LandingCsvRow("a/b.png", Found()),
-            "a/b.png,1234567890123456789,1,320.250,239.500,lines,0.8750,0.100000,-0.200000,3.000000"
+            "a/b.png,1234567890123456789,1,320.250,239.500,ring,0.8750,0.100000,-0.200000,3.000000"
             ",,,,,0.010000,0.020000,0.030000,,1.2500,0.125,\n");
 }
 
@@ -38,7 +38,7 @@ TEST(LandingCsv, RowOfADetectionInTheWorld) {
   observation.center_in_world = Eigen::Vector3d(10, 20, 0.5);
   observation.yaw_in_world = -0.25;
   EXPECT_EQ(LandingCsvRow("b", observation),
-            "b,1234567890123456789,1,320.250,239.500,lines,0.8750,0.100000,-0.200000,3.000000,"
+            "b,1234567890123456789,1,320.250,239.500,ring,0.8750,0.100000,-0.200000,3.000000,"
             "10.000000,20.000000,0.500000,-0.250000,0.010000,0.020000,0.030000,,1.2500,0.125,\n");
 }
 

@@ -129,9 +129,7 @@ void DrawMisfit(const LandingDetection& detection, const CameraModel& camera,
 // Name of a find for people who do not know how it was made.
 const char* InWords(DetectionMethod method) {
   switch (method) {
-    case DetectionMethod::kQuadrants:
-    case DetectionMethod::kThinning:
-    case DetectionMethod::kLines:
+    case DetectionMethod::kRing:
       return "ring and cross";
     case DetectionMethod::kPartial:
       return "a part of the pattern";

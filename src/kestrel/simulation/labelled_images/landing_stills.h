@@ -29,8 +29,7 @@ enum class StillCondition {
   kBlur,   // out of focus, or moving
   kNight,  // so little light that the noise is a tenth to a third of the contrast
 };
-// The conditions that the score is trained on; kNight is held out.
-inline constexpr int kStillConditions = 8;
+inline constexpr int kStillConditions = 9;
 const char* ToString(StillCondition condition);  // "mixed", "shadow of a UAV", ...
 
 struct LandingStillOptions {

@@ -224,7 +224,7 @@ TEST_F(LandingHintTest, WithoutABoundEverySearchIsWhole) {
     const LandingReport whole = Detect(image);
     EXPECT_EQ(whole.next_step, 0);
     ExpectSame(generous.Detect(image, {}, workspace_), whole);
-    for (const int first_step : {1, 7, 23, 30, -5, 1000}) {
+    for (const int first_step : {1, 7, 19, 30, -5, 1000}) {
       LandingHint hint;
       hint.first_step = first_step;
       const LandingReport report = Detect(image, hint);

@@ -32,9 +32,6 @@ struct LandingPatternDetectorOptions {
   // Time (ms) after which the search of a frame stops, to continue in the next one; 0: the hint's
   // limit.
   double max_search_ms = 0;
-  // Steps of the plan that are left out, a bit each. Not an option of users: a benchmark measures
-  // by it what a step finds.
-  std::uint32_t skipped_steps = 0;
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {

@@ -5,12 +5,8 @@ namespace kestrel {
 
 const char* ToString(DetectionMethod method) {
   switch (method) {
-    case DetectionMethod::kQuadrants:
-      return "quadrants";
-    case DetectionMethod::kThinning:
-      return "thinning";
-    case DetectionMethod::kLines:
-      return "lines";
+    case DetectionMethod::kRing:
+      return "ring";
     case DetectionMethod::kPartial:
       return "partial";
     case DetectionMethod::kTags:

@@ -17,12 +17,9 @@
 
 namespace kestrel {
 
-// Means by which a pad was recognised. The first four are of the ring with a cross: the method that
-// verified the cross, which depends on the size of the ring (paper, section 2.4).
+// Means by which a pad was recognised.
 enum class DetectionMethod {
-  kQuadrants,
-  kThinning,
-  kLines,
+  kRing,      // the ring with a cross
   kPartial,   // a part of the pad, the rest is out of view or hidden
   kTags,      // decoded tags
   kLetter,    // the letter of a helipad
@@ -30,11 +27,10 @@ enum class DetectionMethod {
   kOther,     // of a pad of one's own
 };
 inline constexpr std::array kDetectionMethods = {
-    DetectionMethod::kQuadrants, DetectionMethod::kThinning, DetectionMethod::kLines,
-    DetectionMethod::kPartial,   DetectionMethod::kTags,     DetectionMethod::kLetter,
-    DetectionMethod::kFollowed,  DetectionMethod::kOther,
+    DetectionMethod::kRing,   DetectionMethod::kPartial,  DetectionMethod::kTags,
+    DetectionMethod::kLetter, DetectionMethod::kFollowed, DetectionMethod::kOther,
 };
-// "quadrants", "thinning", "lines", "partial", "tags", "letter", "followed", "other"
+// "ring", "partial", "tags", "letter", "followed", "other"
 const char* ToString(DetectionMethod method);
 
 // The stages of a search, in order. A report names the last one that a candidate reached.

@@ -10,7 +10,7 @@ namespace kestrel {
 namespace {
 
 TEST(DetectionMethod, EachHasAWordOfItsOwn) {
-  EXPECT_STREQ(ToString(DetectionMethod::kQuadrants), "quadrants");
+  EXPECT_STREQ(ToString(DetectionMethod::kRing), "ring");
   EXPECT_STREQ(ToString(DetectionMethod::kPartial), "partial");
   std::set<std::string> words;
   for (const DetectionMethod method : kDetectionMethods) words.insert(ToString(method));

@@ -5,10 +5,10 @@
 
 #include <opencv2/core.hpp>
 
+#include "kestrel/vision/landing/alignment/part_shares.h"
 #include "kestrel/vision/landing/alignment/print_edges.h"
 #include "kestrel/vision/landing/alignment/print_outline.h"
 #include "kestrel/vision/landing/search/image_region.h"
-#include "kestrel/vision/landing/verification/pattern_match.h"
 #include "kestrel/vision/target/plane_warp.h"
 
 namespace kestrel {

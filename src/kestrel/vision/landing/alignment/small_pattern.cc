@@ -286,8 +286,7 @@ std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
   fit.ring_residual = zones.ring.Rms() / state.contrast;
   fit.correlation = system.correlation(state.noise_variance);
   fit.explained = system.explained(state.noise_variance);
-  fit.match.contrast = state.contrast;
-  MeasureParts(*workspace, state, &fit.match);
+  fit.shares = MeasureParts(*workspace, state);
   fit.frame_corners = FrameCorners(*workspace, state);
   fit.cross_correlation = CrossCorrelation(*workspace, state);
   return fit;

@@ -14,9 +14,9 @@
 #include "kestrel/core/camera/ray_table.h"
 #include "kestrel/core/geometry/cone.h"
 #include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/vision/landing/alignment/part_shares.h"
 #include "kestrel/vision/landing/landing_pattern.h"
 #include "kestrel/vision/landing/location/pattern_locator.h"
-#include "kestrel/vision/landing/verification/pattern_match.h"
 
 namespace kestrel {
 
@@ -94,7 +94,7 @@ class SmallPatternFitter {
 
   struct Fit {
     PatternLocation location;  // without edges
-    PatternMatch match;        // its shares are amplitudes of arms, white quadrants and ring
+    PartShares shares;         // amplitudes, as shares of the print's contrast
     // Correlation of the image with the fitted print, corrected for noise; 0 to 1.
     double correlation;
     // Share of the image's variance that the print explains beyond what so many unknowns explain of
@@ -163,8 +163,7 @@ class SmallPatternFitter {
   System Linearize(const State& state, double limit, SmallPatternWorkspace* workspace) const;
   bool Improve(const System& system, const std::optional<NormalPrior>& prior,
                const SmallPatternWorkspace& workspace, double limit, State* state) const;
-  void MeasureParts(const SmallPatternWorkspace& workspace, const State& state,
-                    PatternMatch* match) const;
+  PartShares MeasureParts(const SmallPatternWorkspace& workspace, const State& state) const;
   Parts SumParts(const SmallPatternWorkspace& workspace, const State& state) const;
   double FrameCorners(const SmallPatternWorkspace& workspace, const State& state) const;
   double CrossCorrelation(const SmallPatternWorkspace& workspace, const State& state) const;

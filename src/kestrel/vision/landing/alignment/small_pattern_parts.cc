@@ -93,29 +93,19 @@ SmallPatternFitter::Parts SmallPatternFitter::SumParts(const SmallPatternWorkspa
 
 // Fits amplitudes to the ring's quarters, to each half arm and to the white of each quadrant, on
 // top of white that may vary linearly over the print, and compares them with the print's contrast.
-void SmallPatternFitter::MeasureParts(const SmallPatternWorkspace& workspace, const State& state,
-                                      PatternMatch* match) const {
-  constexpr int kRing = Parts::kRing, kArm = Parts::kArm, kQuadrant = Parts::kQuadrant;
+PartShares SmallPatternFitter::MeasureParts(const SmallPatternWorkspace& workspace,
+                                            const State& state) const {
   Parts parts = SumParts(workspace, state);
   const Parts::Vector amplitude = parts.Amplitudes();
   const auto share = [&](int part) {
-    return std::clamp(-amplitude(part) / match->contrast, 0.0, 1.0);
+    return std::clamp(-amplitude(part) / state.contrast, 0.0, 1.0);
   };
-  int parts_seen = 0;
-  for (int k = 0; k < 4; ++k) {
-    const int before = (k + 3) % 4;
-    const bool is_ring_seen = parts.IsSeen(kRing, k);
-    const bool is_arm_seen = parts.IsArmSeen(k);
-    const bool is_quadrant_seen = parts.IsSeen(kQuadrant, k);
-    match->shares.ring[k] = is_ring_seen ? share(kRing + k) : -1;
-    match->shares.arm[k] = is_arm_seen ? share(kArm + k) : -1;
-    // Quarter k has half of quadrant k and half of the one before.
-    match->shares.quadrant[k] = is_quadrant_seen && parts.IsSeen(kQuadrant, before)
-                                    ? 1 - 0.5 * (share(kQuadrant + k) + share(kQuadrant + before))
-                                    : -1;
-    parts_seen += is_ring_seen + is_arm_seen + is_quadrant_seen;
+  PartShares shares;
+  for (int k = 0; k < Parts::kArms; ++k) {
+    shares.ring[k] = parts.IsSeen(Parts::kRing, k) ? share(Parts::kRing + k) : -1;
+    shares.arm[k] = parts.IsArmSeen(k) ? share(Parts::kArm + k) : -1;
   }
-  match->seen = parts_seen / static_cast<double>(Parts::kLight);
+  return shares;
 }
 
 }  // namespace kestrel

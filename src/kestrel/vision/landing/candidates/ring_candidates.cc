@@ -275,10 +275,9 @@ std::span<const RingCandidate> RingFinder::FindInArcs(SearchedImage* image, std:
 
 // True when a small ring is darker than its surroundings.
 bool RingFinder::StandsOut(const SearchedImage& image, const CirclePose& ring) const {
-  const PatternView view(models_.camera, PatternPose(ring, 0), models_.matcher.extent_m(),
+  const PatternView view(models_.camera, PatternPose(ring, 0), models_.ring_probe.extent_m(),
                          image.RegionAt(0));
-  return view.valid() &&
-         models_.matcher.RingContrast(image.At(0), view) >= GrayContrast::kLeastRing;
+  return view.valid() && models_.ring_probe.Contrast(image.At(0), view) >= GrayContrast::kLeastRing;
 }
 
 }  // namespace kestrel

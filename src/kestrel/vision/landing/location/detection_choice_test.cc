@@ -28,7 +28,7 @@ class DetectionChoiceTest : public ::testing::Test {
 PrintFinding FindingAt(const Eigen::Vector2d& center_px, double log_odds) {
   PrintFinding finding;
   finding.kind = PrintKind::kByEdges;
-  finding.method = DetectionMethod::kThinning;
+  finding.method = DetectionMethod::kRing;
   finding.location.camera_from_pattern = PrintPose({0.1, 0, 5}, 0.3, 1, 0.2);
   finding.location.covariance = 1e-4 * Eigen::Matrix<double, 6, 6>::Identity();
   finding.location.edge_rms_px = 0.3;

@@ -15,7 +15,7 @@ constexpr double kLeastSigma = 1e-4;
 double LogLacking(double correlation) { return std::log(std::max(kLeastLacking, 1 - correlation)); }
 
 void DoubtGrayValues(const SmallPatternFitter::Fit& fit, PrintDoubts* doubts) {
-  const PartShares::Means means = fit.match.shares.MeansInView();
+  const PartShares::Means means = fit.shares.MeansInView();
   (*doubts)[PrintDoubt::kFaintArm] = 1 - means.worst_arm;
   (*doubts)[PrintDoubt::kBrokenRing] = 1 - means.ring;
   (*doubts)[PrintDoubt::kFrameCorners] = fit.frame_corners;

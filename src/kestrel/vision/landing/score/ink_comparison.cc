@@ -76,6 +76,13 @@ class KnownValues {
   double Least() const { return empty() ? 0 : values_[first_]; }
   double Median() const { return empty() ? 0 : values_[(first_ + kCount) / 2]; }
   double FromTop(std::size_t rank) const { return std::max(0.0, values_[kCount - 1 - rank]); }
+  // Mean without the largest value, unless it is the only one.
+  double MeanButTop() const {
+    const std::size_t last = std::max(kCount - 1, first_ + 1);
+    const double sum = std::accumulate(values_.begin() + static_cast<std::ptrdiff_t>(first_),
+                                       values_.begin() + static_cast<std::ptrdiff_t>(last), 0.0);
+    return empty() ? 0 : sum / static_cast<double>(last - first_);
+  }
 
  private:
   std::array<double, kCount> values_;
@@ -176,6 +183,7 @@ void InkComparison::AddInk() {
   }
   const double middle = 0.5 * (pattern_.inner_radius_m() + pattern_.outer_radius_m());
   for (int s = 0; s < kSectors; ++s) {
+    const std::size_t begin = x_m_.size();
     for (int i = 0; i < kAroundSector; ++i) {
       const double turn = s - 0.5 + (i + 0.5) / kAroundSector;
       const double angle = turn * 2 * std::numbers::pi / kSectors;
@@ -184,6 +192,7 @@ void InkComparison::AddInk() {
         AddPlace(radius * std::cos(angle), radius * std::sin(angle));
       }
     }
+    ring_[s] = {begin, x_m_.size()};
   }
   ink_end_ = x_m_.size();
 }
@@ -358,6 +367,7 @@ double InkComparison::Doubt(const cv::Mat& image, const PatternView& view,
   }
   const Darkness darkness = MeasureDarkness(gray, levels);
   DoubtCross(darkness, doubts);
+  DoubtRing(darkness, doubts);
   DoubtBoard(darkness, doubts);
   InkCorrelation correlation;
   for (std::size_t i = 0; i < x_m_.size(); ++i) {
@@ -389,6 +399,15 @@ void InkComparison::DoubtCross(const Darkness& darkness, PrintDoubts* doubts) co
   all[PrintDoubt::kDarkHub] = hubs.FromTop(1);
   all[PrintDoubt::kOtherSpoke] = spokes.FromTop(0);
   all[PrintDoubt::kOtherSpokes] = spokes.FromTop(1);
+}
+
+void InkComparison::DoubtRing(const Darkness& darkness, PrintDoubts* doubts) const {
+  std::array<double, kSectors> inkless;
+  for (int s = 0; s < kSectors; ++s) {
+    const double ink = darkness.Mean(ring_[s], kIsInk);
+    inkless[s] = ink < 0 ? ink : 1 - ink;
+  }
+  (*doubts)[PrintDoubt::kBrokenRing] = KnownValues(inkless).MeanButTop();
 }
 
 void InkComparison::DoubtBoard(const Darkness& darkness, PrintDoubts* doubts) const {

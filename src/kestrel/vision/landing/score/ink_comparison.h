@@ -54,22 +54,23 @@ class InkComparison {
   Range AddGrid(const Holds& holds);
   using Grays = std::array<float, kMaxPlaces>;
   // Index of a place on the ring beyond the end of an arm.
-  std::size_t BeyondArm(int arm) const {
-    return arm_.back().end + kAcross * kAroundSector * (2 * arm) + kAroundSector;
-  }
+  std::size_t BeyondArm(int arm) const { return ring_[2 * arm].begin + kAroundSector; }
   Levels MeasureLevels(const Grays& gray) const;
   Darkness MeasureDarkness(const Grays& gray, const Levels& levels) const;
   void HideInHighlights(const Grays& gray, const Levels& levels, Darkness* darkness) const;
-  // Set the doubts about arms and the white between them, and about the white around the ring.
+  // Set the doubts about arms and the white between them, about the ring, and about the white
+  // around it.
   void DoubtCross(const Darkness& darkness, PrintDoubts* doubts) const;
+  void DoubtRing(const Darkness& darkness, PrintDoubts* doubts) const;
   void DoubtBoard(const Darkness& darkness, PrintDoubts* doubts) const;
 
   LandingPattern pattern_;
   double extent_m_;
   std::vector<float> x_m_, y_m_;
   std::vector<std::uint8_t> sector_;
-  std::array<Range, kArms> arm_;  // from the middle of the print outwards
-  std::size_t ink_end_ = 0;       // the places before this index are on arms and ring
+  std::array<Range, kArms> arm_;      // from the middle of the print outwards
+  std::array<Range, kSectors> ring_;  // counter-clockwise
+  std::size_t ink_end_ = 0;           // the places before this index are on arms and ring
   // White between two arms: 'hub_' near the middle of the print, 'quadrant_' all of it.
   std::array<Range, kArms> hub_, quadrant_;
   std::array<Range, kSectors> board_;                                       // white around the ring

@@ -33,7 +33,9 @@ enum class PrintDoubt {
   kMisfit,         // the same of their distance from a flat print seen through the lens
   // Fit of the print as a whole.
   kFaintArm,      // share of the contrast that the worst arm lacks
-  kBrokenRing,    // share of the contrast that the ring lacks, mean without the worst quarter
+  // Share of the contrast that the ring lacks, mean without the worst quarter. Of a print that is
+  // examined by its edges: share of places that are not as dark as ink, without the worst eighth.
+  kBrokenRing,
   kFrameCorners,  // darkness beyond the arms' ends minus that between them, in contrasts
   kOtherFigure,   // logarithm of (1 - correlation inside of the ring)
   kInside,        // residuals inside of the ring minus those on it, shares of the contrast

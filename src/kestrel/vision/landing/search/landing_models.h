@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <chrono>
+#include <cstdint>
+
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/core/camera/ray_table.h"
 #include "kestrel/vision/landing/alignment/small_pattern.h"
+#include "kestrel/vision/landing/candidates/ring_probe.h"
 #include "kestrel/vision/landing/landing_pattern_detector.h"
 #include "kestrel/vision/landing/location/pattern_locator.h"
 #include "kestrel/vision/landing/score/ink_comparison.h"
-#include "kestrel/vision/landing/verification/pattern_match.h"
 
 namespace kestrel {
 
@@ -17,7 +20,7 @@ struct LandingModels {
       : camera(camera_model),
         options(all_options),
         rays(camera),
-        matcher(options.pattern),
+        ring_probe(options.pattern),
         locator(camera, options.pattern),
         ink(options.pattern),
         small(camera, rays, options.pattern) {}
@@ -28,10 +31,14 @@ struct LandingModels {
   CameraModel camera;
   LandingPatternDetectorOptions options;
   RayTable rays;
-  PatternMatcher matcher;
+  RingProbe ring_probe;
   PatternLocator locator;
   InkComparison ink;
   SmallPatternFitter small;
+  // Steps of the search plan that are left out, a bit each: a benchmark measures what each finds.
+  std::uint32_t skipped_steps = 0;
+  // The clock that bounds a search; a test has its own.
+  std::chrono::steady_clock::time_point (*now)() = &std::chrono::steady_clock::now;
 };
 
 }  // namespace kestrel

@@ -34,7 +34,7 @@ LandingSearch::LandingSearch(const LandingModels& models, const cv::Mat& image,
     : models_(models),
       hint_(hint),
       buffers_(*buffers),
-      start_(std::chrono::steady_clock::now()),
+      start_(models.now()),
       log_(&report_),
       prior_(hint, models.options, models.camera),
       image_(image, &buffers->image, &log_),
@@ -85,7 +85,7 @@ void LandingSearch::TakeSteps() {
     const int index = (first + i) % (2 * static_cast<int>(kSearchSteps));
     const bool is_first_round = index < static_cast<int>(kSearchSteps);
     const SearchStep& step = kSteps[index % kSearchSteps];
-    if ((models_.options.skipped_steps >> (index % kSearchSteps)) & 1) continue;
+    if ((models_.skipped_steps >> (index % kSearchSteps)) & 1) continue;
     if (is_first_round ? !prior_.Suits(step) : is_likely_all && prior_.Suits(step)) continue;
     const cv::Rect& part = is_first_round ? likely : all;
     image_.Choose(part, SizeOf(step));
@@ -133,7 +133,7 @@ bool LandingSearch::IsOutOfTime() const {
   const double told_ms = models_.options.max_search_ms;
   const double limit_ms = told_ms > 0 ? told_ms : hint_.max_search_ms;
   if (limit_ms == 0) return false;
-  const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start_;
+  const std::chrono::duration<double, std::milli> spent = models_.now() - start_;
   return spent.count() > limit_ms;
 }
 

@@ -2,6 +2,7 @@
 #include "kestrel/vision/landing/search/landing_search.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <vector>
 
@@ -95,6 +96,36 @@ TEST_F(LandingSearchTest, WhatIsMissingOrTooMuchIsDoubted) {
           << "doubt " << static_cast<int>(c.doubt) << " at " << distance << " m";
       EXPECT_LT(best.log_odds, ideal - 2)
           << "doubt " << static_cast<int>(c.doubt) << " at " << distance << " m";
+    }
+  }
+}
+
+// A clock that advances by a millisecond whenever it is read, once a step.
+std::chrono::steady_clock::time_point StepClock() {
+  static std::chrono::steady_clock::time_point time;
+  return time += std::chrono::milliseconds(1);
+}
+
+// With time for a quarter of the steps, a pattern in view is found within four frames, whatever
+// step the search has come to.
+TEST_F(LandingSearchTest, FindsPatternsInFourFramesInQuarterOfTheTime) {
+  constexpr int kSteps = static_cast<int>(kSearchSteps), kFrames = 4;
+  LandingModels bounded(TestPrintCamera(), {});
+  bounded.now = &StepClock;
+  LandingHint hint;
+  hint.max_search_ms = (kSteps + kFrames - 1) / kFrames - 0.5;
+  for (const double distance : {0.8, 1.7, 4.0, 9.0, 13.0}) {
+    const cv::Mat image = DrawPrint(models_.camera, pattern_, SpokedPrint(pattern_, 4),
+                                    PrintPose({0.05, -0.04, distance}, 0.25, 1, 0.3));
+    for (int first = 0; first < kSteps; ++first) {
+      hint.first_step = first;
+      int frames = 0;
+      for (bool is_found = false; !is_found && frames <= kFrames; ++frames) {
+        const LandingReport report = LandingSearch(bounded, image, hint, &buffers_).Run();
+        is_found = report.detection.has_value();
+        hint.first_step = report.next_step;
+      }
+      EXPECT_LE(frames, kFrames) << distance << " m, from step " << first;
     }
   }
 }

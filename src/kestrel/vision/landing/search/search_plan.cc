@@ -16,19 +16,28 @@ const std::array<SearchPass, kSearchPasses> kPasses = {{
      .max_ring_px = 120,
      .top_hat = true,
      .narrow = true},
-    {.image_level = 0, .tile_level = 1, .min_ring_px = 6, .max_ring_px = 120, .closing = true},
     {.image_level = 0, .tile_level = 2, .min_ring_px = 6, .max_ring_px = 120, .narrow = true},
     {.image_level = 0, .tile_level = 3, .min_ring_px = 6, .max_ring_px = 120, .not_bright = true},
 }};
 
 const std::array<SearchStep, kSearchSteps> kSteps = {{
-    {0, SearchMethod::kAreas},    {1, SearchMethod::kAreas},    {2, SearchMethod::kAreas},
-    {0, SearchMethod::kArcs},     {1, SearchMethod::kArcs},     {2, SearchMethod::kArcs},
-    {3, SearchMethod::kArcs},     {4, SearchMethod::kArcs},     {5, SearchMethod::kArcs},
-    {0, SearchMethod::kCross},    {1, SearchMethod::kCross},    {6, SearchMethod::kAreas},
-    {7, SearchMethod::kAreas},    {8, SearchMethod::kAreas},    {9, SearchMethod::kAreas},
-    {2, SearchMethod::kCutAreas}, {6, SearchMethod::kCutAreas}, {8, SearchMethod::kCutAreas},
-    {6, SearchMethod::kArcs},     {7, SearchMethod::kArcs},     {8, SearchMethod::kArcs},
+    {1, SearchMethod::kAreas},
+    {2, SearchMethod::kAreas},
+    {0, SearchMethod::kArcs},
+    {1, SearchMethod::kArcs},
+    {2, SearchMethod::kArcs},
+    {3, SearchMethod::kArcs},
+    {4, SearchMethod::kArcs},
+    {5, SearchMethod::kArcs},
+    {0, SearchMethod::kCross},
+    {6, SearchMethod::kAreas},
+    {7, SearchMethod::kAreas},
+    {8, SearchMethod::kAreas},
+    {2, SearchMethod::kCutAreas},
+    {6, SearchMethod::kCutAreas},
+    {7, SearchMethod::kCutAreas},
+    {6, SearchMethod::kArcs},
+    {7, SearchMethod::kArcs},
 }};
 
 }  // namespace kestrel

@@ -22,17 +22,15 @@ TEST(SearchPlan, NoStepIsTakenTwiceAndNoPassIsIdle) {
   EXPECT_EQ(passes.size(), kSearchPasses);
 }
 
-TEST(SearchPlan, RingsOfAllSizesAreLookedForInEveryWay) {
-  for (const SearchMethod method : {SearchMethod::kAreas, SearchMethod::kArcs}) {
-    for (double ring_px = 6; ring_px < 2000; ring_px *= 1.1) {
-      EXPECT_TRUE(std::any_of(kSteps.begin(), kSteps.end(),
-                              [&](const SearchStep& step) {
-                                const SearchPass& pass = kPasses[step.pass];
-                                return step.method == method && pass.min_ring_px <= ring_px &&
-                                       ring_px <= pass.max_ring_px;
-                              }))
-          << ring_px << " px";
-    }
+TEST(SearchPlan, SearchesArcsOfRingsOfAllSizes) {
+  for (double ring_px = 6; ring_px < 2000; ring_px *= 1.1) {
+    EXPECT_TRUE(std::any_of(kSteps.begin(), kSteps.end(),
+                            [&](const SearchStep& step) {
+                              const SearchPass& pass = kPasses[step.pass];
+                              return step.method == SearchMethod::kArcs &&
+                                     pass.min_ring_px <= ring_px && ring_px <= pass.max_ring_px;
+                            }))
+        << ring_px << " px";
   }
 }
 
@@ -44,9 +42,13 @@ TEST(SearchPlan, PassesSeeTheirSmallestRing) {
   }
 }
 
-TEST(SearchPlan, LargeRingsComeFirst) {
-  EXPECT_GE(kPasses[kSteps.front().pass].image_level, 3);
-  EXPECT_EQ(kSteps.front().method, SearchMethod::kAreas);
+// A step at a lower resolution costs a quarter.
+TEST(SearchPlan, FullResolutionComesLast) {
+  const auto is_full = [](const SearchStep& step) { return kPasses[step.pass].image_level == 0; };
+  const auto first = std::find_if(kSteps.begin(), kSteps.end(), is_full);
+  EXPECT_TRUE(std::all_of(first, kSteps.end(), [&](const SearchStep& step) {
+    return is_full(step) || step.method == SearchMethod::kCutAreas;
+  }));
 }
 
 }  // namespace

@@ -38,7 +38,6 @@ void Binarize(const SearchPass& pass, SearchedImageBuffers* buffers) {
                                 pass.black ? Dark::kBlack : Dark::kBelowMean);
   }
   if (pass.not_bright) InvertBits(buffers->binary.bright, &buffers->binary.dark);
-  if (pass.closing) CloseBits(&buffers->binary.dark, &buffers->scratch);
 }
 
 bool SearchedImageBuffers::Reserve(const cv::Mat& image) {

@@ -26,7 +26,6 @@ struct SearchedImageBuffers {
   LocalThreshold threshold;
   BlackTopHat top_hat;
   BinaryImage binary;
-  BitImage scratch;
   std::array<BorderTracer, kSearchPasses> tracers;  // one per pass
 
   // Reserves memory for images of the size of 'image'; true when the size is new.

@@ -9,14 +9,14 @@
 #include "kestrel/vision/landing/location/pattern_pose.h"
 #include "kestrel/vision/landing/print_places.h"
 #include "kestrel/vision/landing/score/gray_doubts.h"
+#include "kestrel/vision/landing/verification/cross.h"
 
 namespace kestrel {
 namespace {
 
-constexpr double kLinesRingPx = 150;  // above that, lines are tried first (section 2.4)
-// Least agreement of a pose that is located. A pose beside the print may miss an arm, and the edges
-// may still bring it into place.
-constexpr double kWorthLocating = 0.4;
+// Least contrast of the arms of a print that is aligned, as a share of the ring's. A pose beside
+// the print, or a shadow, may take the rest.
+constexpr double kLeastArms = 0.2;
 // Distance of the centres of two rings that count as the same where one was seen to be something
 // else, as a share of the shorter axis.
 constexpr double kSameSign = 0.12;
@@ -52,6 +52,11 @@ Eigen::Vector2d CenterPx(const PatternLocation& location, const PrintAlignment& 
 
 double MeanDiameter(const PrintFinding& finding) { return std::sqrt(finding.diameters_px.prod()); }
 
+RigidTransform Turned(const RigidTransform& pose, double angle) {
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()));
+  return {pose.rotation * turn, pose.translation};
+}
+
 double LogShare(double length_px, double of_px) {
   constexpr double kLeast = 1e-4;
   return std::log(std::max(kLeast, length_px / of_px));
@@ -60,7 +65,6 @@ double LogShare(double length_px, double of_px) {
 }  // namespace
 
 void NearPrintBuffers::Reserve() {
-  cross_lines.Reserve();
   tested.Reserve();
   refused.Reserve();
 }
@@ -79,8 +83,7 @@ void NearPrintVerifier::Test(const RingCandidate& ring) {
   const double diameter_px = ring.diameters_px.x();
   bool has_cross = false;
   for (const int pose : order.poses) {
-    std::optional<Hypothesis> print = FindCross(ring.poses[pose], diameter_px);
-    if (print) print = Compare(print->camera_from_pattern, print->method, diameter_px);
+    const auto print = FindCross(PatternPose(ring.poses[pose], 0), diameter_px);
     has_cross |= print.has_value();
     if (print && TestPrint(*print, ring.diameters_px, ring.reach_px, ring.poses, order)) return;
   }
@@ -91,8 +94,7 @@ void NearPrintVerifier::Test(const RingCandidate& ring) {
       const auto refined = RefineRing(ring.poses[pose], farther * ring.reach_px, kRefinements);
       if (!refined) continue;
       is_whole |= refined->is_whole;
-      const std::optional<Hypothesis> print =
-          FindCrossInRefined(refined->camera_from_pattern, diameter_px);
+      const auto print = FindCross(refined->camera_from_pattern, diameter_px);
       has_cross |= print.has_value();
       if (print && TestPrint(*print, ring.diameters_px, ring.reach_px, ring.poses, order)) return;
     }
@@ -116,7 +118,7 @@ void NearPrintVerifier::TestPredicted(const CirclePose& predicted,
       RingDiametersPx(search_.models.camera, search_.models.options.pattern.outer_radius_m(), ring);
   if (IsSmallRing(diameters_px)) return;
   search_.image.Prepare(ViewLevel(diameters_px.x()));
-  const std::optional<Hypothesis> print = FindCross(ring, diameters_px.x());
+  const std::optional<Hypothesis> print = FindCross(pose, diameters_px.x());
   if (!print) return;
   const double reach_px = std::max(kLeastReachPx, kSureReach * diameters_px.x());
   TestPrint(*print, diameters_px, reach_px, {&ring, 1}, {});
@@ -127,43 +129,30 @@ void NearPrintVerifier::TestCross(const RigidTransform& pose, const ImageRegion&
   const double angle =
       std::atan2(search_.models.options.pattern.outer_radius_m(), pose.translation.norm());
   const double diameter_px = 2 * search_.models.camera.intrinsics().fx_px * angle;
-  const std::optional<Hypothesis> print = Compare(pose, DetectionMethod::kPartial, diameter_px);
-  if (!print) return;
+  const PatternView view(search_.models.camera, pose, search_.models.ring_probe.extent_m(), region);
+  if (!view.valid()) return;
+  const auto arms = FindArms(search_.image.At(region.level), view, search_.models.options.pattern);
+  if (!arms || arms->contrast < GrayContrast::kLeastRing) return;
   const double reach_px = std::max(kLeastReachPx, region.scale() + kCrossReach * diameter_px);
   const CirclePose ring{pose.translation, pose.rotation * Eigen::Vector3d::UnitZ()};
-  TestPrint(*print, Eigen::Vector2d::Constant(diameter_px), reach_px, {&ring, 1}, {});
+  TestPrint({Turned(pose, arms->angle), arms->contrast}, Eigen::Vector2d::Constant(diameter_px),
+            reach_px, {&ring, 1}, {});
 }
 
-// Returns the print whose ring lies as 'ring', turned as the cross inside. Not yet compared with
-// the image.
-std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::FindCross(const CirclePose& ring,
-                                                                          double diameter_px) {
-  constexpr int kThinningSize = 32, kLinesSize = 64;
+// Returns the print whose ring lies as that of 'ring', turned as the cross inside, if it has arms.
+std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::FindCross(
+    const RigidTransform& ring, double diameter_px) {
   const SearchLog::Timer timer = search_.log.Time(LandingStage::kCross);
-  const LandingPattern& pattern = search_.models.options.pattern;
   const ImageRegion region = search_.image.RegionAt(ViewLevel(diameter_px));
   const cv::Mat image = search_.image.At(region.level);
-  const PatternView view(search_.models.camera, PatternPose(ring, 0),
-                         search_.models.matcher.extent_m(), region);
+  const RingProbe& probe = search_.models.ring_probe;
+  const PatternView view(search_.models.camera, ring, probe.extent_m(), region);
   if (!view.valid()) return std::nullopt;
-  const double contrast = search_.models.matcher.RingContrast(image, view);
+  const double contrast = probe.Contrast(image, view);
   if (contrast < GrayContrast::kLeastRing) return std::nullopt;
-  const auto print = [&](const Cross& cross, DetectionMethod method) {
-    return Hypothesis{PatternPose(ring, cross.arm_angle), method, contrast};
-  };
-  // Thinning is tried when the lines of a large cross are broken. It is fast on the rectified
-  // inside, at any size.
-  if (diameter_px > kLinesRingPx) {
-    const auto inside = RectifyInside(image, view, pattern, kLinesSize, GrayContrast::kLeastInside);
-    const auto cross =
-        inside ? FindCrossByLines(*inside, pattern, &buffers_.cross_lines) : std::nullopt;
-    if (cross) return print(*cross, DetectionMethod::kLines);
-  }
-  const auto inside =
-      RectifyInside(image, view, pattern, kThinningSize, GrayContrast::kLeastInside);
-  const auto cross = inside ? FindCrossByThinning(*inside) : std::nullopt;
-  if (cross) return print(*cross, DetectionMethod::kThinning);
-  return std::nullopt;
+  const auto arms = FindArms(image, view, search_.models.options.pattern);
+  if (!arms || arms->contrast < kLeastArms * contrast) return std::nullopt;
+  return Hypothesis{Turned(ring, arms->angle), contrast};
 }
 
 // Fits a ring to the edges of both of its circles before its inside is examined: where the ring is
@@ -176,46 +165,13 @@ std::optional<RingLocation> NearPrintVerifier::RefineRing(const CirclePose& ring
                                            search_.prior.LevelPrior(ring.normal));
 }
 
-std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::FindCrossInRefined(
-    const RigidTransform& ring, double diameter_px) {
-  const SearchLog::Timer timer = search_.log.Time(LandingStage::kCross);
-  const ImageRegion region = search_.image.RegionAt(ViewLevel(diameter_px));
-  const cv::Mat image = search_.image.At(region.level);
-  const PatternView view(search_.models.camera, ring, search_.models.matcher.extent_m(), region);
-  if (!view.valid() ||
-      search_.models.matcher.RingContrast(image, view) < GrayContrast::kLeastRing) {
-    return std::nullopt;
-  }
-  const std::optional<Cross> cross =
-      FindCrossByProfile(image, view, search_.models.options.pattern, GrayContrast::kLeastRing / 2);
-  if (!cross) return std::nullopt;
-  RigidTransform turned = ring;
-  turned.rotation *=
-      Eigen::Quaterniond(Eigen::AngleAxisd(cross->arm_angle, Eigen::Vector3d::UnitZ()));
-  return Compare(turned, DetectionMethod::kThinning, diameter_px);
-}
-
-// Returns nothing for a pose under which the image does not resemble the print at all.
-std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::Compare(const RigidTransform& pose,
-                                                                        DetectionMethod method,
-                                                                        double diameter_px) {
-  const SearchLog::Timer timer = search_.log.Time(LandingStage::kMatch);
-  search_.log.Reach(LandingStage::kMatch, "ring and cross do not look like the pattern");
-  const ImageRegion region = search_.image.RegionAt(ViewLevel(diameter_px));
-  const PatternView view(search_.models.camera, pose, search_.models.matcher.extent_m(), region);
-  if (!view.valid()) return std::nullopt;
-  const PatternMatch match = search_.models.matcher.Match(search_.image.At(region.level), view);
-  if (match.Agreement() < kWorthLocating) return std::nullopt;
-  return Hypothesis{pose, method, match.contrast};
-}
-
 // True when the print is accepted as the pattern. Whether it looks like the pattern is decided by
 // the image alone; the lens decides only where it is.
 bool NearPrintVerifier::TestPrint(const Hypothesis& print, const Eigen::Vector2d& diameters_px,
                                   double reach_px, std::span<const CirclePose> rings,
                                   const PriorKnowledge::Order& order) {
   const SearchLog::Timer timer = search_.log.Time(LandingStage::kLocate);
-  search_.log.Reach(LandingStage::kLocate, "ring and cross have too few edges");
+  search_.log.Reach(LandingStage::kMatch, "ring and cross have too few edges");
   const ImageRegion region = search_.image.RegionAt(ViewLevel(diameters_px.x()));
   const cv::Mat image = search_.image.At(region.level);
   PrintAlignment alignment{PlaneWarp(search_.models.camera, print.camera_from_pattern,
@@ -226,13 +182,14 @@ bool NearPrintVerifier::TestPrint(const Hypothesis& print, const Eigen::Vector2d
                   reach_px, min_step, &alignment)) {
     return false;
   }
+  search_.log.Reach(LandingStage::kLocate, "no pose explains the edges");
   const PatternView view(alignment.warp, search_.models.ink.extent_m(), region);
   if (!view.valid()) return false;
   PrintFinding finding;
   finding.diameters_px = diameters_px;
   const double seen = search_.models.ink.Doubt(image, view, &finding.doubts);
   finding.kind = seen < PrintPlaces::kWhole ? PrintKind::kPart : PrintKind::kByEdges;
-  finding.method = seen < PrintPlaces::kWhole ? DetectionMethod::kPartial : print.method;
+  finding.method = seen < PrintPlaces::kWhole ? DetectionMethod::kPartial : DetectionMethod::kRing;
   finding.doubts[PrintDoubt::kHidden] = 1 - seen;
   DoubtEdges(alignment, &finding);
   bool is_found = false;

@@ -8,13 +8,11 @@
 #include "kestrel/vision/landing/candidates/ring_candidates.h"
 #include "kestrel/vision/landing/candidates/ring_memory.h"
 #include "kestrel/vision/landing/search/search_context.h"
-#include "kestrel/vision/landing/verification/cross.h"
 
 namespace kestrel {
 
 // Memory of NearPrintVerifier. Does not allocate once it is reserved.
 struct NearPrintBuffers {
-  CrossLinesWorkspace cross_lines;
   RingMemory tested;
   RingMemory refused;  // rings whose edges were found and that are something else
 
@@ -42,15 +40,11 @@ class NearPrintVerifier {
   // A possible print: a ring with a cross inside, or a cross alone.
   struct Hypothesis {
     RigidTransform camera_from_pattern;
-    DetectionMethod method;
     double contrast;  // of ring and white, gray values
   };
 
-  std::optional<Hypothesis> FindCross(const CirclePose& ring, double diameter_px);
-  std::optional<Hypothesis> FindCrossInRefined(const RigidTransform& ring, double diameter_px);
+  std::optional<Hypothesis> FindCross(const RigidTransform& ring, double diameter_px);
   std::optional<RingLocation> RefineRing(const CirclePose& ring, double reach_px, int iterations);
-  std::optional<Hypothesis> Compare(const RigidTransform& pose, DetectionMethod method,
-                                    double diameter_px);
   bool TestPrint(const Hypothesis& print, const Eigen::Vector2d& diameters_px, double reach_px,
                  std::span<const CirclePose> rings, const PriorKnowledge::Order& order);
   RigidTransform WithArmOf(const PrintAlignment& alignment, const CirclePose& ring) const;

@@ -20,7 +20,7 @@ using Light = SmallPatternFitter::Light;
 constexpr double kMinMajorPx = 9;                // longer diameter of the smallest ring
 constexpr double kFlattestRing = 0.08;           // axis ratio of the flattest ring
 constexpr double kMinCorrelation = 0.35;         // of a start with the image
-constexpr double kSureCorrelation = 0.6;         // of a start by the quadrants
+constexpr double kSureCorrelation = 0.6;         // of a start by the direction of an arm
 constexpr double kMinCorrelationOfEither = 0.7;  // else the mirror pose is not tested
 // Explained share of the variance below which shadows are searched for even on a print that is
 // found in even light: they bend the pose.
@@ -121,8 +121,7 @@ std::optional<PrintFinding> SmallPrintVerifier::FindingOf(const SmallPatternFitt
   const PatternView view(search_.models.camera, pose, search_.models.ink.extent_m(), {});
   if (!view.valid()) return std::nullopt;
   const double seen = search_.models.ink.Doubt(search_.image.whole(), view, &finding.doubts);
-  finding.method =
-      seen < PrintPlaces::kWhole ? DetectionMethod::kPartial : DetectionMethod::kQuadrants;
+  finding.method = seen < PrintPlaces::kWhole ? DetectionMethod::kPartial : DetectionMethod::kRing;
   finding.doubts[PrintDoubt::kHidden] = 1 - seen;
   DoubtGrayValues(fit, &finding.doubts);
   DoubtView(finding.diameters_px, finding.relative_sigma(), &finding.doubts);
@@ -139,7 +138,7 @@ SmallPatternFitter::Start SmallPrintVerifier::FindStart(const CirclePose& pose,
   const std::optional<double> scale =
       search_.models.small.FindScale(search_.image.whole(), pose, scales, &buffers_.gray_values);
   if (!scale) return {{}, -1};
-  if (const std::optional<double> angle = ArmAngleByQuadrants(pose)) {
+  if (const std::optional<double> angle = ArmAngle(pose)) {
     auto start = search_.models.small.FindStart(pose, *scale, {&*angle, 1}, &buffers_.gray_values);
     if (start.correlation >= kSureCorrelation) return start;
   }
@@ -149,18 +148,13 @@ SmallPatternFitter::Start SmallPrintVerifier::FindStart(const CirclePose& pose,
   return search_.models.small.FindStart(pose, *scale, kTurns, &buffers_.gray_values);
 }
 
-// Returns the direction of an arm of a small cross from its quadrants.
-std::optional<double> SmallPrintVerifier::ArmAngleByQuadrants(const CirclePose& pose) {
-  constexpr int kSize = 24;
+// Returns the direction of an arm of a small cross.
+std::optional<double> SmallPrintVerifier::ArmAngle(const CirclePose& pose) {
   const PatternView view(search_.models.camera, PatternPose(pose, 0),
-                         search_.models.matcher.extent_m(), {});
+                         search_.models.ring_probe.extent_m(), {});
   if (!view.valid()) return std::nullopt;
-  const auto inside = RectifyInside(search_.image.whole(), view, search_.models.options.pattern,
-                                    kSize, GrayContrast::kLeastInside);
-  if (!inside) return std::nullopt;
-  const std::optional<Cross> cross = FindCrossByQuadrants(*inside);
-  if (!cross) return std::nullopt;
-  return cross->arm_angle;
+  const auto arms = FindArms(search_.image.whole(), view, search_.models.options.pattern);
+  return arms ? std::optional(arms->angle) : std::nullopt;
 }
 
 }  // namespace kestrel

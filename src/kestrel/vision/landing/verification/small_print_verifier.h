@@ -39,7 +39,7 @@ class SmallPrintVerifier {
   bool IsTooSmall(const Eigen::Vector2d& diameters_px) const;
   Outcome TestPose(const CirclePose& pose, std::span<const double> scales);
   SmallPatternFitter::Start FindStart(const CirclePose& pose, std::span<const double> scales);
-  std::optional<double> ArmAngleByQuadrants(const CirclePose& pose);
+  std::optional<double> ArmAngle(const CirclePose& pose);
   std::optional<PrintFinding> FindingOf(const SmallPatternFitter::Fit& fit,
                                         SmallPatternFitter::Light light) const;
 

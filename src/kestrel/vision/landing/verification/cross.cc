@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/landing/verification/cross.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
-
-#include "kestrel/vision/landing/verification/cross.h"
 
 namespace kestrel {
 namespace {
@@ -30,8 +30,8 @@ const DirectionTable& Directions() {
 
 }  // namespace
 
-std::optional<Cross> FindCrossByProfile(const cv::Mat& image, const PatternView& view,
-                                        const LandingPattern& pattern, double min_contrast) {
+std::optional<ArmDirection> FindArms(const cv::Mat& image, const PatternView& view,
+                                     const LandingPattern& pattern) {
   // For each direction modulo a right angle: how much darker it is than the image beside it, as the
   // mean over the half arms and radii in view.
   std::array<float, kPerQuarter> sum{};
@@ -59,13 +59,13 @@ std::optional<Cross> FindCrossByProfile(const cv::Mat& image, const PatternView&
     if (seen[i] >= kMinSeen) depth[i] = sum[i] / static_cast<float>(seen[i]);
   }
   const auto best = std::max_element(depth.begin(), depth.end());
-  if (*best < min_contrast) return std::nullopt;
+  if (*best <= 0) return std::nullopt;
   const auto index = static_cast<int>(best - depth.begin());
   const double left = depth[(index + kPerQuarter - 1) % kPerQuarter];
   const double right = depth[(index + 1) % kPerQuarter];
   const double curvature = left - 2 * *best + right;
   const double shift = curvature < 0 ? 0.5 * (left - right) / curvature : 0;
-  return Cross{(index + shift) * 2 * std::numbers::pi / kRingDirections};
+  return ArmDirection{(index + shift) * 2 * std::numbers::pi / kRingDirections, *best};
 }
 
 }  // namespace kestrel
