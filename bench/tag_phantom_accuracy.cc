@@ -145,10 +145,10 @@ class AnyTagFinder {
   std::optional<LandingDetection> Find(const cv::Mat& image, const std::string& family,
                                        int id) const {
     const BoardModel board(BoardOfTag(family, id, kTagSize));
-    const BoardAlignment alignment(camera_, board);
+    const PadAlignment alignment(camera_, board.tags);
     TagSearchBuffers buffers;
-    buffers.board.samples.Reserve(board.most_cells);
-    buffers.board.alignment.Reserve(board);
+    buffers.pad.samples.Reserve(board.most_cells);
+    alignment.Reserve(&buffers.pad.alignment);
     constexpr double kLevelSigmaDeg = 3, kPartFactor = 1.3, kPartMarginPx = 8;
     const TagSearchModels models{
         {camera_, alignment, board.radius_m, kLevelSigmaDeg, kPartFactor, kPartMarginPx},
@@ -181,7 +181,7 @@ class AnyTagFinder {
                std::vector<std::set<int>>* like) const {
     const auto homography = HomographyOfSquare(quad.corners);
     if (!homography) return;
-    BoardSamples samples;
+    PadSamples samples;
     for (std::size_t k = 0; k < dictionaries.size(); ++k) {
       const Dictionary& dictionary = dictionaries[k];
       if (dictionary.dark_inside != quad.dark_inside) continue;

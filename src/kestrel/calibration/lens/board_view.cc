@@ -106,7 +106,7 @@ class TagFinder {
   BoardModel board_;
   TagQuadFinder quads_;
   TagQuadBuffers buffers_;
-  BoardSamples samples_;
+  PadSamples samples_;
 };
 
 // Removes tags that do not lie in one plane with the others. A lens that is not known bends the

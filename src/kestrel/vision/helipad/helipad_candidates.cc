@@ -54,7 +54,7 @@ void HelipadFinder::Find(const cv::Rect& part, int pass, HelipadCandidateBuffers
   buffers->candidates.clear();
   buffers->examined = 0;
   // A border goes clockwise around a dark area, and anticlockwise around a hole in it.
-  Add(borders, !model_.white, part, kHelipadPasses[pass].image_level, buffers);
+  Add(borders, !model_.samples.white(), part, kHelipadPasses[pass].image_level, buffers);
 }
 
 void HelipadFinder::FindNarrow(const cv::Rect& part, int pass,
@@ -68,8 +68,8 @@ void HelipadFinder::FindNarrow(const cv::Rect& part, int pass,
     limits.min_count = 4 * static_cast<std::size_t>(limits.min_extent);
     limits.max_extent = kMostExtent;
     limits.narrow = true;
-    Add(TraceNarrow(level, model_.white, limits, &buffers->borders, &buffers->narrow), true, part,
-        level, buffers);
+    Add(TraceNarrow(level, model_.samples.white(), limits, &buffers->borders, &buffers->narrow),
+        true, part, level, buffers);
   }
 }
 
@@ -89,7 +89,7 @@ void HelipadFinder::Add(std::span<const Border> borders, bool around_ink, const 
 bool HelipadFinder::Examine(const Border& border, const cv::Rect& part, int level,
                             BorderBuffers* buffers, HelipadCandidate* candidate) const {
   if (!FillsItsBox(border)) return false;
-  if (!borders_.OnPlaneOfLevel(border, part, level, &candidate->camera_from_plane, buffers)) {
+  if (!borders_.OnPlane(border, part, level, &candidate->camera_from_plane, buffers)) {
     return false;
   }
   candidate->moments = MomentsOf(buffers->points);

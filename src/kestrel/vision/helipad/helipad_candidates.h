@@ -10,8 +10,7 @@
 
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/vision/helipad/helipad_model.h"
-#include "kestrel/vision/helipad/narrow_borders.h"
-#include "kestrel/vision/tags/plane_borders.h"
+#include "kestrel/vision/search/plane_borders.h"
 
 namespace kestrel {
 

@@ -8,17 +8,8 @@
 #include "kestrel/vision/helipad/helipad_candidates.h"
 #include "kestrel/vision/helipad/helipad_model.h"
 #include "kestrel/vision/helipad/helipad_search.h"
-#include "kestrel/vision/tags/board_alignment.h"
 
 namespace kestrel {
-namespace {
-
-class HelipadWorkspace final : public TargetWorkspace {
- public:
-  HelipadSearchBuffers buffers;
-};
-
-}  // namespace
 
 std::vector<std::string> HelipadDetectorOptions::Validate() const {
   std::vector<std::string> violations = Helipad::Validate();
@@ -33,14 +24,14 @@ struct HelipadDetector::Impl {
         options(Checked(how)),
         pad(options),
         finder(camera, pad),
-        alignment(camera, pad.edges),
+        alignment(camera, pad.parts),
         shape(ShapeOf(options)) {}
 
   CameraModel camera;
   HelipadDetectorOptions options;
   HelipadModel pad;
   HelipadFinder finder;
-  BoardAlignment alignment;
+  PadAlignment alignment;
   TargetShape shape;
 };
 
@@ -52,27 +43,19 @@ HelipadDetector& HelipadDetector::operator=(HelipadDetector&&) noexcept = defaul
 
 LandingReport HelipadDetector::Detect(const cv::Mat& image, const LandingHint& hint,
                                       TargetWorkspace& workspace) const {
-  const CameraModel& camera = impl_->camera;
-  if (image.type() != CV_8UC1 || image.cols != camera.width_px() ||
-      image.rows != camera.height_px()) {
-    LandingReport report;
-    report.reason = "the image is not CV_8UC1 of the camera's size";
-    return report;
-  }
   constexpr double kPartFactor = 1.5, kPartMarginPx = 12;
-  const HelipadSearchModels models{{camera, impl_->alignment, impl_->pad.edges.radius_m,
+  const HelipadSearchModels models{{impl_->camera, impl_->alignment, impl_->pad.radius_m,
                                     impl_->options.level_sigma_deg, kPartFactor, kPartMarginPx},
                                    impl_->pad,
                                    impl_->finder,
                                    impl_->options.min_quality};
-  auto& buffers = dynamic_cast<HelipadWorkspace&>(workspace).buffers;
-  return HelipadSearch(models, image, hint, &buffers).Run();
+  return HelipadSearch(models, image, hint, &dynamic_cast<HelipadSearchBuffers&>(workspace)).Run();
 }
 
 std::unique_ptr<TargetWorkspace> HelipadDetector::MakeWorkspace() const {
-  auto workspace = std::make_unique<HelipadWorkspace>();
-  workspace->buffers.board.samples.Reserve(impl_->pad.samples.size());
-  workspace->buffers.board.alignment.Reserve(impl_->pad.edges);
+  auto workspace = std::make_unique<HelipadSearchBuffers>();
+  workspace->pad.samples.Reserve(impl_->pad.samples.count());
+  impl_->alignment.Reserve(&workspace->pad.alignment);
   return workspace;
 }
 

@@ -9,7 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "kestrel/core/geometry/angles.h"
-#include "kestrel/vision/tags/square_pose.h"
+#include "kestrel/vision/search/plane_figure.h"
 
 namespace kestrel {
 namespace {
@@ -34,21 +34,21 @@ RigidTransform HalfTurned(const RigidTransform& pose) {
 
 HelipadSearch::HelipadSearch(const HelipadSearchModels& models, const cv::Mat& image,
                              const LandingHint& hint, HelipadSearchBuffers* buffers)
-    : BoardSearch(models.search, image, hint, &buffers->board),
+    : PadSearch(models.search, image, hint, &buffers->pad),
       helipad_(models),
       candidates_(buffers->candidates) {}
 
 double HelipadSearch::StrokePx(const RigidTransform& pose) const {
-  return CellPx(models_.camera, pose, helipad_.pad.edges.tags[0]);
+  return helipad_.pad.parts[0].StrokePx(models_.camera, pose);
 }
 
 void HelipadSearch::Follow(const RigidTransform& expected) {
   const double stroke_px = StrokePx(expected);
   if (stroke_px < kLeastStrokePx) return;
   constexpr double kStepStrokes = 0.4;
-  const std::optional<RigidTransform> shifted =
-      MostLike(expected, helipad_.pad.places, kStepStrokes * stroke_px,
-               [this](std::span<const float> gray) { return helipad_.pad.LikenessOf(gray); });
+  const std::optional<RigidTransform> shifted = MostLike(
+      expected, helipad_.pad.samples.places(), kStepStrokes * stroke_px,
+      [this](std::span<const float> gray) { return helipad_.pad.samples.LikenessOf(gray); });
   if (shifted) Take(*shifted, kFollowedPrior, DetectionMethod::kFollowed);
 }
 
@@ -92,12 +92,12 @@ std::optional<Eigen::Matrix2d> HelipadSearch::BestTurn(const HelipadCandidate& c
     const Eigen::Matrix2d map = seen.matrixL().toDenseMatrix() *
                                 Eigen::Rotation2Dd(kPi * i / kTurns).toRotationMatrix() * from_pad;
     buffers_.samples.Clear();
-    for (const HelipadSample& sample : helipad_.pad.samples) {
-      const Eigen::Vector2d place = map * sample.place + candidate.moments.centroid;
-      buffers_.samples.Add(candidate.camera_from_plane * place.homogeneous());
+    for (const Eigen::Vector2d& place : helipad_.pad.samples.places()) {
+      const Eigen::Vector2d on_plane = map * place + candidate.moments.centroid;
+      buffers_.samples.Add(candidate.camera_from_plane * on_plane.homogeneous());
     }
     buffers_.samples.Project(models_.camera);
-    const double likeness = helipad_.pad.LikenessOf(buffers_.samples.Read(image_));
+    const double likeness = helipad_.pad.samples.LikenessOf(buffers_.samples.Read(image_));
     if (likeness <= most) continue;
     most = likeness;
     best = map;
@@ -111,17 +111,16 @@ void HelipadSearch::Try(const HelipadCandidate& candidate) {
   if (!map) return;
   log_.Reach(LandingStage::kCross, "the edges of the H are not where they should be");
   for (const double sign : {1.0, -1.0}) {
-    const std::optional<AlignedBoard> letter =
+    const std::optional<AlignedPad> letter =
         Align(PoseOfAffineMap(candidate.camera_from_plane, *map, candidate.moments.centroid, sign),
-              &helipad_.pad.edges.tags[0]);
-    if (letter) Take(letter->camera_from_board, kSearchPrior, DetectionMethod::kLetter);
+              &helipad_.pad.parts[0]);
+    if (letter) Take(letter->camera_from_pad, kSearchPrior, DetectionMethod::kLetter);
   }
 }
 
 int HelipadSearch::EdgesInView(const RigidTransform& pose) const {
-  const TagModel& letter = helipad_.pad.edges.tags[0];
   int count = 0;
-  for (const BoardEdge& edge : letter.edges) {
+  for (const PadEdge& edge : helipad_.pad.parts[0].edges) {
     Eigen::Vector2d pixel;
     const Eigen::Vector3d place = pose * Eigen::Vector3d(edge.place.x(), edge.place.y(), 0);
     count += !edge.fine && models_.camera.Project(place, &pixel) == ProjectionStatus::kOk;
@@ -129,17 +128,18 @@ int HelipadSearch::EdgesInView(const RigidTransform& pose) const {
   return count;
 }
 
-double HelipadSearch::QualityOf(const AlignedBoard& aligned, double prior, DimSample dim) {
-  const RigidTransform& pose = aligned.camera_from_board;
+double HelipadSearch::QualityOf(const AlignedPad& aligned, double prior, DimSample dim) {
+  const RigidTransform& pose = aligned.camera_from_pad;
   const double stroke_px = StrokePx(pose);
   if (stroke_px < kLeastStrokePx) return 0;
   // Edges of other figures are where the H has some, too, but not exactly there.
   constexpr double kMostMisfitPx = 0.5, kMostMisfitStrokes = 0.02;
   if (aligned.rms_px > std::max(kMostMisfitPx, kMostMisfitStrokes * stroke_px)) return 0;
   if (aligned.edges < kLeastExplained * EdgesInView(pose)) return 0;
-  SampleAt(pose, helipad_.pad.places);
-  const HelipadAgreement agreement =
-      helipad_.pad.Compare(buffers_.samples.Read(image_), stroke_px, dim);
+  const InkSamples& samples = helipad_.pad.samples;
+  buffers_.samples.Place(models_.camera, pose, samples.places());
+  const InkAgreement agreement = samples.Compare(
+      buffers_.samples.Read(image_), helipad_.pad.sample_area * stroke_px * stroke_px, dim);
   // A leg with what is beside it, at least.
   constexpr int kFewestParts = 3;
   if (agreement.parts < kFewestParts || agreement.worst_share < kLeastRight) return 0;
@@ -147,7 +147,7 @@ double HelipadSearch::QualityOf(const AlignedBoard& aligned, double prior, DimSa
 }
 
 void HelipadSearch::Take(const RigidTransform& pose, double prior, DetectionMethod method) {
-  const std::optional<AlignedBoard> aligned = Align(pose);
+  const std::optional<AlignedPad> aligned = Align(pose);
   if (!aligned) return;
   log_.Reach(LandingStage::kMatch, "what is at the edges does not look like the H");
   const double quality = QualityOf(*aligned, prior, DimSampleIn(method));
@@ -157,8 +157,8 @@ void HelipadSearch::Take(const RigidTransform& pose, double prior, DetectionMeth
   Report(*aligned, quality, method);
 }
 
-void HelipadSearch::Report(const AlignedBoard& found, double quality, DetectionMethod method) {
-  AlignedBoard aligned = found;
+void HelipadSearch::Report(const AlignedPad& found, double quality, DetectionMethod method) {
+  AlignedPad aligned = found;
   const std::optional<RigidTransform> mirror = ResolveMirror(&aligned);
   LandingDetection detection = DetectionOf(aligned, quality, method);
   detection.mirror_camera_from_pattern = mirror;

@@ -8,26 +8,27 @@
 
 #include "kestrel/vision/helipad/helipad_candidates.h"
 #include "kestrel/vision/helipad/helipad_model.h"
-#include "kestrel/vision/tags/board_search.h"
+#include "kestrel/vision/search/pad_search.h"
+#include "kestrel/vision/target/target_detector.h"
 
 namespace kestrel {
 
 // Constants of the searches of one detector.
 struct HelipadSearchModels {
-  BoardSearchModels search;
+  PadSearchModels search;
   const HelipadModel& pad;
   const HelipadFinder& finder;
   double min_quality;
 };
 
 // Memory of one thread's searches.
-struct HelipadSearchBuffers {
+struct HelipadSearchBuffers : TargetWorkspace {
   HelipadCandidateBuffers candidates;
-  BoardSearchBuffers board;
+  PadSearchBuffers pad;
 };
 
 // The search of one image for a helipad.
-class HelipadSearch final : public BoardSearch {
+class HelipadSearch final : public PadSearch {
  public:
   HelipadSearch(const HelipadSearchModels& models, const cv::Mat& image, const LandingHint& hint,
                 HelipadSearchBuffers* buffers);
@@ -46,10 +47,10 @@ class HelipadSearch final : public BoardSearch {
   // 'prior': logarithm of the odds against a helipad at any of the places that were tried.
   void Take(const RigidTransform& pose, double prior, DetectionMethod method);
   // Returns the probability that the pad is there.
-  double QualityOf(const AlignedBoard& aligned, double prior, DimSample dim);
+  double QualityOf(const AlignedPad& aligned, double prior, DimSample dim);
   // Number of points of the H's edges that the image should show.
   int EdgesInView(const RigidTransform& pose) const;
-  void Report(const AlignedBoard& found, double quality, DetectionMethod method);
+  void Report(const AlignedPad& found, double quality, DetectionMethod method);
   double StrokePx(const RigidTransform& pose) const;
 
   const HelipadSearchModels& helipad_;

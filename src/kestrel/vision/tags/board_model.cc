@@ -38,6 +38,8 @@ TagModel MakeTag(const BoardTag& tag, const PrintedTag& printed) {
   TagModel model;
   model.id = tag.id;
   model.size_m = tag.size_m;
+  model.center = printed.center;
+  model.stroke_m = printed.cell_m;
   model.printed = printed;
   model.board_from_tag = tag.board_from_tag;
   const TagGrid& grid = model.grid();
@@ -69,7 +71,6 @@ BoardModel::BoardModel(const TagBoard& board) {
     tags.push_back(MakeTag(board.tags[i], printed[i]));
     const TagModel& tag = tags.back();
     most_cells = std::max(most_cells, tag.cell_count());
-    most_edges += tag.edges.size();
     const double width = tag.grid().width;
     for (const auto& [column, row] :
          {std::pair(0.0, 0.0), {width, 0.0}, {width, width}, {0.0, width}}) {

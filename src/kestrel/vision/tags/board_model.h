@@ -8,20 +8,13 @@
 #include <Eigen/Core>
 
 #include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/vision/search/pad_alignment.h"
 #include "kestrel/vision/tags/tag_board.h"
 
 namespace kestrel {
 
-// A point in the middle of an edge between a black and a white cell, on the board.
-struct BoardEdge {
-  Eigen::Vector2d place;
-  Eigen::Vector2d to_white;  // unit vector across the edge
-  double cell_m;             // side of the tag's cells
-  bool fine;                 // of use only where cells are large in the image
-};
-
-// A tag as the detector needs it.
-struct TagModel {
+// A tag as the detector needs it. Its strokes are its cells.
+struct TagModel : PadPart {
   int id = 0;
   double size_m = 0;
   int most_wrong = 0;  // bits that may be misread: with more it may be something else
@@ -30,7 +23,6 @@ struct TagModel {
   RigidTransform board_from_tag;
   std::vector<Eigen::Vector2d> cell_centers;  // on the board, of all cells of the grid
   std::vector<bool> is_data;                  // of all cells: what tells tags from each other
-  std::vector<BoardEdge> edges;
 
   const TagGrid& grid() const { return printed.grid; }
   std::size_t cell_count() const { return printed.grid.cells.size(); }
@@ -38,13 +30,11 @@ struct TagModel {
 
 // All that a detector reads of a board, computed once.
 struct BoardModel {
-  BoardModel() = default;  // no tag
   // 'board' must be valid.
   explicit BoardModel(const TagBoard& board);
 
   std::vector<TagModel> tags;  // in the order of the board
   std::size_t most_cells = 0;  // of a tag
-  std::size_t most_edges = 0;  // of all tags together
   double radius_m = 0;         // of the circle about the board's origin around all tags
 };
 

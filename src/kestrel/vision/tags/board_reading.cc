@@ -7,6 +7,7 @@
 #include <limits>
 #include <span>
 
+#include "kestrel/vision/tags/cell_agreement.h"
 #include "kestrel/vision/tags/tag_family.h"
 
 namespace kestrel {
@@ -17,12 +18,8 @@ constexpr double kOtherOdds = 6;            // against the board's tag: two clea
 
 std::span<const float> ReadCellsAt(const cv::Mat& image, const CameraModel& camera,
                                    const RigidTransform& pose, const TagModel& tag, double cell_px,
-                                   BoardSamples* samples) {
-  samples->Clear();
-  for (const Eigen::Vector2d& place : tag.cell_centers) {
-    samples->Add(pose * Eigen::Vector3d(place.x(), place.y(), 0));
-  }
-  samples->Project(camera);
+                                   PadSamples* samples) {
+  samples->Place(camera, pose, tag.cell_centers);
   return samples->ReadCells(image, tag.grid().width, cell_px);
 }
 
@@ -83,7 +80,8 @@ bool ShowsOther(const TagModel& tag, const std::vector<TagGrid>& grids, double c
   // The more tags there are, the likelier it is that chance makes one of them.
   const double odds = kExpectedOdds + std::log(static_cast<double>(grids.size()));
   return other.wrong <= tag.most_wrong && other.evidence > odds &&
-         other.evidence > CompareCells(tag, cell_px, gray).evidence + kOtherOdds;
+         other.evidence >
+             CompareCells(tag.grid(), tag.is_data, cell_px, gray).evidence + kOtherOdds;
 }
 
 // Returns the tag of this id as it would be printed in the place of 'tag'.
@@ -98,15 +96,16 @@ TagGrid InPlaceOf(const PrintedTag& tag, bool inverted, const TagFamily& family,
 }  // namespace
 
 BoardReading ReadBoard(const cv::Mat& image, const CameraModel& camera, const BoardModel& board,
-                       const RigidTransform& camera_from_board, BoardSamples* samples,
+                       const RigidTransform& camera_from_board, PadSamples* samples,
                        DimSample dim) {
   BoardReading reading;
   for (std::size_t index = 0; index < board.tags.size(); ++index) {
     const TagModel& tag = board.tags[index];
-    const double cell_px = CellPx(camera, camera_from_board, tag);
-    if (cell_px < kLeastCellPx) continue;
-    const TagAgreement agreement = CompareCells(
-        tag, cell_px, ReadCellsAt(image, camera, camera_from_board, tag, cell_px, samples), dim);
+    const double cell_px = tag.StrokePx(camera, camera_from_board);
+    if (cell_px < PadPart::kLeastStrokePx) continue;
+    const std::span<const float> gray =
+        ReadCellsAt(image, camera, camera_from_board, tag, cell_px, samples);
+    const TagAgreement agreement = CompareCells(tag.grid(), tag.is_data, cell_px, gray, dim);
     if (agreement.wrong > tag.most_wrong || agreement.evidence <= 0) continue;
     reading.evidence += agreement.evidence;
     reading.parts.Add({"tag", index, cell_px * tag.grid().border_width});
@@ -132,7 +131,7 @@ OtherTags::OtherTags(const TagBoard& board) {
 
 bool OtherTags::IsRead(const cv::Mat& image, const CameraModel& camera, const BoardModel& board,
                        const RigidTransform& camera_from_board, const SeenParts& read,
-                       BoardSamples* samples) const {
+                       PadSamples* samples) const {
   for (std::size_t index = 0; index < board.tags.size(); ++index) {
     const std::span<const SeenPart> parts = read.all();
     if (std::any_of(parts.begin(), parts.end(),
@@ -140,8 +139,8 @@ bool OtherTags::IsRead(const cv::Mat& image, const CameraModel& camera, const Bo
       continue;
     }
     const TagModel& tag = board.tags[index];
-    const double cell_px = CellPx(camera, camera_from_board, tag);
-    if (cell_px < kLeastCellPx) continue;
+    const double cell_px = tag.StrokePx(camera, camera_from_board);
+    if (cell_px < PadPart::kLeastStrokePx) continue;
     const std::span<const float> gray =
         ReadCellsAt(image, camera, camera_from_board, tag, cell_px, samples);
     if (ShowsOther(tag, grids_[index], cell_px, gray)) return true;

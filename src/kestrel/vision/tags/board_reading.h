@@ -7,8 +7,8 @@
 
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/vision/search/pad_samples.h"
 #include "kestrel/vision/tags/board_model.h"
-#include "kestrel/vision/tags/board_samples.h"
 #include "kestrel/vision/tags/tag_board.h"
 #include "kestrel/vision/target/landing_detection.h"
 
@@ -27,7 +27,7 @@ struct BoardReading {
 // its bits are wrong than may be misread. 'samples': room for the cells of a tag. Does not
 // allocate.
 BoardReading ReadBoard(const cv::Mat& image, const CameraModel& camera, const BoardModel& board,
-                       const RigidTransform& camera_from_board, BoardSamples* samples,
+                       const RigidTransform& camera_from_board, PadSamples* samples,
                        DimSample dim = DimSample::kWrong);
 
 // The tags that another board of the same layout may have: those of the same families whose ids
@@ -43,7 +43,7 @@ class OtherTags {
   // allocate.
   bool IsRead(const cv::Mat& image, const CameraModel& camera, const BoardModel& board,
               const RigidTransform& camera_from_board, const SeenParts& read,
-              BoardSamples* samples) const;
+              PadSamples* samples) const;
 
  private:
   std::vector<std::vector<TagGrid>> grids_;  // of the other tags, for each tag of the board

@@ -9,7 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "kestrel/vision/tags/board_model.h"
-#include "kestrel/vision/tags/board_samples.h"
+#include "kestrel/vision/tags/cell_agreement.h"
 
 namespace kestrel {
 namespace {

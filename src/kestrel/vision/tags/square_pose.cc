@@ -7,7 +7,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/SVD>
+
+#include "kestrel/vision/search/plane_figure.h"
 
 namespace kestrel {
 namespace {
@@ -91,25 +92,6 @@ std::optional<Eigen::Matrix3d> HomographyOfSquare(const SquareCorners& corners) 
   Eigen::Matrix3d plane_from_square;
   plane_from_square << h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], 1;
   return axes * plane_from_square;
-}
-
-RigidTransform PoseOfAffineMap(const Eigen::Matrix3d& axes, const Eigen::Matrix2d& map,
-                               const Eigen::Vector2d& center, double sign) {
-  const Eigen::JacobiSVD<Eigen::Matrix2d> svd(map);
-  const double scale = svd.singularValues()(0);
-  const Eigen::Matrix2d flat = map / scale;
-  const double first = std::sqrt(std::max(0.0, 1 - flat.col(0).squaredNorm()));
-  double second = std::sqrt(std::max(0.0, 1 - flat.col(1).squaredNorm()));
-  if (flat.col(0).dot(flat.col(1)) > 0) second = -second;
-  Eigen::Matrix3d rotation;
-  rotation.col(0) << flat.col(0), sign * first;
-  rotation.col(1) << flat.col(1), sign * second;
-  rotation.col(0).normalize();
-  rotation.col(1) -= rotation.col(0).dot(rotation.col(1)) * rotation.col(0);
-  rotation.col(1).normalize();
-  rotation.col(2) = rotation.col(0).cross(rotation.col(1));
-  return {Eigen::Quaterniond(Eigen::Matrix3d(axes * rotation)),
-          axes * center.homogeneous() / scale};
 }
 
 std::optional<RigidTransform> PoseOfSquare(const SquareCorners& corners,

@@ -18,12 +18,6 @@ using SquareCorners = std::array<Eigen::Vector3d, 4>;
 // Nothing when no square looks like this.
 std::optional<Eigen::Matrix3d> HomographyOfSquare(const SquareCorners& corners);
 
-// Returns one of the two poses of a small plane figure by the affine map from its plane to the
-// image plane at distance 1 across the third of 'axes', with x and y along the others: place =
-// 'map' (1 / m) * point + 'center'. 'sign', 1 or -1, chooses the pose.
-RigidTransform PoseOfAffineMap(const Eigen::Matrix3d& axes, const Eigen::Matrix2d& map,
-                               const Eigen::Vector2d& center, double sign);
-
 // Returns the pose of the square whose corners are nearest to the rays, nothing when they are those
 // of its back. Of the two poses under which a far square looks nearly the same it is the likelier.
 std::optional<RigidTransform> PoseOfSquare(const SquareCorners& corners,

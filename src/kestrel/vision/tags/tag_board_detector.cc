@@ -7,18 +7,12 @@
 
 #include "kestrel/core/base/options.h"
 #include "kestrel/core/base/violations.h"
-#include "kestrel/vision/tags/board_alignment.h"
 #include "kestrel/vision/tags/board_model.h"
 #include "kestrel/vision/tags/tag_quads.h"
 #include "kestrel/vision/tags/tag_search.h"
 
 namespace kestrel {
 namespace {
-
-class TagWorkspace final : public TargetWorkspace {
- public:
-  TagSearchBuffers buffers;
-};
 
 // The square of a tag, with points along its sides: a lens bends lines.
 std::vector<Eigen::Vector3d> OutlineOf(const PrintedTag& tag) {
@@ -73,14 +67,14 @@ struct TagBoardDetector::Impl {
         board(Checked(tags)),
         options(Checked(how)),
         finder(camera),
-        alignment(camera, board),
+        alignment(camera, board.tags),
         shape(ShapeOf(tags)) {}
 
   CameraModel camera;
   BoardModel board;
   TagBoardDetectorOptions options;
   TagQuadFinder finder;
-  BoardAlignment alignment;
+  PadAlignment alignment;
   TargetShape shape;
 };
 
@@ -93,26 +87,19 @@ TagBoardDetector& TagBoardDetector::operator=(TagBoardDetector&&) noexcept = def
 
 LandingReport TagBoardDetector::Detect(const cv::Mat& image, const LandingHint& hint,
                                        TargetWorkspace& workspace) const {
-  const CameraModel& camera = impl_->camera;
-  if (image.type() != CV_8UC1 || image.cols != camera.width_px() ||
-      image.rows != camera.height_px()) {
-    LandingReport report;
-    report.reason = "the image is not CV_8UC1 of the camera's size";
-    return report;
-  }
   constexpr double kPartFactor = 1.3, kPartMarginPx = 8;
-  const TagSearchModels models{{camera, impl_->alignment, impl_->board.radius_m,
+  const TagSearchModels models{{impl_->camera, impl_->alignment, impl_->board.radius_m,
                                 impl_->options.level_sigma_deg, kPartFactor, kPartMarginPx},
                                impl_->board,
                                impl_->finder,
                                impl_->options.min_quality};
-  return TagSearch(models, image, hint, &dynamic_cast<TagWorkspace&>(workspace).buffers).Run();
+  return TagSearch(models, image, hint, &dynamic_cast<TagSearchBuffers&>(workspace)).Run();
 }
 
 std::unique_ptr<TargetWorkspace> TagBoardDetector::MakeWorkspace() const {
-  auto workspace = std::make_unique<TagWorkspace>();
-  workspace->buffers.board.samples.Reserve(impl_->board.most_cells);
-  workspace->buffers.board.alignment.Reserve(impl_->board);
+  auto workspace = std::make_unique<TagSearchBuffers>();
+  workspace->pad.samples.Reserve(impl_->board.most_cells);
+  impl_->alignment.Reserve(&workspace->pad.alignment);
   return workspace;
 }
 

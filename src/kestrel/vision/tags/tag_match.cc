@@ -75,7 +75,7 @@ int TurnedIndex(int column, int row, int turn, int width) {
 
 std::span<const float> ReadQuad(const cv::Mat& image, const CameraModel& camera,
                                 const Eigen::Matrix3d& homography, double side_px,
-                                const TagGrid& grid, BoardSamples* samples) {
+                                const TagGrid& grid, PadSamples* samples) {
   samples->Clear();
   const double middle = 0.5 * grid.width;
   for (int row = 0; row < grid.width; ++row) {
@@ -90,7 +90,7 @@ std::span<const float> ReadQuad(const cv::Mat& image, const CameraModel& camera,
 
 std::optional<TagMatch> MatchTag(const cv::Mat& image, const CameraModel& camera,
                                  const BoardModel& board, const TagQuad& quad,
-                                 BoardSamples* samples) {
+                                 PadSamples* samples) {
   const std::optional<Eigen::Matrix3d> homography = HomographyOfSquare(quad.corners);
   if (!homography) return std::nullopt;
   const TagModel* best = nullptr;

@@ -9,8 +9,8 @@
 
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/vision/search/pad_samples.h"
 #include "kestrel/vision/tags/board_model.h"
-#include "kestrel/vision/tags/board_samples.h"
 #include "kestrel/vision/tags/tag_quads.h"
 
 namespace kestrel {
@@ -30,12 +30,11 @@ int TurnedIndex(int column, int row, int turn, int width);
 // not, for a small quad or a lens that is not quite as described.
 std::span<const float> ReadQuad(const cv::Mat& image, const CameraModel& camera,
                                 const Eigen::Matrix3d& homography, double side_px,
-                                const TagGrid& grid, BoardSamples* samples);
+                                const TagGrid& grid, PadSamples* samples);
 
 // Returns the tag of the board whose bits are most like what a quad shows, in the best of four
 // turns; nothing when none is. 'samples': room for the cells of a tag. Does not allocate.
 std::optional<TagMatch> MatchTag(const cv::Mat& image, const CameraModel& camera,
-                                 const BoardModel& board, const TagQuad& quad,
-                                 BoardSamples* samples);
+                                 const BoardModel& board, const TagQuad& quad, PadSamples* samples);
 
 }  // namespace kestrel

@@ -175,11 +175,12 @@ void TagQuadFinder::Find(const cv::Rect& part, int pass, TagQuadBuffers* buffers
 bool TagQuadFinder::FitQuad(const Border& border, const cv::Rect& part, int pass,
                             BorderBuffers* buffers, TagQuad* quad) const {
   Eigen::Matrix3d camera_from_plane;
-  if (!borders_.OnPlane(border, part, pass, &camera_from_plane, buffers)) return false;
+  const int level = kQuadPasses[pass].image_level;
+  if (!borders_.OnPlane(border, part, level, &camera_from_plane, buffers)) return false;
   const PlanePoints& on_plane = buffers->points;
   const std::array<int, 4> rough = RoughCorners(on_plane);
   std::array<PlaneLine, 4> sides;
-  const double allowed = 0.6 * borders_.Scale(pass) / focal_px_;
+  const double allowed = 0.6 * (1 << level) / focal_px_;
   for (int k = 0; k < 4; ++k) {
     const int next = rough[(k + 1) % 4];
     constexpr double kBend = 0.02;  // of the length

@@ -8,7 +8,7 @@
 #include <opencv2/core.hpp>
 
 #include "kestrel/core/camera/camera_model.h"
-#include "kestrel/vision/tags/plane_borders.h"
+#include "kestrel/vision/search/plane_borders.h"
 #include "kestrel/vision/tags/square_pose.h"
 
 namespace kestrel {

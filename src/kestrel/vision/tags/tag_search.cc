@@ -21,21 +21,39 @@ double SearchOdds(std::size_t tags, int quads) {
   return kSceneOdds + std::log(static_cast<double>(tags) * kTurns * (quads + kOtherQuads));
 }
 
+// Returns the mean of the white cells minus that of the black ones, over the spread of all: how
+// much gray values, negative where out of view, look like a tag. Negative when few are in view.
+double LikenessOf(std::span<const float> gray, const TagGrid& grid) {
+  constexpr int kFewest = 4;
+  double sum[2] = {0, 0}, squares = 0;
+  int count[2] = {0, 0};
+  for (std::size_t i = 0; i < gray.size(); ++i) {
+    if (grid.cells[i] == TagCell::kNone || gray[i] < 0) continue;
+    const bool white = grid.cells[i] == TagCell::kWhite;
+    sum[white] += gray[i];
+    squares += gray[i] * gray[i];
+    ++count[white];
+  }
+  if (count[0] < kFewest || count[1] < kFewest) return -1;
+  const int all = count[0] + count[1];
+  const double mean = (sum[0] + sum[1]) / all;
+  const double spread = std::sqrt(std::max(1.0, squares / all - mean * mean));
+  return (sum[1] / count[1] - sum[0] / count[0]) / spread;
+}
+
 }  // namespace
 
 TagSearch::TagSearch(const TagSearchModels& models, const cv::Mat& image, const LandingHint& hint,
                      TagSearchBuffers* buffers)
-    : BoardSearch(models.search, image, hint, &buffers->board),
-      tags_(models),
-      quads_(buffers->quads) {}
+    : PadSearch(models.search, image, hint, &buffers->pad), tags_(models), quads_(buffers->quads) {}
 
 // The largest tag of which enough is in view.
 const TagModel* TagSearch::LeadingTag(const RigidTransform& pose) {
   const TagModel* leading = nullptr;
   for (const TagModel& tag : tags_.board.tags) {
     if (leading != nullptr && tag.size_m <= leading->size_m) continue;
-    if (CellPx(models_.camera, pose, tag) < kLeastCellPx) continue;
-    SampleAt(pose, tag.cell_centers);
+    if (tag.StrokePx(models_.camera, pose) < PadPart::kLeastStrokePx) continue;
+    buffers_.samples.Place(models_.camera, pose, tag.cell_centers);
     const std::span<const float> gray = buffers_.samples.Read(image_);
     const auto seen = std::count_if(gray.begin(), gray.end(), [](float g) { return g >= 0; });
     constexpr int kLeastShare = 6;  // a sixth of the cells
@@ -49,13 +67,8 @@ void TagSearch::Follow(const RigidTransform& expected) {
   if (tag == nullptr) return;
   constexpr double kStepCells = 0.4;
   const std::optional<RigidTransform> shifted =
-      MostLike(expected, tag->cell_centers, kStepCells * CellPx(models_.camera, expected, *tag),
-               [tag](std::span<const float> gray) {
-                 return Likeness(gray, [tag](std::size_t i) {
-                   const TagCell cell = tag->grid().cells[i];
-                   return cell == TagCell::kNone ? -1 : static_cast<int>(cell == TagCell::kWhite);
-                 });
-               });
+      MostLike(expected, tag->cell_centers, kStepCells * tag->StrokePx(models_.camera, expected),
+               [tag](std::span<const float> gray) { return LikenessOf(gray, tag->grid()); });
   if (shifted) Take(*shifted, kExpectedOdds, DetectionMethod::kFollowed);
 }
 
@@ -95,18 +108,18 @@ void TagSearch::Try(const TagQuad& quad) {
   if (!match) return;
   log_.Reach(LandingStage::kCross, "the edges of the cells are not where they should be");
   // A pose by one tag of several is not good enough to find the edges of the others.
-  std::optional<AlignedBoard> by_tag;
+  std::optional<AlignedPad> by_tag;
   if (tags_.board.tags.size() > 1) by_tag = Align(match->camera_from_board, match->tag);
-  Take(by_tag ? by_tag->camera_from_board : match->camera_from_board,
+  Take(by_tag ? by_tag->camera_from_pad : match->camera_from_board,
        SearchOdds(tags_.board.tags.size(), tried_), DetectionMethod::kTags);
 }
 
 void TagSearch::Take(const RigidTransform& pose, double prior, DetectionMethod method) {
-  const std::optional<AlignedBoard> aligned = Align(pose);
+  const std::optional<AlignedPad> aligned = Align(pose);
   if (!aligned) return;
   log_.Reach(LandingStage::kMatch, "the cells do not look like the tag");
   const BoardReading reading =
-      ReadBoard(image_, models_.camera, tags_.board, aligned->camera_from_board, &buffers_.samples,
+      ReadBoard(image_, models_.camera, tags_.board, aligned->camera_from_pad, &buffers_.samples,
                 DimSampleIn(method));
   const double quality = 1 / (1 + std::exp(prior - reading.evidence));
   if (quality < tags_.min_quality) return;
@@ -115,14 +128,14 @@ void TagSearch::Take(const RigidTransform& pose, double prior, DetectionMethod m
   Report(*aligned, reading.parts, quality, method);
 }
 
-void TagSearch::Report(AlignedBoard aligned, const SeenParts& parts, double quality,
+void TagSearch::Report(AlignedPad aligned, const SeenParts& parts, double quality,
                        DetectionMethod method) {
   const std::optional<RigidTransform> mirror = ResolveMirror(&aligned);
   LandingDetection detection = DetectionOf(aligned, quality, method);
   detection.mirror_camera_from_pattern = mirror;
   double largest = 0;
   for (const SeenPart& part : parts.all()) largest = std::max(largest, part.size_px);
-  const RigidTransform& pose = aligned.camera_from_board;
+  const RigidTransform& pose = aligned.camera_from_pad;
   detection.semi_minor_px = 0.5 * largest;
   detection.semi_major_px =
       std::min(0.5 * largest / std::max(Slant(pose), 0.01),

@@ -3,8 +3,8 @@
 
 #include <opencv2/core.hpp>
 
+#include "kestrel/vision/search/pad_search.h"
 #include "kestrel/vision/tags/board_model.h"
-#include "kestrel/vision/tags/board_search.h"
 #include "kestrel/vision/tags/tag_board_detector.h"
 #include "kestrel/vision/tags/tag_quads.h"
 
@@ -12,20 +12,20 @@ namespace kestrel {
 
 // Constants of the searches of one detector.
 struct TagSearchModels {
-  BoardSearchModels search;
+  PadSearchModels search;
   const BoardModel& board;
   const TagQuadFinder& finder;
   double min_quality;
 };
 
 // Memory of one thread's searches.
-struct TagSearchBuffers {
+struct TagSearchBuffers : TargetWorkspace {
   TagQuadBuffers quads;
-  BoardSearchBuffers board;
+  PadSearchBuffers pad;
 };
 
 // The search of one image for a board of tags.
-class TagSearch final : public BoardSearch {
+class TagSearch final : public PadSearch {
  public:
   TagSearch(const TagSearchModels& models, const cv::Mat& image, const LandingHint& hint,
             TagSearchBuffers* buffers);
@@ -43,7 +43,7 @@ class TagSearch final : public BoardSearch {
   // 'prior': logarithm of the odds against a board at any of the places that were tried.
   void Take(const RigidTransform& pose, double prior, DetectionMethod method);
   // 'aligned': a copy, as its mirror pose may replace it.
-  void Report(AlignedBoard aligned, const SeenParts& parts, double quality, DetectionMethod method);
+  void Report(AlignedPad aligned, const SeenParts& parts, double quality, DetectionMethod method);
 
   const TagSearchModels& tags_;
   TagQuadBuffers& quads_;

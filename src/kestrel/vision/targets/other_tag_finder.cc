@@ -98,7 +98,7 @@ std::optional<int> OtherTagFinder::Find(const cv::Mat& image, OtherTagBuffers* b
 }
 
 std::optional<int> OtherTagFinder::Read(const cv::Mat& image, const TagQuad& quad,
-                                        BoardSamples* samples) const {
+                                        PadSamples* samples) const {
   const std::optional<Eigen::Matrix3d> homography = HomographyOfSquare(quad.corners);
   if (!homography) return std::nullopt;
   const std::span<const float> gray =

@@ -10,7 +10,7 @@
 #include <opencv2/core.hpp>
 
 #include "kestrel/core/camera/camera_model.h"
-#include "kestrel/vision/tags/board_samples.h"
+#include "kestrel/vision/search/pad_samples.h"
 #include "kestrel/vision/tags/tag_board.h"
 #include "kestrel/vision/tags/tag_quads.h"
 
@@ -19,7 +19,7 @@ namespace kestrel {
 // Memory of one thread's search for other tags.
 struct OtherTagBuffers {
   TagQuadBuffers quads;
-  BoardSamples samples;
+  PadSamples samples;
 };
 
 // Finds a tag of the family of a board's first tag whose id is not on the board: another pad is in
@@ -47,7 +47,7 @@ class OtherTagFinder {
   };
 
   std::uint64_t BitsOf(const TagGrid& grid) const;
-  std::optional<int> Read(const cv::Mat& image, const TagQuad& quad, BoardSamples* samples) const;
+  std::optional<int> Read(const cv::Mat& image, const TagQuad& quad, PadSamples* samples) const;
   std::optional<int> IdOf(std::uint64_t bits) const;
 
   CameraModel camera_;

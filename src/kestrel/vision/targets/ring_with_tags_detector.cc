@@ -25,7 +25,7 @@ class RingWithTagsWorkspace final : public TargetWorkspace {
  public:
   std::unique_ptr<TargetWorkspace> ring;
   std::unique_ptr<TargetWorkspace> tags;
-  BoardSamples samples;
+  PadSamples samples;
 };
 
 RigidTransform Turned(const RigidTransform& camera_from_pattern, int quarters) {
@@ -70,12 +70,12 @@ struct RingWithTagsDetector::Impl {
 
   // Returns the heading in which tags are read; nothing where none is likely enough.
   std::optional<Heading> ReadHeading(const cv::Mat& image, const RigidTransform& ring_pose,
-                                     BoardSamples* samples) const;
+                                     PadSamples* samples) const;
   // Returns whether another pad's tags are in the place of tags that are not read.
   bool IsAnotherPad(const cv::Mat& image, const RigidTransform& ring_pose,
-                    const std::optional<Heading>& heading, BoardSamples* samples) const;
+                    const std::optional<Heading>& heading, PadSamples* samples) const;
   // Completes the report of a ring that was found.
-  void Identify(const cv::Mat& image, BoardSamples* samples, LandingReport* report) const;
+  void Identify(const cv::Mat& image, PadSamples* samples, LandingReport* report) const;
 
   LandingPatternDetector ring;
   TagBoardDetector tags;
@@ -87,7 +87,7 @@ struct RingWithTagsDetector::Impl {
 
 std::optional<Heading> RingWithTagsDetector::Impl::ReadHeading(const cv::Mat& image,
                                                                const RigidTransform& ring_pose,
-                                                               BoardSamples* samples) const {
+                                                               PadSamples* samples) const {
   Heading best;
   double most = 0;
   double sum = std::exp(kExpectedOdds);  // of the likelihoods, that of no tag included
@@ -106,7 +106,7 @@ std::optional<Heading> RingWithTagsDetector::Impl::ReadHeading(const cv::Mat& im
 
 bool RingWithTagsDetector::Impl::IsAnotherPad(const cv::Mat& image, const RigidTransform& ring_pose,
                                               const std::optional<Heading>& heading,
-                                              BoardSamples* samples) const {
+                                              PadSamples* samples) const {
   if (heading) {
     return others.IsRead(image, ring.camera(), board, Turned(ring_pose, heading->quarters),
                          heading->tags, samples);
@@ -119,7 +119,7 @@ bool RingWithTagsDetector::Impl::IsAnotherPad(const cv::Mat& image, const RigidT
   return false;
 }
 
-void RingWithTagsDetector::Impl::Identify(const cv::Mat& image, BoardSamples* samples,
+void RingWithTagsDetector::Impl::Identify(const cv::Mat& image, PadSamples* samples,
                                           LandingReport* report) const {
   LandingDetection& detection = *report->detection;
   const RigidTransform ring_pose = detection.camera_from_pattern;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/vision/tags/board_alignment.h"
+#include "kestrel/vision/search/pad_alignment.h"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,6 @@
 
 #include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/core/image/gray_sampling.h"
-#include "kestrel/vision/tags/board_samples.h"
 
 namespace kestrel {
 namespace {
@@ -20,12 +19,12 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 constexpr int kProfile = 11;        // gray values across an edge
-constexpr double kReach = 0.5;      // of the cell, on either side of an edge
+constexpr double kReach = 0.5;      // of the stroke, on either side of an edge
 constexpr double kMostReachPx = 6;  // at last; four times as far at first
 constexpr int kHalvings = 2;        // of the reach, each once the edges move by less than a fourth
 constexpr double kLeastReachPx = 1.2;
-constexpr double kFineCellPx = 8;  // cells with more than one point at an edge
-constexpr float kLeastStep = 6;    // gray values across an edge
+constexpr double kFineStrokePx = 8;  // strokes whose fine edges are looked at, too
+constexpr float kLeastStep = 6;      // gray values across an edge
 constexpr std::size_t kLeastEdges = 12;
 constexpr double kFloorPx = 0.06;  // noise of an edge's place that stays however sharp it is
 constexpr double kOutlier = 4;     // standard deviations
@@ -84,10 +83,9 @@ void AddPrior(const RigidTransform& pose, const LevelPrior& prior, NormalEquatio
 }
 
 // Returns how far (px) a step moves the edge that it moves farthest.
-double MostMoved(const std::vector<BoardAlignmentBuffers::Equation>& equations,
-                 const Vector6& step) {
+double MostMoved(const std::vector<PadAlignmentBuffers::Equation>& equations, const Vector6& step) {
   double most = 0;
-  for (const BoardAlignmentBuffers::Equation& equation : equations) {
+  for (const PadAlignmentBuffers::Equation& equation : equations) {
     if (!std::isnan(equation.residual_px)) {
       most = std::max(most, std::abs(equation.derivative.dot(step)));
     }
@@ -97,41 +95,51 @@ double MostMoved(const std::vector<BoardAlignmentBuffers::Equation>& equations,
 
 }  // namespace
 
-double CostAbove(const AlignedBoard& best, const AlignedBoard& other) {
+double CostAbove(const AlignedPad& best, const AlignedPad& other) {
   const double sigma = std::max(kFloorPx, best.rms_px);
   const double squares =
       (other.rms_px * other.rms_px - best.rms_px * best.rms_px) / (sigma * sigma);
   return 0.5 * best.edges * squares + other.prior_cost - best.prior_cost;
 }
 
-void BoardAlignmentBuffers::Reserve(const BoardModel& board) {
-  const std::size_t most = board.most_edges;
-  edges.reserve(most);
-  for (std::vector<float>* column : {&x, &y, &z, &u, &v}) column->resize(most);
-  for (std::vector<float>& column : derivative) column.resize(most);
-  for (std::vector<float>* column : {&profile_u, &profile_v, &gray}) {
-    column->resize(most * kProfile);
-  }
-  equations.reserve(most);
-  magnitudes.reserve(most);
+double PadPart::StrokePx(const CameraModel& camera, const RigidTransform& camera_from_pad) const {
+  const Eigen::Vector3d place = camera_from_pad * Eigen::Vector3d(center.x(), center.y(), 0);
+  const Eigen::Vector3d face = camera_from_pad.rotation * Eigen::Vector3d::UnitZ();
+  const double distance = place.norm();
+  const double slant = -face.dot(place) / distance;
+  return std::max(0.0, slant) * camera.intrinsics().fx_px * stroke_m / distance;
 }
 
-void BoardAlignment::CollectEdges(const RigidTransform& pose, const TagModel* only,
-                                  BoardAlignmentBuffers* buffers) const {
+void PadAlignment::Reserve(PadAlignmentBuffers* buffers) const {
+  PadAlignmentBuffers& b = *buffers;
+  std::size_t most = 0;
+  for (const PadPart* part : parts_) most += part->edges.size();
+  b.edges.reserve(most);
+  for (std::vector<float>* column : {&b.x, &b.y, &b.z, &b.u, &b.v}) column->resize(most);
+  for (std::vector<float>& column : b.derivative) column.resize(most);
+  for (std::vector<float>* column : {&b.profile_u, &b.profile_v, &b.gray}) {
+    column->resize(most * kProfile);
+  }
+  b.equations.reserve(most);
+  b.magnitudes.reserve(most);
+}
+
+void PadAlignment::CollectEdges(const RigidTransform& pose, const PadPart* only,
+                                PadAlignmentBuffers* buffers) const {
   buffers->edges.clear();
-  for (const TagModel& tag : board_.tags) {
-    if (only != nullptr && &tag != only) continue;
-    const double cell_px = CellPx(camera_, pose, tag);
-    if (cell_px < kLeastCellPx) continue;
-    for (const BoardEdge& edge : tag.edges) {
-      if (!edge.fine || cell_px >= kFineCellPx) buffers->edges.push_back(&edge);
+  for (const PadPart* part : parts_) {
+    if (only != nullptr && part != only) continue;
+    const double stroke_px = part->StrokePx(camera_, pose);
+    if (stroke_px < PadPart::kLeastStrokePx) continue;
+    for (const PadEdge& edge : part->edges) {
+      if (!edge.fine || stroke_px >= kFineStrokePx) buffers->edges.push_back(&edge);
     }
   }
 }
 
-void BoardAlignment::Predict(const RigidTransform& pose, double most_reach_px,
-                             BoardAlignmentBuffers* buffers) const {
-  BoardAlignmentBuffers& b = *buffers;
+void PadAlignment::Predict(const RigidTransform& pose, double most_reach_px,
+                           PadAlignmentBuffers* buffers) const {
+  PadAlignmentBuffers& b = *buffers;
   const std::size_t count = b.edges.size();
   const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
   for (std::size_t i = 0; i < count; ++i) {
@@ -147,21 +155,21 @@ void BoardAlignment::Predict(const RigidTransform& pose, double most_reach_px,
                       &columns);
   b.equations.clear();
   for (std::size_t i = 0; i < count; ++i) {
-    const BoardEdge& edge = *b.edges[i];
+    const PadEdge& edge = *b.edges[i];
     Eigen::Matrix<double, 2, 3> by_point;
     for (int k = 0; k < 6; ++k) by_point(k / 3, k % 3) = b.derivative[k][i];
     const Eigen::Matrix2d by_place = by_point * rotation.leftCols<2>();
     const Eigen::Vector2d along = by_place * Eigen::Vector2d(-edge.to_white.y(), edge.to_white.x());
     Eigen::Vector2d normal = Eigen::Vector2d(-along.y(), along.x()).normalized();
-    double cell_px = normal.dot(by_place * edge.to_white) * edge.cell_m;
-    if (cell_px < 0) {
+    double stroke_px = normal.dot(by_place * edge.to_white) * edge.stroke_m;
+    if (stroke_px < 0) {
       normal = -normal;
-      cell_px = -cell_px;
+      stroke_px = -stroke_px;
     }
-    const double reach = std::clamp(kReach * cell_px, kLeastReachPx, most_reach_px);
+    const double reach = std::clamp(kReach * stroke_px, kLeastReachPx, most_reach_px);
     const Eigen::RowVector3d by_translation = normal.transpose() * by_point;
     const Eigen::Vector3d arm = rotation.leftCols<2>() * edge.place;
-    BoardAlignmentBuffers::Equation equation;
+    PadAlignmentBuffers::Equation equation;
     equation.derivative << by_translation, arm.cross(by_translation.transpose()).transpose();
     equation.reach_px = static_cast<float>(reach);
     equation.residual_px = NAN;
@@ -174,13 +182,13 @@ void BoardAlignment::Predict(const RigidTransform& pose, double most_reach_px,
   }
 }
 
-void BoardAlignment::Measure(const cv::Mat& image, BoardAlignmentBuffers* buffers) const {
-  BoardAlignmentBuffers& b = *buffers;
+void PadAlignment::Measure(const cv::Mat& image, PadAlignmentBuffers* buffers) const {
+  PadAlignmentBuffers& b = *buffers;
   SampleGrays(image, b.profile_u.data(), b.profile_v.data(), b.edges.size() * kProfile,
               b.gray.data());
   b.magnitudes.clear();
   for (std::size_t i = 0; i < b.equations.size(); ++i) {
-    BoardAlignmentBuffers::Equation& equation = b.equations[i];
+    PadAlignmentBuffers::Equation& equation = b.equations[i];
     equation.residual_px =
         EdgePlace(std::span<const float, kProfile>(b.gray.data() + i * kProfile, kProfile),
                   equation.reach_px);
@@ -188,15 +196,15 @@ void BoardAlignment::Measure(const cv::Mat& image, BoardAlignmentBuffers* buffer
   }
 }
 
-std::optional<AlignedBoard> BoardAlignment::Align(const cv::Mat& image, const RigidTransform& start,
-                                                  const LevelPrior& prior, const TagModel* only,
-                                                  BoardAlignmentBuffers* buffers) const {
-  AlignedBoard aligned;
-  aligned.camera_from_board = start;
+std::optional<AlignedPad> PadAlignment::Align(const cv::Mat& image, const RigidTransform& start,
+                                              const LevelPrior& prior, const PadPart* only,
+                                              PadAlignmentBuffers* buffers) const {
+  AlignedPad aligned;
+  aligned.camera_from_pad = start;
   CollectEdges(start, only, buffers);
   int halvings = 0;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
-    RigidTransform& pose = aligned.camera_from_board;
+    RigidTransform& pose = aligned.camera_from_pad;
     const double most_reach_px = kMostReachPx * (1 << (kHalvings - halvings));
     Predict(pose, most_reach_px, buffers);
     Measure(image, buffers);
@@ -207,8 +215,8 @@ std::optional<AlignedBoard> BoardAlignment::Align(const cv::Mat& image, const Ri
     aligned.prior_cost = equations.cost;
     aligned.edges = 0;
     double squares = 0;
-    for (const BoardAlignmentBuffers::Equation& equation : buffers->equations) {
-      // Tukey's weights: what is far off is no edge of the board.
+    for (const PadAlignmentBuffers::Equation& equation : buffers->equations) {
+      // Tukey's weights: what is far off is no edge of the pad.
       const double share = equation.residual_px / (kOutlier * sigma);
       if (!(std::abs(share) < 1)) continue;
       const double weight = (1 - share * share) * (1 - share * share) / (sigma * sigma);
@@ -221,7 +229,7 @@ std::optional<AlignedBoard> BoardAlignment::Align(const cv::Mat& image, const Ri
     const Eigen::LDLT<Matrix6> solver(equations.information);
     Vector6 step = solver.solve(equations.gradient);
     if (!step.allFinite()) return std::nullopt;
-    // The image hardly shows the tilt of a far board: what it suggests at first is no guide.
+    // The image hardly shows the tilt of a far pad: what it suggests at first is no guide.
     step *= kMostTurn / std::max(kMostTurn, step.tail<3>().norm());
     aligned.covariance = solver.solve(Matrix6::Identity());
     pose = Moved(pose, step.head<3>(), step.tail<3>());

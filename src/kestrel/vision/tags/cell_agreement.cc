@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/vision/tags/board_samples.h"
+#include "kestrel/vision/tags/cell_agreement.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-
-#include "kestrel/core/image/gray_sampling.h"
 
 namespace kestrel {
 namespace {
@@ -105,68 +103,6 @@ VertexCount CountVertices(const TagGrid& grid, const std::vector<bool>& is_data)
 
 }  // namespace
 
-void BoardSamples::Reserve(std::size_t most) {
-  for (std::vector<float>* column : {&x_, &y_, &z_, &u_, &v_, &moved_u_, &moved_v_, &gray_}) {
-    if (column->size() < most) column->resize(most);
-  }
-}
-
-void BoardSamples::Add(const Eigen::Vector3d& point_in_camera) {
-  x_[count_] = static_cast<float>(point_in_camera.x());
-  y_[count_] = static_cast<float>(point_in_camera.y());
-  z_[count_] = static_cast<float>(point_in_camera.z());
-  ++count_;
-}
-
-void BoardSamples::Project(const CameraModel& camera) {
-  camera.ProjectMany({x_.data(), y_.data(), z_.data()}, count_, u_.data(), v_.data());
-}
-
-std::span<const float> BoardSamples::Read(const cv::Mat& image, float dx, float dy) {
-  for (std::size_t i = 0; i < count_; ++i) {
-    moved_u_[i] = u_[i] + dx;
-    moved_v_[i] = v_[i] + dy;
-  }
-  SampleGrays(image, moved_u_.data(), moved_v_.data(), count_, gray_.data());
-  return {gray_.data(), count_};
-}
-
-std::span<const float> BoardSamples::ReadCells(const cv::Mat& image, int grid_width,
-                                               double cell_px) {
-  const std::span<const float> blurred = Read(image);
-  // A blur by 'kBlurPx', undone to first order and then some: the series goes on.
-  constexpr double kBlurPx = 0.8;
-  constexpr double kMost = 0.5;
-  const auto share = static_cast<float>(std::min(kMost, kBlurPx * kBlurPx / (cell_px * cell_px)));
-  std::vector<float>& sharp = moved_u_;
-  for (std::size_t i = 0; i < count_; ++i) {
-    const int column = static_cast<int>(i) % grid_width;
-    const int row = static_cast<int>(i) / grid_width;
-    float excess = 0;  // over the neighbours
-    const auto add = [&](int x, int y) {
-      if (x < 0 || y < 0 || x >= grid_width || y >= grid_width) return;
-      const float neighbor = blurred[y * grid_width + x];
-      if (neighbor >= 0) excess += blurred[i] - neighbor;
-    };
-    add(column - 1, row);
-    add(column + 1, row);
-    add(column, row - 1);
-    add(column, row + 1);
-    sharp[i] = blurred[i] < 0 ? blurred[i] : std::max(0.0f, blurred[i] + share * excess);
-  }
-  return {sharp.data(), count_};
-}
-
-double CellPx(const CameraModel& camera, const RigidTransform& camera_from_board,
-              const TagModel& tag) {
-  const Eigen::Vector2d& middle = tag.printed.center;
-  const Eigen::Vector3d place = camera_from_board * Eigen::Vector3d(middle.x(), middle.y(), 0);
-  const Eigen::Vector3d face = camera_from_board.rotation * Eigen::Vector3d::UnitZ();
-  const double distance = place.norm();
-  const double slant = -face.dot(place) / distance;
-  return std::max(0.0, slant) * camera.intrinsics().fx_px * tag.printed.cell_m / distance;
-}
-
 double CellInformation(const TagGrid& grid, const std::vector<bool>& is_data) {
   // Before any is seen, of five vertices one is thought to be a corner.
   constexpr double kPriorCorners = 1, kPriorVertices = 5;
@@ -176,11 +112,6 @@ double CellInformation(const TagGrid& grid, const std::vector<bool>& is_data) {
   // A figure of straight edges has as many of them as corners, each on a line of the grid.
   const double by_edges = count.corners * std::log(grid.border_width - 1) / std::max(1, count.data);
   return std::min(by_corners, by_edges);
-}
-
-TagAgreement CompareCells(const TagModel& tag, double cell_px, std::span<const float> gray,
-                          DimSample dim) {
-  return CompareCells(tag.grid(), tag.is_data, cell_px, gray, dim);
 }
 
 TagAgreement CompareCells(const TagGrid& grid, const std::vector<bool>& is_data, double cell_px,

@@ -12,6 +12,7 @@
 
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/core/camera/ray_table.h"
+#include "kestrel/core/image/black_top_hat.h"
 #include "kestrel/core/image/border_tracing.h"
 #include "kestrel/core/image/local_threshold.h"
 
@@ -39,6 +40,21 @@ struct BorderBuffers {
   std::vector<Eigen::Vector2d> points;  // of one border, on the plane
 };
 
+// Memory of one thread's narrow borders.
+struct NarrowBorderBuffers {
+  BlackTopHat top_hat;
+  std::vector<std::uint8_t> inverted;  // a level, dark where there is white ink
+
+  void Reserve(const cv::Mat& image, BorderBuffers* borders);
+};
+
+// Traces borders around strokes of ink that are narrow at a level of an image's pyramid, in any
+// light: the edge of a shadow that crosses a stroke is no border of it, as light is a term of the
+// logarithms in the pyramid, which the top-hat removes. 'level': from 0; 'borders->pyramid' must
+// have it. A border goes around the ink. Does not allocate after Reserve.
+std::span<const Border> TraceNarrow(int level, bool white_ink, const BorderLimits& limits,
+                                    BorderBuffers* borders, NarrowBorderBuffers* buffers);
+
 // Traces borders in the logarithms of the raw image: what is darker than its surroundings by a
 // factor has a border, also where a shadow's edge runs through it. A lens bends lines, so borders
 // are examined as rays: on a plane across the ray to their middle a straight edge is straight,
@@ -65,18 +81,11 @@ class PlaneBorders {
   // Returns the borders of one pass, in pixels of its level.
   std::span<const Border> Trace(const cv::Rect& part, int pass, BorderBuffers* buffers) const;
 
-  // Writes points of a traced border, in its order, to 'buffers->points': on the plane at distance
-  // 1 across the ray to its middle. The columns of 'camera_from_plane' become the plane's axes and
-  // that ray. False where the border leaves the sight of the lens or of the plane.
-  bool OnPlane(const Border& border, const cv::Rect& part, int pass,
+  // Writes points of a border in pixels of a level, in its order, to 'buffers->points': on the
+  // plane at distance 1 across the ray to its middle. The columns of 'camera_from_plane' become the
+  // plane's axes and that ray. False where the border leaves the sight of the lens or of the plane.
+  bool OnPlane(const Border& border, const cv::Rect& part, int level,
                Eigen::Matrix3d* camera_from_plane, BorderBuffers* buffers) const;
-
-  // The same for a border in pixels of any 'level' of the pyramid.
-  bool OnPlaneOfLevel(const Border& border, const cv::Rect& part, int level,
-                      Eigen::Matrix3d* camera_from_plane, BorderBuffers* buffers) const;
-
-  // Pixels of the image per pixel of a pass.
-  double Scale(int pass) const { return 1 << passes_[pass].image_level; }
 
  private:
   void BuildPyramid(const cv::Mat& grays, BorderBuffers* buffers) const;

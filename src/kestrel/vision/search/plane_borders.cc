@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/vision/tags/plane_borders.h"
+#include "kestrel/vision/search/plane_borders.h"
 
 #include <algorithm>
 
@@ -31,7 +31,33 @@ void BrightenAbove(BitImage* bright) {
   row[last] = (std::uint64_t{1} << (bright->width() % 64)) - 1;
 }
 
+cv::Mat Inverted(const cv::Mat& image, std::vector<std::uint8_t>* memory) {
+  cv::Mat inverted(image.size(), CV_8UC1, memory->data());
+  for (int y = 0; y < image.rows; ++y) {
+    const std::uint8_t* const from = image.ptr(y);
+    std::transform(from, from + image.cols, inverted.ptr(y),
+                   [](std::uint8_t gray) { return static_cast<std::uint8_t>(255 - gray); });
+  }
+  return inverted;
+}
+
 }  // namespace
+
+void NarrowBorderBuffers::Reserve(const cv::Mat& image, BorderBuffers* borders) {
+  inverted.resize(image.total());
+  top_hat.Binarize(image, 1, &borders->binary);
+}
+
+std::span<const Border> TraceNarrow(int level, bool white_ink, const BorderLimits& limits,
+                                    BorderBuffers* borders, NarrowBorderBuffers* buffers) {
+  constexpr int kLeastContrast = 16;  // of 255
+  const cv::Mat image = borders->pyramid.ImageAt(level);
+  if (image.empty()) return {};
+  buffers->top_hat.Binarize(white_ink ? Inverted(image, &buffers->inverted) : image, kLeastContrast,
+                            &borders->binary);
+  borders->tracer.Trace(borders->binary, cv::Rect(0, 0, image.cols, image.rows), limits);
+  return borders->tracer.borders();
+}
 
 bool PlaneBorders::Covers(int pass, double least_px, double most_px) const {
   return most_px >= passes_[pass].min_px && least_px <= passes_[pass].max_px;
@@ -81,14 +107,8 @@ std::span<const Border> PlaneBorders::Trace(const cv::Rect& part, int pass_index
   return buffers->tracer.borders();
 }
 
-bool PlaneBorders::OnPlane(const Border& border, const cv::Rect& part, int pass,
+bool PlaneBorders::OnPlane(const Border& border, const cv::Rect& part, int level,
                            Eigen::Matrix3d* camera_from_plane, BorderBuffers* buffers) const {
-  return OnPlaneOfLevel(border, part, passes_[pass].image_level, camera_from_plane, buffers);
-}
-
-bool PlaneBorders::OnPlaneOfLevel(const Border& border, const cv::Rect& part, int level,
-                                  Eigen::Matrix3d* camera_from_plane,
-                                  BorderBuffers* buffers) const {
   const auto ray_at = [this, &part, scale = 1 << level](double x, double y) {
     const Eigen::Vector2f pixel(scale * x - 0.5 + part.x, scale * y - 0.5 + part.y);
     return rays_.Ray(pixel.x(), pixel.y()).cast<double>().eval();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/vision/tags/board_search.h"
+#include "kestrel/vision/search/pad_search.h"
 
 #include <algorithm>
 #include <chrono>
@@ -21,15 +21,20 @@ constexpr double kMisfitBoundPx = 1;
 
 }  // namespace
 
-BoardSearch::BoardSearch(const BoardSearchModels& models, const cv::Mat& image,
-                         const LandingHint& hint, BoardSearchBuffers* buffers)
+PadSearch::PadSearch(const PadSearchModels& models, const cv::Mat& image, const LandingHint& hint,
+                     PadSearchBuffers* buffers)
     : models_(models),
       image_(image),
       hint_(hint),
       buffers_(*buffers),
       prior_{hint.up_in_camera, Radians(models.level_sigma_deg)} {}
 
-LandingReport BoardSearch::Run() {
+LandingReport PadSearch::Run() {
+  if (image_.type() != CV_8UC1 || image_.cols != models_.camera.width_px() ||
+      image_.rows != models_.camera.height_px()) {
+    report_.reason = "the image is not CV_8UC1 of the camera's size";
+    return report_;
+  }
   report_.reason = "the image has no contrast";
   if (hint_.center_in_camera && hint_.rotation_in_camera) {
     const SearchLog::Timer timer = log_.Time(LandingStage::kMatch);
@@ -43,7 +48,7 @@ LandingReport BoardSearch::Run() {
   return report_;
 }
 
-void BoardSearch::Search() {
+void PadSearch::Search() {
   using Clock = std::chrono::steady_clock;
   const cv::Rect part = SearchedPart();
   {
@@ -61,13 +66,13 @@ void BoardSearch::Search() {
   }
 }
 
-bool BoardSearch::MayHaveSize(int pass) const {
+bool PadSearch::MayHaveSize(int pass) const {
   if (!hint_.center_in_camera) return true;
   const double distance = hint_.center_in_camera->norm();
   return MayHaveSize(pass, distance, std::min(0.5, kSigmas * hint_.center_sigma_m / distance));
 }
 
-cv::Rect BoardSearch::SearchedPart() const {
+cv::Rect PadSearch::SearchedPart() const {
   const cv::Rect whole(0, 0, image_.cols, image_.rows);
   Eigen::Vector2d center;
   if (!hint_.center_in_camera ||
@@ -87,7 +92,7 @@ cv::Rect BoardSearch::SearchedPart() const {
   return part.empty() ? whole : part;
 }
 
-void BoardSearch::ExamineBorders(std::size_t count, std::string_view reason) {
+void PadSearch::ExamineBorders(std::size_t count, std::string_view reason) {
   report_.candidates[static_cast<std::size_t>(LandingStage::kAreas)] +=
       static_cast<std::int32_t>(count);
   if (count == 0 || report_.reached >= LandingStage::kAreas) return;
@@ -95,15 +100,7 @@ void BoardSearch::ExamineBorders(std::size_t count, std::string_view reason) {
   report_.reason = reason;
 }
 
-void BoardSearch::SampleAt(const RigidTransform& pose, std::span<const Eigen::Vector2d> places) {
-  buffers_.samples.Clear();
-  for (const Eigen::Vector2d& place : places) {
-    buffers_.samples.Add(pose * Eigen::Vector3d(place.x(), place.y(), 0));
-  }
-  buffers_.samples.Project(models_.camera);
-}
-
-BoardSearch::ShiftGrid BoardSearch::GridOf(const RigidTransform& expected, double step_px) const {
+PadSearch::ShiftGrid PadSearch::GridOf(const RigidTransform& expected, double step_px) const {
   const double sigma_px =
       hint_.center_sigma_m * models_.camera.intrinsics().fx_px / expected.translation.norm();
   const double most = std::max(kMostShiftPx, kMostShiftSteps * step_px);
@@ -113,10 +110,10 @@ BoardSearch::ShiftGrid BoardSearch::GridOf(const RigidTransform& expected, doubl
 }
 
 // The sample nearest to the image's middle carries the shift into space.
-std::optional<RigidTransform> BoardSearch::Shifted(const RigidTransform& expected,
-                                                   std::span<const Eigen::Vector2d> places,
-                                                   const Eigen::Vector2d& shift_px) const {
-  const BoardSamples& samples = buffers_.samples;
+std::optional<RigidTransform> PadSearch::Shifted(const RigidTransform& expected,
+                                                 std::span<const Eigen::Vector2d> places,
+                                                 const Eigen::Vector2d& shift_px) const {
+  const PadSamples& samples = buffers_.samples;
   const Eigen::Vector2d middle(0.5 * image_.cols, 0.5 * image_.rows);
   double nearest = 1e18;
   std::size_t carrier = 0;
@@ -137,33 +134,33 @@ std::optional<RigidTransform> BoardSearch::Shifted(const RigidTransform& expecte
   return RigidTransform{expected.rotation, expected.translation + range * (to - from)};
 }
 
-std::optional<AlignedBoard> BoardSearch::Align(const RigidTransform& start, const TagModel* only) {
+std::optional<AlignedPad> PadSearch::Align(const RigidTransform& start, const PadPart* only) {
   return models_.alignment.Align(image_, start, prior_, only, &buffers_.alignment);
 }
 
-std::optional<RigidTransform> BoardSearch::ResolveMirror(AlignedBoard* best) {
-  std::optional<AlignedBoard> other = Align(MirrorPose(best->camera_from_board));
+std::optional<RigidTransform> PadSearch::ResolveMirror(AlignedPad* best) {
+  std::optional<AlignedPad> other = Align(MirrorPose(best->camera_from_pad));
   if (!other) return std::nullopt;
   const double apart =
-      best->camera_from_board.rotation.angularDistance(other->camera_from_board.rotation);
+      best->camera_from_pad.rotation.angularDistance(other->camera_from_pad.rotation);
   constexpr double kApart = Radians(0.5);  // else both starts led to the same pose
   if (apart < kApart) return std::nullopt;
   const double cost = CostAbove(*best, *other);
   if (cost < 0) std::swap(*best, *other);
   if (std::abs(cost) >= kMirrorCost) return std::nullopt;
-  return other->camera_from_board;
+  return other->camera_from_pad;
 }
 
-double BoardSearch::Slant(const RigidTransform& pose) {
+double PadSearch::Slant(const RigidTransform& pose) {
   const Eigen::Vector3d face = pose.rotation * Eigen::Vector3d::UnitZ();
   return std::abs(face.dot(pose.translation)) / pose.translation.norm();
 }
 
-LandingDetection BoardSearch::DetectionOf(const AlignedBoard& aligned, double quality,
-                                          DetectionMethod method) const {
+LandingDetection PadSearch::DetectionOf(const AlignedPad& aligned, double quality,
+                                        DetectionMethod method) const {
   LandingDetection detection{};
-  detection.camera_from_pattern = aligned.camera_from_board;
-  if (models_.camera.Project(aligned.camera_from_board.translation, &detection.center_px) ==
+  detection.camera_from_pattern = aligned.camera_from_pad;
+  if (models_.camera.Project(aligned.camera_from_pad.translation, &detection.center_px) ==
       ProjectionStatus::kOutsideModel) {
     detection.center_px.setConstant(NAN);
   }

@@ -11,18 +11,18 @@
 #include <opencv2/core.hpp>
 
 #include "kestrel/core/camera/camera_model.h"
-#include "kestrel/vision/tags/board_alignment.h"
-#include "kestrel/vision/tags/board_samples.h"
-#include "kestrel/vision/tags/plane_borders.h"
+#include "kestrel/vision/search/pad_alignment.h"
+#include "kestrel/vision/search/pad_samples.h"
+#include "kestrel/vision/search/plane_borders.h"
 #include "kestrel/vision/target/landing_detection.h"
 #include "kestrel/vision/target/search_log.h"
 
 namespace kestrel {
 
 // Constants of the searches of one detector.
-struct BoardSearchModels {
+struct PadSearchModels {
   const CameraModel& camera;
-  const BoardAlignment& alignment;
+  const PadAlignment& alignment;
   double radius_m;         // of the pad
   double level_sigma_deg;  // of its tilt from level
   // The part of the image that is searched is so much larger than the pad where it is expected:
@@ -32,25 +32,25 @@ struct BoardSearchModels {
 };
 
 // Memory of one thread's searches.
-struct BoardSearchBuffers {
-  BoardSamples samples;
-  BoardAlignmentBuffers alignment;
+struct PadSearchBuffers {
+  PadSamples samples;
+  PadAlignmentBuffers alignment;
 };
 
 // The search of one image for a flat pad whose edges are known: by its appearance at the expected
 // place, then in passes over the image until a pose is found. A kind of pad says what a candidate
 // is and how likely a pose is. Does not allocate once the buffers have warmed up.
-class BoardSearch {
+class PadSearch {
  public:
-  virtual ~BoardSearch() = default;
-  BoardSearch(const BoardSearch&) = delete;
-  BoardSearch& operator=(const BoardSearch&) = delete;
+  virtual ~PadSearch() = default;
+  PadSearch(const PadSearch&) = delete;
+  PadSearch& operator=(const PadSearch&) = delete;
 
   LandingReport Run();
 
  protected:
-  BoardSearch(const BoardSearchModels& models, const cv::Mat& image, const LandingHint& hint,
-              BoardSearchBuffers* buffers);
+  PadSearch(const PadSearchModels& models, const cv::Mat& image, const LandingHint& hint,
+            PadSearchBuffers* buffers);
 
   // Looks for the pad near the expected pose.
   virtual void Follow(const RigidTransform& expected) = 0;
@@ -67,33 +67,31 @@ class BoardSearch {
   void ExamineBorders(std::size_t count, std::string_view reason);
 
   // Moves a pose across the line of sight, in steps of at least 'step_px' within the hint's
-  // uncertainty, to where the samples at 'places' (on the board) are most like the pad. 'likeness'
+  // uncertainty, to where the samples at 'places' (on the pad) are most like the pad. 'likeness'
   // of their gray values: positive where they are like it. Nothing when they nowhere are.
   template <class Likeness>
   std::optional<RigidTransform> MostLike(const RigidTransform& expected,
                                          std::span<const Eigen::Vector2d> places, double step_px,
                                          const Likeness& likeness);
-  // Projects 'places' on the board into the image.
-  void SampleAt(const RigidTransform& pose, std::span<const Eigen::Vector2d> places);
 
-  std::optional<AlignedBoard> Align(const RigidTransform& start, const TagModel* only = nullptr);
+  std::optional<AlignedPad> Align(const RigidTransform& start, const PadPart* only = nullptr);
 
   // Replaces 'best' by its mirror pose where that is likelier. Returns the other of the two where
   // the image cannot tell them apart.
-  std::optional<RigidTransform> ResolveMirror(AlignedBoard* best);
+  std::optional<RigidTransform> ResolveMirror(AlignedPad* best);
 
   // Returns what every kind of pad says of a pose.
-  LandingDetection DetectionOf(const AlignedBoard& aligned, double quality,
+  LandingDetection DetectionOf(const AlignedPad& aligned, double quality,
                                DetectionMethod method) const;
   // Returns the share of its length that a pad in this pose has across its tilt.
   static double Slant(const RigidTransform& pose);
 
   bool is_found() const { return report_.detection.has_value(); }
 
-  const BoardSearchModels& models_;
+  const PadSearchModels& models_;
   const cv::Mat& image_;
   const LandingHint& hint_;
-  BoardSearchBuffers& buffers_;
+  PadSearchBuffers& buffers_;
   LandingReport report_;
   SearchLog log_{&report_};
 
@@ -115,10 +113,10 @@ class BoardSearch {
 };
 
 template <class Likeness>
-std::optional<RigidTransform> BoardSearch::MostLike(const RigidTransform& expected,
-                                                    std::span<const Eigen::Vector2d> places,
-                                                    double step_px, const Likeness& likeness) {
-  SampleAt(expected, places);
+std::optional<RigidTransform> PadSearch::MostLike(const RigidTransform& expected,
+                                                  std::span<const Eigen::Vector2d> places,
+                                                  double step_px, const Likeness& likeness) {
+  buffers_.samples.Place(models_.camera, expected, places);
   const ShiftGrid grid = GridOf(expected, step_px);
   double best = 0;
   Eigen::Vector2d shift(0, 0);

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/search/ink_samples.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "kestrel/core/base/robust_statistics.h"
+
+namespace kestrel {
+namespace {
+
+constexpr std::size_t kMostSamples = 256;
+constexpr std::size_t kMostParts = 16;
+
+}  // namespace
+
+void InkSamples::Add(const Eigen::Vector2d& place, std::size_t part, bool ink) {
+  places_.push_back(place);
+  samples_.push_back({part, ink, {}});
+}
+
+void InkSamples::Connect(std::size_t first, double reach_m) {
+  for (std::size_t i = first; i < samples_.size(); ++i) {
+    for (std::size_t k = first; k < i; ++k) {
+      if (samples_[i].ink == samples_[k].ink) continue;
+      if ((places_[i] - places_[k]).norm() > reach_m) continue;
+      samples_[i].opposite.push_back(k);
+      samples_[k].opposite.push_back(i);
+    }
+  }
+}
+
+InkSamples::Contrast InkSamples::ContrastAt(std::span<const float> gray, std::size_t i) const {
+  if (gray[i] < 0) return {NAN, NAN};
+  const float sign = samples_[i].ink == white_ ? 1.0F : -1.0F;
+  const float here = log_(gray[i]);
+  float sum = 0, largest = -1;
+  int count = 0;
+  for (const std::size_t k : samples_[i].opposite) {
+    if (gray[k] < 0) continue;
+    const float contrast = sign * (here - log_(gray[k]));
+    sum += contrast;
+    largest = std::max(largest, contrast);
+    ++count;
+  }
+  if (count == 0) return {NAN, NAN};
+  return {sum / static_cast<float>(count), largest};
+}
+
+InkAgreement InkSamples::Compare(std::span<const float> gray, double area_px2,
+                                 DimSample dim) const {
+  constexpr double kLeastContrast = 0.02;
+  constexpr float kLeastDimContrast = 0.1F;  // of ink in a shadow
+  constexpr double kLeast = 0.45;            // of the usual contrast, of a sample that agrees
+  InkAgreement agreement;
+  std::array<float, kMostSamples> means, largest;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    const Contrast contrast = ContrastAt(gray, i);
+    largest[i] = contrast.largest;
+    if (!std::isnan(contrast.mean)) means[count++] = contrast.mean;
+  }
+  if (count == 0) return agreement;
+  const double usual = MedianInPlace(std::span(means.data(), count));
+  if (usual < kLeastContrast) return agreement;
+  agreement.evidence = EvidenceOf(gray, area_px2);
+  std::array<int, kMostParts> seen{}, right{};
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    if (std::isnan(largest[i])) continue;
+    // In one light with it: where the edge of a shadow runs, the others say little.
+    const bool agrees = largest[i] / usual > kLeast;
+    if (!agrees && dim == DimSample::kUnknown && largest[i] > kLeastDimContrast) continue;
+    const std::size_t part = samples_[i].part;
+    ++seen[part];
+    right[part] += agrees;
+  }
+  for (std::size_t part = 0; part < kMostParts; ++part) {
+    constexpr int kFewest = 3;
+    if (seen[part] < kFewest) continue;
+    ++agreement.parts;
+    agreement.worst_share =
+        std::min(agreement.worst_share, static_cast<double>(right[part]) / seen[part]);
+  }
+  return agreement;
+}
+
+double InkSamples::EvidenceOf(std::span<const float> gray, double area_px2) const {
+  constexpr double kBlurArea_px2 = 7.2;       // 4 pi sigma^2 of a usual lens with its pixels
+  constexpr double kLeastUnexplained = 1e-4;  // gray values are whole numbers
+  constexpr double kPoseParameters = 6;
+  const double likeness = LikenessOf(gray);
+  if (likeness <= 0) return 0;
+  const auto seen = std::count_if(gray.begin(), gray.end(), [](float g) { return g >= 0; });
+  const double share = std::min(1.0, area_px2 / kBlurArea_px2);
+  const double independent = std::max(1.0, share * static_cast<double>(seen));
+  const double unexplained = std::max(kLeastUnexplained, 1 - likeness * likeness);
+  return -0.5 * (independent * std::log(unexplained) + kPoseParameters * std::log(independent));
+}
+
+double InkSamples::LikenessOf(std::span<const float> gray) const {
+  constexpr double kLeastSpread = 0.01;
+  double sum = 0, squares = 0;
+  int count = 0;
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    const float contrast = ContrastAt(gray, i).mean;
+    if (std::isnan(contrast)) continue;
+    sum += contrast;
+    squares += contrast * contrast;
+    ++count;
+  }
+  constexpr int kFewest = 8;
+  if (count < kFewest) return -1;
+  return sum / count / std::max(kLeastSpread, std::sqrt(squares / count));
+}
+
+}  // namespace kestrel

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/search/pad_samples.h"
+
+#include <algorithm>
+
+#include "kestrel/core/image/gray_sampling.h"
+
+namespace kestrel {
+
+void PadSamples::Reserve(std::size_t most) {
+  for (std::vector<float>* column : {&x_, &y_, &z_, &u_, &v_, &moved_u_, &moved_v_, &gray_}) {
+    if (column->size() < most) column->resize(most);
+  }
+}
+
+void PadSamples::Add(const Eigen::Vector3d& point_in_camera) {
+  x_[count_] = static_cast<float>(point_in_camera.x());
+  y_[count_] = static_cast<float>(point_in_camera.y());
+  z_[count_] = static_cast<float>(point_in_camera.z());
+  ++count_;
+}
+
+void PadSamples::Project(const CameraModel& camera) {
+  camera.ProjectMany({x_.data(), y_.data(), z_.data()}, count_, u_.data(), v_.data());
+}
+
+void PadSamples::Place(const CameraModel& camera, const RigidTransform& camera_from_pad,
+                       std::span<const Eigen::Vector2d> places) {
+  Clear();
+  for (const Eigen::Vector2d& place : places) {
+    Add(camera_from_pad * Eigen::Vector3d(place.x(), place.y(), 0));
+  }
+  Project(camera);
+}
+
+std::span<const float> PadSamples::Read(const cv::Mat& image, float dx, float dy) {
+  for (std::size_t i = 0; i < count_; ++i) {
+    moved_u_[i] = u_[i] + dx;
+    moved_v_[i] = v_[i] + dy;
+  }
+  SampleGrays(image, moved_u_.data(), moved_v_.data(), count_, gray_.data());
+  return {gray_.data(), count_};
+}
+
+std::span<const float> PadSamples::ReadCells(const cv::Mat& image, int grid_width, double cell_px) {
+  const std::span<const float> blurred = Read(image);
+  // A blur by 'kBlurPx', undone to first order and then some: the series goes on.
+  constexpr double kBlurPx = 0.8;
+  constexpr double kMost = 0.5;
+  const auto share = static_cast<float>(std::min(kMost, kBlurPx * kBlurPx / (cell_px * cell_px)));
+  std::vector<float>& sharp = moved_u_;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const int column = static_cast<int>(i) % grid_width;
+    const int row = static_cast<int>(i) / grid_width;
+    float excess = 0;  // over the neighbours
+    const auto add = [&](int x, int y) {
+      if (x < 0 || y < 0 || x >= grid_width || y >= grid_width) return;
+      const float neighbor = blurred[y * grid_width + x];
+      if (neighbor >= 0) excess += blurred[i] - neighbor;
+    };
+    add(column - 1, row);
+    add(column + 1, row);
+    add(column, row - 1);
+    add(column, row + 1);
+    sharp[i] = blurred[i] < 0 ? blurred[i] : std::max(0.0f, blurred[i] + share * excess);
+  }
+  return {sharp.data(), count_};
+}
+
+}  // namespace kestrel
