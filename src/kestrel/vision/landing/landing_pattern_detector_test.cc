@@ -95,7 +95,8 @@ TEST_F(LandingPatternDetectorTest, PutsPrintsThatAreCutOffWhereTheyAre) {
 
 TEST_F(LandingPatternDetectorTest, FindsThePatternAtAllSizes) {
   for (const double distance : {1.1, 3.0, 9.0}) {
-    const RigidTransform truth = PrintPose({0.03 * distance, 0.02 * distance, distance}, 0.1, 2, 0.5);
+    const RigidTransform truth =
+        PrintPose({0.03 * distance, 0.02 * distance, distance}, 0.1, 2, 0.5);
     const LandingReport report = Detect(Draw(SpokedPrint(pattern_, 4), truth));
     ASSERT_TRUE(report.detection) << distance << " m: " << report.reason;
     EXPECT_EQ(report.reached, LandingStage::kFound);

@@ -32,7 +32,7 @@ enum class PrintDoubt {
   kScatter,        // logarithm of the scatter of the edges, as a share of the ring's mean diameter
   kMisfit,         // the same of their distance from a flat print seen through the lens
   // Fit of the print as a whole.
-  kFaintArm,      // share of the contrast that the worst arm lacks
+  kFaintArm,  // share of the contrast that the worst arm lacks
   // Share of the contrast that the ring lacks, mean without the worst quarter. Of a print that is
   // examined by its edges: share of places that are not as dark as ink, without the worst eighth.
   kBrokenRing,
