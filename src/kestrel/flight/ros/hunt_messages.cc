@@ -12,7 +12,6 @@
 
 #include "kestrel/comms/team/team_view.h"
 #include "kestrel/flight/ros/message_covariance.h"
-#include "kestrel/io/bags/frame_tree.h"
 #include "kestrel/vision/mapping/mapped_object.h"
 
 namespace kestrel {
@@ -21,7 +20,9 @@ namespace {
 constexpr double kFlat_m = 0.01;
 constexpr double kLabelHeight_m = 0.25;
 
-PoseMessage PoseAt(const Eigen::Vector3d& position) { return PoseMessageOf({{}, position}); }
+PoseMessage PoseAt(const Eigen::Vector3d& position) {
+  return {{position.x(), position.y(), position.z()}, {}};
+}
 
 std::array<double, 36> CovarianceOf(const Eigen::Matrix3d& position) {
   MessageCovariance covariance = MessageCovariance::Zero();

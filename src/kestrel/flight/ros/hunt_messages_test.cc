@@ -45,6 +45,8 @@ TEST(HuntMessages, TheTeamsMapIsOfOneTime) {
   EXPECT_EQ(result.pose.position.x, 10);
   EXPECT_EQ(result.pose.position.y, 20);
   EXPECT_EQ(result.pose.position.z, 0.012);
+  EXPECT_EQ(result.pose.orientation.x, 0);
+  EXPECT_EQ(result.pose.orientation.w, 1);
   EXPECT_EQ(result.covariance[0], 0.01);
   EXPECT_EQ(result.covariance[7], 0.04);
   EXPECT_GT(result.covariance[35], 3) << "nothing is known of how it is turned";
