@@ -19,7 +19,7 @@ export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
 export CCACHE_BASEDIR ?= $(CURDIR)
 export CCACHE_SLOPPINESS ?= locale
 
-.PHONY: demo console test dds ros python test-python python-module wheel interop browser bench accuracy figures check-figures format check asan tsan fuzz install command tests build configure configure-tests \
+.PHONY: demo console test dds python test-python python-module wheel interop browser bench accuracy figures check-figures format check asan tsan fuzz install command tests build configure configure-tests \
   package repository package-test
 
 demo: command  ## a simulated landing, or with DATA=<folder> [CAMERA=<file>] your own images
@@ -37,12 +37,6 @@ dds:  ## ROS 2 and the team's map over DDS, and their tests
 	cmake --build --preset release --target kestrel $(DDS_ROOMS:%=kestrel_%_test)
 	ctest --preset release -j $$(nproc) -R '^(dds|ros|team|hosts)/|DdsCommand|TeamCommand' --no-tests=error
 
-ros:  ## the node of ROS 1 and its tests, and bags of ROS 1 against its rosbag
-	scripts/install-deps --test --ros
-	cmake --preset release
-	cmake --build --preset release --target kestrel kestrel_node kestrel_ros_test kestrel_ros_node_test
-	ctest --preset release -R "^ros(_node)?/" --no-tests=error --verbose
-
 python: python-module  ## `import kestrel`, and what `kestrel study` needs
 	@echo 'Try it: PYTHONPATH=$(BIN)/python /usr/bin/python3 -c "import kestrel; print(kestrel.simulate(\"calm\"))"'
 
@@ -59,7 +53,7 @@ wheel:  ## a wheel of `import kestrel` with the libraries that it needs, to out/
 	scripts/install-deps --python
 	scripts/wheel out/wheel
 
-interop:  ## MAVLink, MCAP, live flights, bags and ROS 2 against implementations of others, which npm installs
+interop:  ## MAVLink, MCAP, live flights, bags and ROS 2 against implementations of others, of npm and Debian
 	scripts/install-deps --test --interop
 	cmake --preset release
 	cmake --build --preset release --target interop

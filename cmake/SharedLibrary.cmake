@@ -1,12 +1,12 @@
 # With KESTREL_SHARED_LIBRARY, as packages are built, programs and users link one library, libkestrel, that has all
-# rooms but those of the programs. What needs DDS or ROS 1 is an extension: a library of its own that takes the place
-# of a stand-in when it is installed, for the loader looks into the folders of extensions first.
-option(KESTREL_SHARED_LIBRARY "Programs link one shared library, libkestrel; what needs DDS or ROS 1 extends it" OFF)
+# rooms but that of the command. What needs DDS is an extension: a library of its own that takes the place of a
+# stand-in when it is installed, for the loader looks into the folders of extensions first.
+option(KESTREL_SHARED_LIBRARY "Programs link one shared library, libkestrel; what needs DDS extends it" OFF)
 # Rooms of the programs alone.
-set(KESTREL_PROGRAM_ROOMS cli ros_node)
+set(KESTREL_PROGRAM_ROOMS cli)
 
 if(KESTREL_SHARED_LIBRARY)
-  set(KESTREL_EXTENDED dds ros1)
+  set(KESTREL_EXTENDED dds)
   # Programs use what can be extended themselves, too.
   set(KESTREL_LIBRARY kestrel_library)
   foreach(folder IN LISTS KESTREL_EXTENDED)

@@ -238,7 +238,7 @@ TEST_F(FailingSink, APeerOfRosVanishes) {
   auto connection = std::make_unique<Ros2ResultConnection>(
       std::make_shared<Ros2Node>(domain, Ros2NodeOptions()), options.node, kLandingTopics);
   sinks_.Add(MakeRosSink(
-      std::make_unique<RosResults>(std::move(connection), WireFormat::kCdr, options,
+      std::make_unique<RosResults>(std::move(connection), options,
                                    RosFrames{"camera", "map", "base_link", RosTimeAhead()},
                                    SmallCamera(), LandingPipelineOptions(), DefaultObjectModel()),
       [this](const std::string& text) { Say(text); }));

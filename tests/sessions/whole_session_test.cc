@@ -74,8 +74,8 @@ class AllSinks {
         std::make_shared<Ros2Node>(domain, Ros2NodeOptions()), options.node, kLandingTopics);
     const RosFrames frames{"camera", "map", "base_link", RosTimeAhead()};
     sinks.Add(MakeRosSink(
-        std::make_unique<RosResults>(std::move(connection), WireFormat::kCdr, options, frames,
-                                     SmallCamera(), LandingPipelineOptions(), DefaultObjectModel()),
+        std::make_unique<RosResults>(std::move(connection), options, frames, SmallCamera(),
+                                     LandingPipelineOptions(), DefaultObjectModel()),
         [this](const std::string& text) { Say(text); }));
   }
 };
@@ -191,6 +191,24 @@ TEST(WholeSession, MayBeStoppedAtOnce) {
     EXPECT_EQ(session.Run([] { return true; }).outcome, FlightOutcome::kStopped);
     all.sinks.Finish();
   }
+}
+
+TEST(WholeSession, ChangedOptionsHoldFromTheNextFrameOn) {
+  DrawnCamera camera(100, PatternImage, 3);
+  Witness witness;
+  LiveSession session(LandingParts(&camera, &witness), SessionOptions());
+  std::optional<Witness::Seen> changed;
+  session.Run([&] {
+    if (changed || witness.seen().found == 0) return false;
+    LiveSessionOptions options = SessionOptions();
+    options.landing.detector.min_quality = 1;
+    session.Change(options);
+    session.BetweenFrames([&] { changed = witness.seen(); });
+    return false;
+  });
+  ASSERT_TRUE(changed);
+  EXPECT_GT(witness.seen().frames.size(), changed->frames.size());
+  EXPECT_EQ(witness.seen().found, changed->found);
 }
 
 // A UAV that hunts and tells its team.

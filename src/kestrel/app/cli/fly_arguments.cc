@@ -75,7 +75,6 @@ void FlyArguments::AddTo(CLI::App* command) {
           "Serve the web page (default address 127.0.0.1:8080)")
       ->type_name("[ADDRESS:PORT]")
       ->expected(0, 1);
-  command->add_flag("--ros", ros, "Publish the results as a node of ROS 1; --dds: of ROS 2");
   CLI::Option* guide_flag = command->add_flag(
       "--guide", guide, "Fly the UAV by set-points when the pilot gives it GUIDED or OFFBOARD");
   command

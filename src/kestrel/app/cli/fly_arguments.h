@@ -22,7 +22,6 @@ struct FlyArguments {
   std::string link_delay = "auto";
   std::string signing_key;
   std::string record;
-  bool ros = false;
   std::optional<std::string> console;  // ADDRESS:PORT; empty: as in the options
   bool guide = false;
   bool no_guard = false;

@@ -36,7 +36,6 @@
 #include "kestrel/flight/onboard/live_session.h"
 #include "kestrel/flight/ros/ros2_result_connection.h"
 #include "kestrel/flight/ros/ros_sink.h"
-#include "kestrel/flight/ros1/ros1_result_connection.h"
 #include "kestrel/flight/session/observation_sinks.h"
 #include "kestrel/io/recording/open_source.h"
 
@@ -103,7 +102,6 @@ class Flight {
     OpenTeam();
     OpenMcap();
     OpenDds();
-    OpenRos1();
     autopilot_ = MakeFlyAutopilot(arguments.autopilot, options_.fly, arguments.guide, &source_);
     session_.emplace(Parts(), SessionOptions(options_, source_, autopilot_));
     if (team_) {
@@ -212,25 +210,12 @@ class Flight {
     const DdsOptions& options = options_.dds;
     std::shared_ptr<Ros2Node> node = source_.dds.node();
     if (!node) node = arguments_.source.dds.OpenNode(options);
-    OpenRos(std::make_unique<Ros2ResultConnection>(node, options.node, Topics()), WireFormat::kCdr);
-  }
-
-  void OpenRos1() {
-    if (!arguments_.ros) return;
-    OpenRos(std::make_unique<Ros1ResultConnection>(kestrel::OpenRos1(options_.dds.node, "--ros"),
-                                                   Topics()),
-            WireFormat::kRos1);
-  }
-
-  ResultTopics Topics() const {
-    return arguments_.hunt ? ResultTopics(kHuntTopics) : kLandingTopics;
-  }
-
-  void OpenRos(std::unique_ptr<ResultConnection> connection, WireFormat format) {
-    sinks_.Add(MakeRosSink(
-        std::make_unique<RosResults>(std::move(connection), format, options_.dds, Frames(),
-                                     source_.live.calibration, options_.landing, ReadModel()),
-        [this](const std::string& text) { Log(text); }));
+    const ResultTopics topics = arguments_.hunt ? ResultTopics(kHuntTopics) : kLandingTopics;
+    sinks_.Add(
+        MakeRosSink(std::make_unique<RosResults>(
+                        std::make_unique<Ros2ResultConnection>(node, options.node, topics), options,
+                        Frames(), source_.live.calibration, options_.landing, ReadModel()),
+                    [this](const std::string& text) { Log(text); }));
   }
 
   void OpenMcap() {
@@ -334,7 +319,6 @@ void RequireNoResults(const FlyArguments& arguments, const std::string& advice) 
   const SourceArguments& source = arguments.source;
   const std::pair<const char*, bool> results[] = {{"--autopilot", !arguments.autopilot.empty()},
                                                   {"--dds", source.dds.is_given()},
-                                                  {"--ros", arguments.ros},
                                                   {"--team", !arguments.team.team.empty()},
                                                   {"--output", !source.output.empty()},
                                                   {"--mcap", !source.mcap.empty()}};

@@ -137,7 +137,7 @@ TEST_F(FlyCommandTest, WithoutACalibrationACameraIsRecorded) {
 
 TEST_F(FlyCommandTest, WithoutACalibrationNothingIsSent) {
   for (const std::string option :
-       {"--autopilot sim:px4", "--autopilot udpout://127.0.0.1:14550 --guide", "--ros", "--dds 7",
+       {"--autopilot sim:px4", "--autopilot udpout://127.0.0.1:14550 --guide", "--dds 7",
         "--team a --hunt", "--output out", "--mcap a.mcap"}) {
     const Outcome outcome = Run("fly /dev/video63 --record " + folder_ / "flight" + " " + option);
     EXPECT_EQ(outcome.status, 2) << option;

@@ -119,8 +119,8 @@ void AddDdsSink(const SourceArguments& arguments, const OpenedSource& opened,
   auto connection = std::make_unique<Ros2ResultConnection>(arguments.dds.OpenNode(options.dds),
                                                            options.dds.node, topics);
   sinks->Add(MakeWaitingRosSink(std::make_unique<RosResults>(
-      std::move(connection), WireFormat::kCdr, options.dds, OwnFrames(options.dds, has_world),
-      opened.calibration, options.landing, model)));
+      std::move(connection), options.dds, OwnFrames(options.dds, has_world), opened.calibration,
+      options.landing, model)));
 }
 
 void AddMcapSink(const SourceArguments& arguments, const OpenedSource& opened,

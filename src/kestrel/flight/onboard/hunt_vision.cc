@@ -35,7 +35,6 @@ Duration HuntVision::pose_lead() const {
 
 TrackSnapshot HuntVision::Process(const Frame& frame, ObservationSink* sink) {
   const HuntObservation& observation = pipeline_.Process(frame.image, frame.time);
-  newest_ = frame.time;
   snapshot_.captured = frame.time + clock_offset_;
   snapshot_.detect_time = observation.detect_time;
   ++snapshot_.frames;
@@ -74,8 +73,8 @@ std::string HuntVision::Found() const {
                      pipeline_.map().Confirmed().size());
 }
 
-void HuntVision::WriteMap(const OutputFolder& output, const std::vector<double>& origin) const {
-  WriteObjectMap(pipeline_, origin, output);
+void HuntVision::WriteMap(const OutputFolder& output) const {
+  WriteObjectMap(pipeline_, /*origin=*/{}, output);
 }
 
 }  // namespace kestrel

@@ -50,10 +50,8 @@ class HuntVision : public FlightVision {
   // As of HuntPipeline.
   void ChangeOptions(const HuntPipelineOptions& options) { pipeline_.ChangeOptions(options); }
   // Writes the map of all that was seen, as WriteObjectMap does.
-  void WriteMap(const OutputFolder& output, const std::vector<double>& origin = {}) const;
+  void WriteMap(const OutputFolder& output) const;
   std::vector<MappedObject> Objects() const { return pipeline_.map().Confirmed(); }
-  // Returns the time of the newest frame, on the images' clock; nothing before the first one.
-  std::optional<Time> newest() const { return newest_; }
 
  private:
   void PublishMap(const Frame& frame, const HuntObservation& observation);
@@ -61,7 +59,6 @@ class HuntVision : public FlightVision {
   HuntPipeline pipeline_;
   Duration clock_offset_;
   TrackSnapshot snapshot_;
-  std::optional<Time> newest_;
   std::size_t objects_ = 0;
   BoundedQueue<std::string> rows_;
   std::optional<std::ofstream> file_;

@@ -117,8 +117,6 @@ void DdsCamera::TakeMessages(Duration timeout) {
   node_->Take(timeout, [this](std::size_t index, std::string_view bytes) {
     try {
       source_->Take(topics_[index], bytes);
-    } catch (const ClockWentBack& error) {
-      source_->Fail(fmt::format("{}: start again", error.what()));
     } catch (const InputError& error) {
       source_->Fail(error.what());
     }

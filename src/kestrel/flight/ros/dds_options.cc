@@ -28,18 +28,13 @@ bool IsNodeName(const std::string& name) {
 
 }  // namespace
 
-std::vector<std::string> RosResultOptions::Validate() const {
+std::vector<std::string> DdsOptions::Validate() const {
   std::vector<std::string> violations;
   if (body_frame.empty()) violations.push_back("body_frame must not be empty");
   if (pattern_frame.empty()) violations.push_back("pattern_frame must not be empty");
   if (target_frame.empty()) violations.push_back("target_frame must not be empty");
   RequireIn(prediction_s, 0, 60, "prediction_s", &violations);
   RequireIn(prediction_step_s, 0.01, 60, "prediction_step_s", &violations);
-  return violations;
-}
-
-std::vector<std::string> DdsOptions::Validate() const {
-  std::vector<std::string> violations = RosResultOptions::Validate();
   if (!IsNodeName(node)) {
     violations.push_back(
         fmt::format("node is '{}', expected letters, digits and '_', and no digit at first", node));

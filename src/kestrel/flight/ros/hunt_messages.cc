@@ -12,17 +12,17 @@
 
 #include "kestrel/comms/team/team_view.h"
 #include "kestrel/flight/ros/message_covariance.h"
-#include "kestrel/io/bags/frame_tree.h"
+#include "kestrel/vision/mapping/mapped_object.h"
 
 namespace kestrel {
 namespace {
 
 constexpr double kFlat_m = 0.01;
 constexpr double kLabelHeight_m = 0.25;
-constexpr double kMotionShaft_m = 0.05;
-constexpr double kMotionHead_m = 0.1;
 
-PoseMessage PoseAt(const Eigen::Vector3d& position) { return PoseMessageOf({{}, position}); }
+PoseMessage PoseAt(const Eigen::Vector3d& position) {
+  return {{position.x(), position.y(), position.z()}, {}};
+}
 
 std::array<double, 36> CovarianceOf(const Eigen::Matrix3d& position) {
   MessageCovariance covariance = MessageCovariance::Zero();
@@ -98,15 +98,6 @@ MarkerMessage LabelMarker(const MappedObject& object, const std::string& label,
   return marker;
 }
 
-MarkerMessage VelocityMarker(const MappedObject& object, const HeaderMessage& header) {
-  MarkerMessage marker = MapMarker(object, header, "velocity", MarkerMessage::kArrow);
-  const Eigen::Vector3d from = object.position();
-  const Eigen::Vector3d to = from + object.velocity();
-  marker.points = {{from.x(), from.y(), from.z()}, {to.x(), to.y(), to.z()}};
-  marker.scale = {kMotionShaft_m, kMotionHead_m, 0};
-  return marker;
-}
-
 // Returns an array whose first marker deletes all earlier markers of the topic.
 MarkerArrayMessage NoMarkers(Time stamp, const std::string& frame) {
   MarkerArrayMessage message;
@@ -133,11 +124,9 @@ Detection3DArrayMessage DetectionsOf(const HuntObservation& observation, const O
     const ObjectClass& found_class = model.classes[detection.class_index];
     Detection3DMessage& found = message.detections.emplace_back();
     found.header = message.header;
-    found.source_cloud.header = message.header;
     found.box_center = PoseAt(detection.location->position);
     found.box_size = SizeOf(found_class);
     ObjectHypothesisMessage& result = found.results.emplace_back();
-    result.id = static_cast<std::int64_t>(detection.class_index);
     result.class_id = found_class.name;
     result.score = detection.class_probability;
     result.pose = found.box_center;
@@ -166,50 +155,26 @@ MarkerArrayMessage MarkersOf(const HuntObservation& observation, const ObjectMod
   return message;
 }
 
-Detection3DArrayMessage MapOf(const std::vector<MappedObject>& objects, Time stamp,
-                              const ObjectModel& model, const std::string& world_frame) {
+Detection3DArrayMessage TeamDetectionsOf(const TeamReport& team, const ObjectModel& model,
+                                         const std::string& world_frame) {
   Detection3DArrayMessage message;
-  message.header = {0, stamp, world_frame};
-  for (const MappedObject& object : objects) {
+  message.header = {0, team.time, world_frame};
+  for (const TeamObject& known : team.objects) {
+    const MappedObject& object = known.object;
     const Body body = BodyOf(object, model);
     Detection3DMessage& mapped = message.detections.emplace_back();
-    mapped.header = {0, object.time, world_frame};
-    mapped.source_cloud.header = mapped.header;
+    mapped.header = message.header;
     mapped.box_center = body.center;
     mapped.box_size = body.size;
     mapped.id = fmt::to_string(object.id);
     if (!body.class_index) continue;
     ObjectHypothesisMessage& result = mapped.results.emplace_back();
-    result.id = static_cast<std::int64_t>(*body.class_index);
     result.class_id = model.classes[*body.class_index].name;
     result.score = 1 / (1 + std::exp(-object.log_odds));
     result.pose = PoseAt(object.position());
     result.covariance = CovarianceOf(object.covariance.topLeftCorner<3, 3>());
   }
   return message;
-}
-
-MarkerArrayMessage MapMarkersOf(const std::vector<MappedObject>& objects, Time stamp,
-                                const ObjectModel& model, const std::string& world_frame) {
-  MarkerArrayMessage message = NoMarkers(stamp, world_frame);
-  const HeaderMessage header = message.markers.front().header;
-  for (const MappedObject& object : objects) {
-    const Body body = BodyOf(object, model);
-    message.markers.push_back(BodyMarker(object, body, header));
-    message.markers.push_back(LabelMarker(object, LabelOf(object, body, model), header));
-    if (!object.velocity().isZero()) message.markers.push_back(VelocityMarker(object, header));
-  }
-  return message;
-}
-
-Detection3DArrayMessage TeamDetectionsOf(const TeamReport& team, const ObjectModel& model,
-                                         const std::string& world_frame) {
-  std::vector<MappedObject> objects;
-  for (const TeamObject& known : team.objects) {
-    objects.push_back(known.object);
-    objects.back().time = team.time;
-  }
-  return MapOf(objects, team.time, model, world_frame);
 }
 
 MarkerArrayMessage TeamMarkersOf(const TeamReport& team, const ObjectModel& model,

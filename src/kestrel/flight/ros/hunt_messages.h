@@ -2,12 +2,9 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
-#include "kestrel/core/base/time.h"
 #include "kestrel/flight/session/flight_report.h"
 #include "kestrel/io/bags/result_messages.h"
-#include "kestrel/vision/mapping/mapped_object.h"
 #include "kestrel/vision/objects/object_model.h"
 #include "kestrel/vision/pipeline/hunt_pipeline.h"
 
@@ -24,21 +21,13 @@ Detection3DArrayMessage DetectionsOf(const HuntObservation& observation, const O
 MarkerArrayMessage MarkersOf(const HuntObservation& observation, const ObjectModel& model,
                              const std::string& world_frame);
 
-// The map at 'stamp': each object where it was last seen, with that time in its own header; the
-// score is the probability that it exists. An object that fits no class (its colour is still open)
-// has a box and no class.
-Detection3DArrayMessage MapOf(const std::vector<MappedObject>& objects, Time stamp,
-                              const ObjectModel& model, const std::string& world_frame);
-
-// The same for RViz: bodies in their colours, labels, and the path within the next second of those
-// that move. They stay until the next map.
-MarkerArrayMessage MapMarkersOf(const std::vector<MappedObject>& objects, Time stamp,
-                                const ObjectModel& model, const std::string& world_frame);
-
-// The team's map as MapOf and MapMarkersOf. The labels also say which UAVs have an object in their
-// map and which one claims it: "red: one two, for two".
+// The team's map, all of it at one time; the score is the probability that an object exists. An
+// object that fits no class (its colour is still open) has a box and no class.
 Detection3DArrayMessage TeamDetectionsOf(const TeamReport& team, const ObjectModel& model,
                                          const std::string& world_frame);
+
+// The same for RViz: bodies in their colours, with labels that also say which UAVs have an object
+// in their map and which one claims it: "red: one two, for two". They stay until the next map.
 MarkerArrayMessage TeamMarkersOf(const TeamReport& team, const ObjectModel& model,
                                  const std::string& world_frame);
 

@@ -22,19 +22,11 @@ void HuntResults::PublishMarkers(const HuntObservation& observation) {
   Publish(ResultTopic::kMarkers, MarkersOf(observation, options_.model, *options_.world_frame));
 }
 
-void HuntResults::PublishImage(const cv::Mat& image, const HuntObservation& observation,
-                               const std::vector<MappedObject>& map) {
+void HuntResults::PublishImage(const cv::Mat& image, const HuntObservation& observation) {
   if (!connection_->HasSubscribers(ResultTopic::kAnnotatedImage)) return;
-  const cv::Mat annotated = DrawObjectOverlay(image, options_.model, observation, map);
+  const cv::Mat annotated = DrawObjectOverlay(image, options_.model, observation);
   Publish(ResultTopic::kAnnotatedImage,
           ImageMessageOf(annotated, observation.time, options_.camera_frame));
-}
-
-void HuntResults::PublishMap(const std::vector<MappedObject>& map, Time stamp) {
-  if (!options_.world_frame) return;
-  Publish(ResultTopic::kMap, MapOf(map, stamp, options_.model, *options_.world_frame));
-  Publish(ResultTopic::kMapMarkers,
-          MapMarkersOf(map, stamp, options_.model, *options_.world_frame));
 }
 
 void HuntResults::PublishTeam(const TeamReport& team) {

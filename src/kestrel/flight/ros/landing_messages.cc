@@ -102,7 +102,6 @@ Detection3DArrayMessage DetectionsOf(const LandingObservation& observation,
   if (!detection) return message;
   Detection3DMessage& found = message.detections.emplace_back();
   found.header = message.header;
-  found.source_cloud.header = message.header;
   if (detection->id) found.id = std::to_string(*detection->id);
   found.box_center = PoseMessageOf(detection->camera_from_pattern);
   found.box_size = {shape.board_size_m, shape.board_size_m, kBoardThickness_m};

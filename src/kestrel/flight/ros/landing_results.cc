@@ -28,14 +28,9 @@ void LandingResults::PublishDetection(const CameraModel& camera,
 }
 
 void LandingResults::PublishTags(const CameraModel& camera, const LandingObservation& observation) {
-  if (options_.format == WireFormat::kRos1) {
-    Publish(ResultTopic::kTagPoses, TagPosesOf(observation, options_.shape, options_.camera_frame));
-  } else {
-    Publish(ResultTopic::kTags, TagsOf(observation, camera, options_.shape, options_.camera_frame));
-  }
+  Publish(ResultTopic::kTags, TagsOf(observation, camera, options_.shape, options_.camera_frame));
   if (!options_.publish_tf) return;
-  const TfMessage transforms =
-      TagTransformsOf(observation, options_.shape, options_.camera_frame, options_.format);
+  const TfMessage transforms = TagTransformsOf(observation, options_.shape, options_.camera_frame);
   if (!transforms.transforms.empty()) Publish(ResultTopic::kTransforms, transforms);
 }
 

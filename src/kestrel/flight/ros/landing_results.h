@@ -16,9 +16,8 @@
 
 namespace kestrel {
 
-// Names and format of the published results, and the extent of the prediction.
+// Names of the published results, and the extent of the prediction.
 struct LandingResultsOptions {
-  WireFormat format = WireFormat::kRos1;
   std::string camera_frame;
   std::optional<std::string> world_frame;  // where there are poses
   std::string pattern_frame;
@@ -51,7 +50,7 @@ class LandingResults {
 
   template <class Message>
   void Publish(ResultTopic topic, const Message& message) {
-    connection_->Publish(topic, SerializeMessage(message, options_.format));
+    connection_->Publish(topic, SerializeMessage(message, WireFormat::kCdr));
   }
 
   LandingResultsOptions options_;

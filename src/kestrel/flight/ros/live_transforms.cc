@@ -40,19 +40,12 @@ std::optional<RigidTransform> LiveTransforms::Fixed(const std::string& to,
 }
 
 std::optional<LiveTransforms::WorldPose> LiveTransforms::PoseBy(
-    const TransformStampedMessage& transform, const std::string& body,
-    const std::string& world) const {
+    const TransformStampedMessage& transform, const std::string& body) const {
   const std::string moving = AncestorsOf(body, /*only_static=*/true).back().name;
   if (moving != FrameName(transform.child_frame_id)) return std::nullopt;
-  const std::vector<Ancestor> ancestors = AncestorsOf(body, /*only_static=*/false);
-  for (const Ancestor& ancestor : ancestors) {
-    const bool is_asked_for =
-        world.empty() ? &ancestor == &ancestors.back() : ancestor.name == FrameName(world);
-    if (is_asked_for && ancestor.name != body) {
-      return WorldPose{ancestor.name, {transform.header.stamp, ancestor.ancestor_from_frame}};
-    }
-  }
-  return std::nullopt;
+  const Ancestor root = AncestorsOf(body, /*only_static=*/false).back();
+  if (root.name == body) return std::nullopt;
+  return WorldPose{root.name, {transform.header.stamp, root.ancestor_from_frame}};
 }
 
 }  // namespace kestrel

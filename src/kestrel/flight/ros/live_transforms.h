@@ -25,10 +25,10 @@ class LiveTransforms {
     std::string world;
     PoseSample sample;
   };
-  // Returns the pose of 'body' in 'world' (empty: in the root of the body's frames), if the
-  // transform just added is the first above 'body' that moves. Its time is the transform's.
-  std::optional<WorldPose> PoseBy(const TransformStampedMessage& transform, const std::string& body,
-                                  const std::string& world) const;
+  // Returns the pose of 'body' in the root of its frames, if the transform just added is the first
+  // above 'body' that moves. Its time is the transform's.
+  std::optional<WorldPose> PoseBy(const TransformStampedMessage& transform,
+                                  const std::string& body) const;
 
  private:
   struct Link {

@@ -23,13 +23,10 @@ enum class ResultTopic : std::size_t {
   kAnnotatedImage,
   kTransforms,
   kDiagnostics,
-  kMap,
-  kMapMarkers,
   kTeamMap,
   kTeamMarkers,
   kStaticTransforms,
-  kTags,      // of ROS 2
-  kTagPoses,  // of ROS 1
+  kTags,
 };
 
 struct ResultTopicInfo {
@@ -48,13 +45,10 @@ inline constexpr std::array kResultTopics = {
     ResultTopicInfo{"image_annotated", ImageMessage::kType},
     ResultTopicInfo{"/tf", TfMessage::kType},
     ResultTopicInfo{"/diagnostics", DiagnosticArrayMessage::kType},
-    ResultTopicInfo{"map", Detection3DArrayMessage::kType, true},
-    ResultTopicInfo{"map_markers", MarkerArrayMessage::kType, true},
     ResultTopicInfo{"team_map", Detection3DArrayMessage::kType, true},
     ResultTopicInfo{"team_markers", MarkerArrayMessage::kType, true},
     ResultTopicInfo{"/tf_static", TfMessage::kType, true},
     ResultTopicInfo{"/detections", TagArrayMessage::kType},
-    ResultTopicInfo{"/tag_detections", TagPoseArrayMessage::kType},
 };
 
 constexpr const ResultTopicInfo& InfoOf(ResultTopic topic) {

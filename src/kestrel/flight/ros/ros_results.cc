@@ -12,10 +12,9 @@
 namespace kestrel {
 namespace {
 
-LandingResultsOptions ResultsOf(WireFormat format, const RosResultOptions& options,
-                                const RosFrames& frames, const LandingPipelineOptions& landing) {
-  return {.format = format,
-          .camera_frame = frames.camera,
+LandingResultsOptions ResultsOf(const DdsOptions& options, const RosFrames& frames,
+                                const LandingPipelineOptions& landing) {
+  return {.camera_frame = frames.camera,
           .world_frame = frames.world,
           .pattern_frame = options.pattern_frame,
           .target_frame = options.target_frame,
@@ -35,19 +34,17 @@ Duration RosTimeAhead() {
   return ros - Now().time_since_epoch();
 }
 
-RosResults::RosResults(std::shared_ptr<ResultConnection> connection, WireFormat format,
-                       const DdsOptions& options, const RosFrames& frames,
-                       const CameraCalibration& calibration, const LandingPipelineOptions& landing,
-                       ObjectModel model)
-    : format_(format),
-      name_(options.node),
+RosResults::RosResults(std::shared_ptr<ResultConnection> connection, const DdsOptions& options,
+                       const RosFrames& frames, const CameraCalibration& calibration,
+                       const LandingPipelineOptions& landing, ObjectModel model)
+    : name_(options.node),
       publish_tf_(options.publish_tf),
       frames_(frames),
       body_from_camera_(calibration.body_from_camera),
       camera_(calibration.intrinsics),
       connection_(std::move(connection)),
-      landing_(ResultsOf(format, options, frames, landing), connection_.get()),
-      hunt_({format, frames.camera, frames.world, std::move(model)}, connection_.get()) {
+      landing_(ResultsOf(options, frames, landing), connection_.get()),
+      hunt_({frames.camera, frames.world, std::move(model)}, connection_.get()) {
   if (frames_.body && publish_tf_) PublishMount();
 }
 
@@ -59,7 +56,7 @@ std::string RosResults::TransformBytes(Time stamp, const std::string& parent,
   transform.header = {0, stamp, parent};
   transform.child_frame_id = child;
   transform.transform = PoseMessageOf(parent_from_child);
-  return SerializeMessage(message, format_);
+  return SerializeMessage(message, WireFormat::kCdr);
 }
 
 void RosResults::PublishMount() {
@@ -107,7 +104,7 @@ void RosResults::Publish(const Frame& frame, const HuntObservation& observation)
   hunt_.PublishDetections(stamped);
   Count(!observation.report.detections.empty(), frame.time, observation.detect_time);
   hunt_.PublishMarkers(stamped);
-  hunt_.PublishImage(frame.image, stamped, map_);
+  hunt_.PublishImage(frame.image, stamped);
 }
 
 void RosResults::Publish(const TeamReport& team) {
@@ -117,38 +114,23 @@ void RosResults::Publish(const TeamReport& team) {
   hunt_.PublishTeam(stamped);
 }
 
-void RosResults::Publish(std::vector<MappedObject> map, Time stamp) {
-  const std::lock_guard lock(mutex_);
-  map_ = std::move(map);
-  hunt_.PublishMap(map_, stamp);
-}
-
 void RosResults::Publish(const FlightReport& report) {
-  const ResultCounts counts = Counts();
   const std::lock_guard lock(mutex_);
+  const ResultCounts counts{found_, latency_.Summary(), beyond_detect_.Summary(),
+                            detect_.Summary()};
   const DiagnosticStatusMessage status =
       DiagnosticsOf(name_ + ": flight", rate_.Next(report.events.frames), report, counts);
-  connection_->Publish(ResultTopic::kDiagnostics,
-                       SerializeMessage(ArrayOf(status, Now() + frames_.to_stamps), format_));
-}
-
-void RosResults::Change(const RosResultOptions& options, const LandingPipelineOptions& landing) {
-  const std::lock_guard lock(mutex_);
-  publish_tf_ = options.publish_tf;
-  landing_ = LandingResults(ResultsOf(format_, options, frames_, landing), connection_.get());
+  connection_->Publish(
+      ResultTopic::kDiagnostics,
+      SerializeMessage(ArrayOf(status, Now() + frames_.to_stamps), WireFormat::kCdr));
 }
 
 void RosResults::Count(bool found, Time time, Duration detect_time) {
-  const Duration latency = Now() - (time + frames_.to_now);
+  const Duration latency = Now() - time;
   found_ += found ? 1 : 0;
   latency_.Add(latency);
   beyond_detect_.Add(latency - detect_time);
   detect_.Add(detect_time);
-}
-
-ResultCounts RosResults::Counts() const {
-  const std::lock_guard lock(mutex_);
-  return {found_, latency_.Summary(), beyond_detect_.Summary(), detect_.Summary()};
 }
 
 }  // namespace kestrel

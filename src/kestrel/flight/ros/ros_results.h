@@ -6,7 +6,6 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/calibration.h"
@@ -17,9 +16,7 @@
 #include "kestrel/flight/ros/landing_results.h"
 #include "kestrel/flight/ros/result_connection.h"
 #include "kestrel/flight/session/flight_report.h"
-#include "kestrel/io/bags/serialization.h"
 #include "kestrel/io/recording/frame.h"
-#include "kestrel/vision/mapping/mapped_object.h"
 #include "kestrel/vision/objects/object_model.h"
 #include "kestrel/vision/pipeline/hunt_pipeline.h"
 #include "kestrel/vision/pipeline/landing_pipeline.h"
@@ -31,23 +28,20 @@ struct RosFrames {
   std::string camera;
   std::optional<std::string> world;  // where there are poses
   std::optional<std::string> body;   // publish the UAV and the mount on tf; nothing: others do
-  Duration to_stamps{};              // added to a frame's time to get its stamp,
-  Duration to_now{};                 // and to get it by Now()
+  Duration to_stamps{};              // added to a frame's time to get its stamp
 };
 
 // Returns the current difference between the ROS time (the time of day) and Now(): add it to a time
 // by Now().
 Duration RosTimeAhead();
 
-// Publishes the results of the pipelines on topics of ROS 1 or ROS 2, with the same names
-// (docs/ros2.md). Any thread may call all functions.
+// Publishes the results of the pipelines on topics of ROS 2 (docs/ros2.md). Any thread may call all
+// functions.
 class RosResults {
  public:
-  // 'connection' takes messages of 'format'.
-  RosResults(std::shared_ptr<ResultConnection> connection, WireFormat format,
-             const DdsOptions& options, const RosFrames& frames,
-             const CameraCalibration& calibration, const LandingPipelineOptions& landing,
-             ObjectModel model);
+  RosResults(std::shared_ptr<ResultConnection> connection, const DdsOptions& options,
+             const RosFrames& frames, const CameraCalibration& calibration,
+             const LandingPipelineOptions& landing, ObjectModel model);
 
   // Waits until somebody subscribes, at most 'timeout': subscribers are found only after a moment.
   void WaitForSubscribers(Duration timeout) const;
@@ -56,16 +50,8 @@ class RosResults {
   void Publish(const Frame& frame, const HuntObservation& observation);
   // The team's map, if the frames have a world; kept for later subscribers.
   void Publish(const TeamReport& team);
-  // The hunt's map, its newest frame at 'stamp', if the frames have a world; kept for later
-  // subscribers. It is also drawn into the corner of the images from now on.
-  void Publish(std::vector<MappedObject> map, Time stamp);
   // Publishes the rates since the last call.
   void Publish(const FlightReport& report);
-
-  // Continues with these names of frames and options.
-  void Change(const RosResultOptions& options, const LandingPipelineOptions& landing);
-
-  ResultCounts Counts() const;
 
   // Waits until all subscribers have everything.
   void Flush() const { connection_->Flush(); }
@@ -77,8 +63,7 @@ class RosResults {
   void Count(bool found, Time time, Duration detect_time);
   void PublishBody(const std::optional<RigidTransform>& world_from_camera, Time stamp);
 
-  mutable std::mutex mutex_;  // guards all but the connection and the latencies
-  WireFormat format_;
+  std::mutex mutex_;  // guards all but the connection
   std::string name_;  // of the node
   bool publish_tf_;
   RosFrames frames_;
@@ -87,7 +72,6 @@ class RosResults {
   std::shared_ptr<ResultConnection> connection_;
   LandingResults landing_;
   HuntResults hunt_;
-  std::vector<MappedObject> map_;  // of the hunt, the newest
   Rate rate_;
   std::uint64_t found_ = 0;
   LatencyHistogram latency_, beyond_detect_, detect_;

@@ -21,11 +21,8 @@ void Publish(const Observation& observation, RosResults* results) {
 
 class RosWriter : public SinkWriter {
  public:
-  RosWriter(std::shared_ptr<RosResults> results, std::function<void(const std::string&)> tell,
-            bool reports)
-      : results_(std::move(results)),
-        tell_(std::move(tell)),
-        next_report_(reports ? Now() : Time::max()) {}
+  RosWriter(std::shared_ptr<RosResults> results, std::function<void(const std::string&)> tell)
+      : results_(std::move(results)), tell_(std::move(tell)) {}
 
   void Write(const Observation& observation, std::size_t /*waiting*/) override {
     Publish(observation, results_.get());
@@ -46,7 +43,7 @@ class RosWriter : public SinkWriter {
  private:
   std::shared_ptr<RosResults> results_;
   std::function<void(const std::string&)> tell_;
-  Time next_report_;
+  Time next_report_ = Now();
 };
 
 class WaitingRosSink : public ObservationSink {
@@ -66,15 +63,13 @@ class WaitingRosSink : public ObservationSink {
 }  // namespace
 
 std::unique_ptr<AsynchronousSink> MakeRosSink(std::shared_ptr<RosResults> results,
-                                              std::function<void(const std::string&)> tell,
-                                              bool reports) {
+                                              std::function<void(const std::string&)> tell) {
   AsynchronousSinkOptions options{.thread_name = "ros", .frames = kFrames, .tell = {}};
   options.tell = [tell](const std::string& error) {
     tell(fmt::format("ROS: {}: the flight goes on without it", error));
   };
   return std::make_unique<AsynchronousSink>(
-      std::move(options),
-      std::make_unique<RosWriter>(std::move(results), std::move(tell), reports));
+      std::move(options), std::make_unique<RosWriter>(std::move(results), std::move(tell)));
 }
 
 std::unique_ptr<ObservationSink> MakeWaitingRosSink(std::unique_ptr<RosResults> results) {

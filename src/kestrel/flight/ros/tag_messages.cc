@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/flight/ros/tag_messages.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "kestrel/flight/ros/message_covariance.h"
 #include "kestrel/io/bags/frame_tree.h"
 
 namespace kestrel {
@@ -24,12 +21,6 @@ void ForEachSeenTag(const LandingDetection& detection, const TargetShape& shape,
   for (const SeenPart& part : detection.parts.all()) {
     if (part.tag) take(shape.tags.at(*part.tag));
   }
-}
-
-bool ShowsTag(const LandingDetection& detection) {
-  const std::span<const SeenPart> parts = detection.parts.all();
-  return std::any_of(parts.begin(), parts.end(),
-                     [](const SeenPart& part) { return part.tag.has_value(); });
 }
 
 // libapriltag counts pixels from their corners, Kestrel from their centres.
@@ -79,35 +70,15 @@ TagArrayMessage TagsOf(const LandingObservation& observation, const CameraModel&
   return message;
 }
 
-TagPoseArrayMessage TagPosesOf(const LandingObservation& observation, const TargetShape& shape,
-                               const std::string& camera_frame) {
-  TagPoseArrayMessage message;
-  message.header = {0, observation.time, camera_frame};
-  const auto& detection = observation.report.detection;
-  if (!detection || !ShowsTag(*detection)) return message;
-  TagPoseMessage& found = message.detections.emplace_back();
-  for (const TargetTag& tag : shape.tags) {
-    found.ids.push_back(tag.id);
-    found.sizes.push_back(tag.size_m);
-  }
-  found.pose.header = message.header;
-  found.pose.pose = PoseMessageOf(detection->camera_from_pattern);
-  found.pose.covariance = NumbersOf(detection->covariance);
-  return message;
-}
-
 TfMessage TagTransformsOf(const LandingObservation& observation, const TargetShape& shape,
-                          const std::string& camera_frame, WireFormat format) {
+                          const std::string& camera_frame) {
   TfMessage message;
   const auto& detection = observation.report.detection;
-  const bool is_bundle = format == WireFormat::kRos1 && shape.tags.size() > 1;
-  if (!detection || is_bundle) return message;
+  if (!detection) return message;
   ForEachSeenTag(*detection, shape, [&](const TargetTag& tag) {
     TransformStampedMessage& transform = message.transforms.emplace_back();
     transform.header = {0, observation.time, camera_frame};
-    transform.child_frame_id = format == WireFormat::kRos1
-                                   ? fmt::format("tag_{}", tag.id)
-                                   : fmt::format("{}:{}", tag.family, tag.id);
+    transform.child_frame_id = fmt::format("{}:{}", tag.family, tag.id);
     transform.transform = PoseMessageOf(detection->camera_from_pattern * tag.pattern_from_tag);
   });
   return message;

@@ -23,7 +23,6 @@
 namespace kestrel {
 namespace {
 
-using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
@@ -124,8 +123,7 @@ TEST_F(TagMessagesTest, TransformsHaveThePosesOfTheTags) {
   const TagBoard board = BoardOf({7, 3});
   const LandingObservation observation = Seen(board);
   ASSERT_TRUE(observation.report.detection);
-  const auto transforms =
-      TagTransformsOf(observation, ShapeOf(board), "camera", WireFormat::kCdr).transforms;
+  const auto transforms = TagTransformsOf(observation, ShapeOf(board), "camera").transforms;
   ASSERT_THAT(transforms, SizeIs(2));
   EXPECT_EQ(transforms[0].header.frame_id, "camera");
   EXPECT_EQ(transforms[0].child_frame_id, "tag36h11:7");
@@ -137,25 +135,6 @@ TEST_F(TagMessagesTest, TransformsHaveThePosesOfTheTags) {
   EXPECT_NEAR(std::abs(transforms[1].transform.orientation.w), std::abs(second.rotation.w()), 0.02);
 }
 
-TEST_F(TagMessagesTest, InRos1ABundleIsOneDetection) {
-  const TagBoard bundle = BoardOf({7, 3});
-  const auto found = TagPosesOf(Seen(bundle), ShapeOf(bundle), "camera").detections;
-  ASSERT_THAT(found, SizeIs(1));
-  EXPECT_THAT(found[0].ids, ElementsAre(7, 3));
-  EXPECT_THAT(found[0].sizes, ElementsAre(kSize, kSize));
-  EXPECT_NEAR(found[0].pose.pose.position.z, pose_.translation.z(), 0.05);
-  EXPECT_GT(found[0].pose.covariance[0], 0);
-  EXPECT_THAT(
-      TagTransformsOf(Seen(bundle), ShapeOf(bundle), "camera", WireFormat::kRos1).transforms,
-      IsEmpty());
-
-  const TagBoard single = BoardOf({7});
-  const auto transforms =
-      TagTransformsOf(Seen(single), ShapeOf(single), "camera", WireFormat::kRos1).transforms;
-  ASSERT_THAT(transforms, SizeIs(1));
-  EXPECT_EQ(transforms[0].child_frame_id, "tag_7");
-}
-
 TEST_F(TagMessagesTest, NothingFoundIsAnEmptyList) {
   const TagBoard board = BoardOf({7});
   LandingObservation observation;
@@ -164,11 +143,10 @@ TEST_F(TagMessagesTest, NothingFoundIsAnEmptyList) {
   without_tags.parts.Add({"ring and cross", std::nullopt, 100});
   LandingObservation of_ring = observation;
   of_ring.report.detection = without_tags;
-  EXPECT_THAT(TagPosesOf(of_ring, ShapeOf(board), "camera").detections, IsEmpty());
-  EXPECT_THAT(TagsOf(observation, camera_, ShapeOf(board), "camera").detections, IsEmpty());
-  EXPECT_THAT(TagPosesOf(observation, ShapeOf(board), "camera").detections, IsEmpty());
-  EXPECT_THAT(TagTransformsOf(observation, ShapeOf(board), "camera", WireFormat::kCdr).transforms,
-              IsEmpty());
+  for (const LandingObservation& seen : {of_ring, observation}) {
+    EXPECT_THAT(TagsOf(seen, camera_, ShapeOf(board), "camera").detections, IsEmpty());
+    EXPECT_THAT(TagTransformsOf(seen, ShapeOf(board), "camera").transforms, IsEmpty());
+  }
 }
 
 // Remembers the topics that were published.
@@ -180,25 +158,20 @@ class Published final : public ResultConnection {
   std::set<ResultTopic> topics;
 };
 
-TEST_F(TagMessagesTest, AreOnTheTopicsOfTheNodesWhenAskedFor) {
+TEST_F(TagMessagesTest, AreOnTheTopicOfTheNodeWhenAskedFor) {
   const TagBoard board = BoardOf({7});
   const LandingObservation observation = Seen(board);
-  const auto topics_of = [&](WireFormat format, bool asked) {
+  const auto topics_of = [&](bool asked) {
     LandingResultsOptions options;
-    options.format = format;
     options.apriltag_topics = asked;
     options.shape = ShapeOf(board);
     Published published;
     LandingResults(options, &published).PublishDetection(camera_, observation);
     return published.topics;
   };
-  EXPECT_EQ(topics_of(WireFormat::kCdr, true).count(ResultTopic::kTags), 1u);
-  EXPECT_EQ(topics_of(WireFormat::kCdr, true).count(ResultTopic::kTagPoses), 0u);
-  EXPECT_EQ(topics_of(WireFormat::kRos1, true).count(ResultTopic::kTagPoses), 1u);
-  EXPECT_EQ(topics_of(WireFormat::kRos1, true).count(ResultTopic::kTags), 0u);
-  EXPECT_EQ(topics_of(WireFormat::kCdr, false).count(ResultTopic::kTags), 0u);
+  EXPECT_EQ(topics_of(true).count(ResultTopic::kTags), 1u);
+  EXPECT_EQ(topics_of(false).count(ResultTopic::kTags), 0u);
   EXPECT_EQ(InfoOf(ResultTopic::kTags).name, "/detections");
-  EXPECT_EQ(InfoOf(ResultTopic::kTagPoses).name, "/tag_detections");
 }
 
 }  // namespace

@@ -2,12 +2,12 @@
 #include "kestrel/flight/ros/topic_source.h"
 
 #include <chrono>
-#include <type_traits>
 #include <utility>
 #include <variant>
 
 #include <fmt/format.h>
 
+#include "kestrel/core/base/error.h"
 #include "kestrel/flight/ros/ros_results.h"
 #include "kestrel/io/bags/bag_topics.h"
 #include "kestrel/io/bags/camera_info.h"
@@ -24,12 +24,9 @@ constexpr Duration kJumpBack = std::chrono::seconds(1);
 
 bool IsImage(const Event& event) { return std::holds_alternative<Frame>(event); }
 
-bool IsGray(const ImageMessage& message) {
-  return message.encoding == "mono8" || message.encoding == "8UC1";
-}
-
 void CheckJump(const std::optional<Time>& newest, Time stamp, const std::string& topic) {
-  if (newest && stamp < *newest - kJumpBack) throw ClockWentBack(topic + ": the stamps jump back");
+  if (!newest || stamp >= *newest - kJumpBack) return;
+  throw InputError(topic + ": the stamps jump back: start again");
 }
 
 }  // namespace
@@ -74,23 +71,6 @@ void TopicSource::Begin(const CameraIntrinsics& camera) {
   });
 }
 
-void TopicSource::Pause(bool is_paused) {
-  is_paused_ = is_paused;
-  sequence_.reset();
-}
-
-void TopicSource::Restart(const std::string& body_frame, const std::string& world_frame) {
-  options_.body_frame = body_frame;
-  options_.world_frame = world_frame;
-  camera_.reset();
-  from_stamps_.reset();
-  newest_image_.reset();
-  newest_pose_.reset();
-  sequence_.reset();
-  const std::lock_guard lock(mutex_);
-  waiting_.clear();
-}
-
 // The first stamp sets the shift for all stamps: the time between images and poses is kept.
 Time TopicSource::TimeOf(Time stamp) {
   if (!from_stamps_) {
@@ -98,25 +78,18 @@ Time TopicSource::TimeOf(Time stamp) {
     const Duration age = Now() - (stamp + *from_stamps_);
     if (std::chrono::abs(age) > kLiveStamps) from_stamps_ = Now() - stamp;
   }
-  return options_.keeps_stamps ? stamp : stamp + *from_stamps_;
+  return stamp + *from_stamps_;
 }
 
 template <class Message>
 void TopicSource::TakeImage(const BagTopic& topic, std::string_view bytes) {
-  if (is_paused_) return;
   {
     const std::lock_guard lock(mutex_);
     ++counters_.missed;  // until the message proves good
     ++counters_.refused;
   }
   const auto message = ParseMessage<Message>(bytes, topic.wire_format, topic.name);
-  CheckOrder(message.header, topic.name);
-  if constexpr (std::is_same_v<Message, ImageMessage>) {
-    if (options_.needs_colors && IsGray(message)) {
-      throw InputError(fmt::format("{}: the images are gray ({}), a hunt needs colours", topic.name,
-                                   message.encoding));
-    }
-  }
+  CheckOrder(message.header.stamp, topic.name);
   Frame frame;
   frame.name = fmt::format("{}/{}", topic.name.substr(1), ToNanoseconds(message.header.stamp));
   frame.image = DecodeImage(message, options_.format, topic.name);
@@ -134,19 +107,14 @@ void TopicSource::TakeImage(const BagTopic& topic, std::string_view bytes) {
   error_.clear();
 }
 
-// Counts the images that never came, by the sequence numbers of ROS 1.
-void TopicSource::CheckOrder(const HeaderMessage& header, const std::string& topic) {
-  if (ToNanoseconds(header.stamp) <= 0) {
+void TopicSource::CheckOrder(Time stamp, const std::string& topic) const {
+  if (ToNanoseconds(stamp) <= 0) {
     throw InputError(topic + ": the images have no stamps (zero), expected when they were taken");
   }
-  CheckJump(newest_image_, header.stamp, topic);
-  if (newest_image_ && header.stamp <= *newest_image_) {
+  CheckJump(newest_image_, stamp, topic);
+  if (newest_image_ && stamp <= *newest_image_) {
     throw InputError(topic + ": an image is not later than the one before and left out");
   }
-  const std::optional<std::uint32_t> before = std::exchange(sequence_, header.sequence);
-  if (!before || header.sequence <= *before) return;
-  const std::lock_guard lock(mutex_);
-  counters_.missed += header.sequence - *before - 1;
 }
 
 void TopicSource::TakePose(const BagTopic& topic, std::string_view bytes) {
@@ -175,7 +143,7 @@ void TopicSource::TakeTransforms(const BagTopic& topic, std::string_view bytes) 
        ParseMessage<TfMessage>(bytes, topic.wire_format, topic.name).transforms) {
     transforms_.Add(transform, is_static);
     if (!options_.poses_by_tf || is_static || ToNanoseconds(transform.header.stamp) <= 0) continue;
-    const auto pose = transforms_.PoseBy(transform, options_.body_frame, options_.world_frame);
+    const auto pose = transforms_.PoseBy(transform, options_.body_frame);
     if (pose) AddPose(pose->sample, pose->world, topic.name);
   }
 }

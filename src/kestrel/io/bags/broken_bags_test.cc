@@ -137,11 +137,22 @@ const BrokenBag kBrokenBags[] = {
        return f.Write("flight.mcap", ReadFile(Flight(f, "whole.mcap")).substr(0, 40));
      },
      "has no images"},
+    {"a .db3 cut in its header",
+     [](const TestFolder& f) {
+       return f.Write("flight.db3", ReadFile(Flight(f, "whole.db3")).substr(0, 30));
+     },
+     "cannot be read as a bag of rosbag2"},
     {"a .db3 cut in its first page",
      [](const TestFolder& f) {
        return f.Write("flight.db3", ReadFile(Flight(f, "whole.db3")).substr(0, 1000));
      },
-     "malformed"},
+     "was cut off, has 1000 of "},
+    {"a .db3 that lacks its last byte",
+     [](const TestFolder& f) {
+       const std::string whole = ReadFile(Flight(f, "whole.db3"));
+       return f.Write("flight.db3", whole.substr(0, whole.size() - 1));
+     },
+     "or save its whole pages"},
     {"a .bag whose first record is too long",
      [](const TestFolder& f) {
        return f.Write("flight.bag", "#ROSBAG V2.0\n\xff\xff\xff\x7f" + std::string(99, 'a'));

@@ -14,12 +14,12 @@ namespace {
 
 struct Definition {
   std::string_view type;
-  std::string_view checksum;  // in ROS 1; empty for types that occur only in others
+  std::string_view checksum;  // in ROS 1; empty for types that occur only in others, or in ROS 2
   std::string_view fields;
   std::vector<std::string_view> parts;  // types of its fields
 };
 
-// The definitions in ROS 1; Ros2Definitions has those that differ in ROS 2.
+// The definitions of the types in bags, in ROS 1; Ros2Definitions has those that differ in ROS 2.
 const std::vector<Definition>& Definitions() {
   static const std::vector<Definition> kDefinitions = {
       {"sensor_msgs/Image",
@@ -59,76 +59,6 @@ const std::vector<Definition>& Definitions() {
        "b5764a33bfeb3588febc2682852579b0",
        "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n",
        {"std_msgs/Header", "geometry_msgs/Transform"}},
-      {"nav_msgs/Path",
-       "6227e2b7e9cce15051f669a5e197bbf7",
-       "std_msgs/Header header\ngeometry_msgs/PoseStamped[] poses\n",
-       {"std_msgs/Header", "geometry_msgs/PoseStamped"}},
-      {"visualization_msgs/MarkerArray",
-       "d155b9ce5188fbaf89745847fd5882d7",
-       "visualization_msgs/Marker[] markers\n",
-       {"visualization_msgs/Marker"}},
-      {"diagnostic_msgs/DiagnosticArray",
-       "60810da900de1dd6ddd437c3503511da",
-       "std_msgs/Header header\ndiagnostic_msgs/DiagnosticStatus[] status\n",
-       {"std_msgs/Header", "diagnostic_msgs/DiagnosticStatus"}},
-      {"vision_msgs/Detection3DArray",
-       "05c51d9aea1fb4cfdc8effb94f197b6f",
-       "std_msgs/Header header\nvision_msgs/Detection3D[] detections\n",
-       {"std_msgs/Header", "vision_msgs/Detection3D"}},
-      {"apriltag_ros/AprilTagDetectionArray",
-       "2b6c03434883a5c9897c13b5594dbd91",
-       "std_msgs/Header header\napriltag_ros/AprilTagDetection[] detections\n",
-       {"std_msgs/Header", "apriltag_ros/AprilTagDetection"}},
-      {"apriltag_ros/AprilTagDetection",
-       "",
-       "int32[] id\nfloat64[] size\ngeometry_msgs/PoseWithCovarianceStamped pose\n",
-       {"geometry_msgs/PoseWithCovarianceStamped"}},
-      {"visualization_msgs/Marker",
-       "",
-       "uint8 ARROW=0\nuint8 CUBE=1\nuint8 SPHERE=2\nuint8 CYLINDER=3\nuint8 LINE_STRIP=4\n"
-       "uint8 LINE_LIST=5\nuint8 CUBE_LIST=6\nuint8 SPHERE_LIST=7\nuint8 POINTS=8\n"
-       "uint8 TEXT_VIEW_FACING=9\nuint8 MESH_RESOURCE=10\nuint8 TRIANGLE_LIST=11\n"
-       "uint8 ADD=0\nuint8 MODIFY=0\nuint8 DELETE=2\nuint8 DELETEALL=3\n"
-       "std_msgs/Header header\nstring ns\nint32 id\nint32 type\nint32 action\n"
-       "geometry_msgs/Pose pose\ngeometry_msgs/Vector3 scale\nstd_msgs/ColorRGBA color\n"
-       "duration lifetime\nbool frame_locked\ngeometry_msgs/Point[] points\n"
-       "std_msgs/ColorRGBA[] colors\nstring text\nstring mesh_resource\n"
-       "bool mesh_use_embedded_materials\n",
-       {"std_msgs/Header", "geometry_msgs/Pose", "geometry_msgs/Vector3", "std_msgs/ColorRGBA",
-        "geometry_msgs/Point"}},
-      {"diagnostic_msgs/DiagnosticStatus",
-       "",
-       "byte OK=0\nbyte WARN=1\nbyte ERROR=2\nbyte STALE=3\n"
-       "byte level\nstring name\nstring message\nstring hardware_id\n"
-       "diagnostic_msgs/KeyValue[] values\n",
-       {"diagnostic_msgs/KeyValue"}},
-      {"diagnostic_msgs/KeyValue", "", "string key\nstring value\n", {}},
-      {"vision_msgs/Detection3D",
-       "",
-       "std_msgs/Header header\nvision_msgs/ObjectHypothesisWithPose[] results\n"
-       "vision_msgs/BoundingBox3D bbox\nsensor_msgs/PointCloud2 source_cloud\n",
-       {"std_msgs/Header", "vision_msgs/ObjectHypothesisWithPose", "vision_msgs/BoundingBox3D",
-        "sensor_msgs/PointCloud2"}},
-      {"vision_msgs/ObjectHypothesisWithPose",
-       "",
-       "int64 id\nfloat64 score\ngeometry_msgs/PoseWithCovariance pose\n",
-       {"geometry_msgs/PoseWithCovariance"}},
-      {"vision_msgs/BoundingBox3D",
-       "",
-       "geometry_msgs/Pose center\ngeometry_msgs/Vector3 size\n",
-       {"geometry_msgs/Pose", "geometry_msgs/Vector3"}},
-      {"sensor_msgs/PointCloud2",
-       "",
-       "std_msgs/Header header\nuint32 height\nuint32 width\nsensor_msgs/PointField[] fields\n"
-       "bool is_bigendian\nuint32 point_step\nuint32 row_step\nuint8[] data\nbool is_dense\n",
-       {"std_msgs/Header", "sensor_msgs/PointField"}},
-      {"sensor_msgs/PointField",
-       "",
-       "uint8 INT8=1\nuint8 UINT8=2\nuint8 INT16=3\nuint8 UINT16=4\nuint8 INT32=5\n"
-       "uint8 UINT32=6\nuint8 FLOAT32=7\nuint8 FLOAT64=8\n"
-       "string name\nuint32 offset\nuint8 datatype\nuint32 count\n",
-       {}},
-      {"std_msgs/ColorRGBA", "", "float32 r\nfloat32 g\nfloat32 b\nfloat32 a\n", {}},
       {"std_msgs/Header", "", "uint32 seq\ntime stamp\nstring frame_id\n", {}},
       {"sensor_msgs/RegionOfInterest",
        "",
@@ -161,7 +91,7 @@ const std::vector<Definition>& Definitions() {
   return kDefinitions;
 }
 
-// The definitions that differ in ROS 2.
+// The definitions that differ in ROS 2, and those of results.
 const std::vector<Definition>& Ros2Definitions() {
   static const std::vector<Definition> kDefinitions = {
       {"sensor_msgs/CameraInfo",
@@ -214,6 +144,34 @@ const std::vector<Definition>& Ros2Definitions() {
        "apriltag_msgs/Point centre\napriltag_msgs/Point[4] corners\nfloat64[9] homography\n",
        {"apriltag_msgs/Point"}},
       {"apriltag_msgs/Point", "", "float64 x\nfloat64 y\n", {}},
+      {"nav_msgs/Path",
+       "",
+       "std_msgs/Header header\ngeometry_msgs/PoseStamped[] poses\n",
+       {"std_msgs/Header", "geometry_msgs/PoseStamped"}},
+      {"visualization_msgs/MarkerArray",
+       "",
+       "visualization_msgs/Marker[] markers\n",
+       {"visualization_msgs/Marker"}},
+      {"diagnostic_msgs/DiagnosticArray",
+       "",
+       "std_msgs/Header header\ndiagnostic_msgs/DiagnosticStatus[] status\n",
+       {"std_msgs/Header", "diagnostic_msgs/DiagnosticStatus"}},
+      {"diagnostic_msgs/DiagnosticStatus",
+       "",
+       "byte OK=0\nbyte WARN=1\nbyte ERROR=2\nbyte STALE=3\n"
+       "byte level\nstring name\nstring message\nstring hardware_id\n"
+       "diagnostic_msgs/KeyValue[] values\n",
+       {"diagnostic_msgs/KeyValue"}},
+      {"diagnostic_msgs/KeyValue", "", "string key\nstring value\n", {}},
+      {"vision_msgs/Detection3DArray",
+       "",
+       "std_msgs/Header header\nvision_msgs/Detection3D[] detections\n",
+       {"std_msgs/Header", "vision_msgs/Detection3D"}},
+      {"vision_msgs/BoundingBox3D",
+       "",
+       "geometry_msgs/Pose center\ngeometry_msgs/Vector3 size\n",
+       {"geometry_msgs/Pose", "geometry_msgs/Vector3"}},
+      {"std_msgs/ColorRGBA", "", "float32 r\nfloat32 g\nfloat32 b\nfloat32 a\n", {}},
       // Makes nodes visible to `ros2 node list`, since Iron.
       {"rmw_dds_common/ParticipantEntitiesInfo",
        "",

@@ -11,7 +11,7 @@
 
 namespace kestrel {
 
-// The messages of ROS that only results need, by the same rules as in messages.h.
+// The messages of ROS 2 (since Humble) that only results need, by the same rules as in messages.h.
 
 struct PathMessage {
   static constexpr std::string_view kType = "nav_msgs/Path";
@@ -51,7 +51,7 @@ struct RosDurationMessage {
   }
 };
 
-// The texture of a marker in ROS 2; always empty here.
+// The texture of a marker; always empty here.
 struct EmptyTextureMessage {
   std::string resource;
   CompressedImageMessage texture;
@@ -93,10 +93,10 @@ struct MarkerMessage {
   std::uint8_t frame_locked = 0;
   std::vector<Vector3Message> points;  // for an arrow: its ends
   std::vector<ColorMessage> colors;
-  EmptyTextureMessage texture;  // ROS 2 only
+  EmptyTextureMessage texture;
   std::string text;
   std::string mesh_resource;
-  EmptyMeshMessage mesh_file;  // ROS 2 only
+  EmptyMeshMessage mesh_file;
   std::uint8_t mesh_use_embedded_materials = 0;
 
   template <class Self, class Wire>
@@ -113,10 +113,10 @@ struct MarkerMessage {
     wire(self.frame_locked);
     wire.List(self.points);
     wire.List(self.colors);
-    wire.OfRos2(self.texture);
+    wire(self.texture);
     wire(self.text);
     wire(self.mesh_resource);
-    wire.OfRos2(self.mesh_file);
+    wire(self.mesh_file);
     wire(self.mesh_use_embedded_materials);
   }
 };
@@ -175,45 +175,17 @@ struct DiagnosticArrayMessage {
 
 // vision_msgs/ObjectHypothesisWithPose.
 struct ObjectHypothesisMessage {
-  std::int64_t id = 0;   // of the class; ROS 1 (Noetic) only
-  std::string class_id;  // name of the class; ROS 2 (since Humble) only
+  std::string class_id;  // name of the class
   double score = 0;      // 0 to 1
   PoseMessage pose;
   std::array<double, 36> covariance{};
 
   template <class Self, class Wire>
   static void Fields(Self& self, Wire& wire) {
-    wire.OfRos1(self.id);
-    wire.OfRos2(self.class_id);
+    wire(self.class_id);
     wire(self.score);
     wire(self.pose);
     for (auto& number : self.covariance) wire(number);
-  }
-};
-
-// sensor_msgs/PointCloud2 without points.
-struct EmptyCloudMessage {
-  HeaderMessage header;
-  std::uint32_t height = 0;
-  std::uint32_t width = 0;
-  std::uint32_t field_count = 0;
-  std::uint8_t is_bigendian = 0;
-  std::uint32_t point_step = 0;
-  std::uint32_t row_step = 0;
-  std::uint32_t byte_count = 0;
-  std::uint8_t is_dense = 1;
-
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
-    wire(self.header);
-    wire(self.height);
-    wire(self.width);
-    wire(self.field_count);
-    wire(self.is_bigendian);
-    wire(self.point_step);
-    wire(self.row_step);
-    wire(self.byte_count);
-    wire(self.is_dense);
   }
 };
 
@@ -222,9 +194,8 @@ struct Detection3DMessage {
   HeaderMessage header;
   std::vector<ObjectHypothesisMessage> results;
   PoseMessage box_center;
-  Vector3Message box_size;         // m
-  EmptyCloudMessage source_cloud;  // ROS 1 (Noetic) only
-  std::string id;                  // the same from frame to frame; ROS 2 (since Humble) only
+  Vector3Message box_size;  // m
+  std::string id;           // the same from frame to frame
 
   template <class Self, class Wire>
   static void Fields(Self& self, Wire& wire) {
@@ -232,8 +203,7 @@ struct Detection3DMessage {
     wire.List(self.results);
     wire(self.box_center);
     wire(self.box_size);
-    wire.OfRos1(self.source_cloud);
-    wire.OfRos2(self.id);
+    wire(self.id);
   }
 };
 

@@ -46,14 +46,10 @@ class WireReader {
   requires std::is_class_v<Message>
   void operator()(Message& message) { Message::Fields(message, *this); }
 
-  // Reads a field that the type has in only one of the formats.
+  // Reads a field that the type has in ROS 1 only.
   template <class Field>
   void OfRos1(Field& field) {
     if (format_ == WireFormat::kRos1) (*this)(field);
-  }
-  template <class Field>
-  void OfRos2(Field& field) {
-    if (format_ == WireFormat::kCdr) (*this)(field);
   }
   void ByteList(std::string_view& bytes) { bytes = Take(Count()); }
   // The list grows with the bytes that exist, whatever length they claim.
@@ -96,10 +92,6 @@ class WireWriter {
   template <class Field>
   void OfRos1(const Field& field) {
     if (format_ == WireFormat::kRos1) (*this)(field);
-  }
-  template <class Field>
-  void OfRos2(const Field& field) {
-    if (format_ == WireFormat::kCdr) (*this)(field);
   }
   void ByteList(const std::string_view& bytes) {
     (*this)(static_cast<std::uint32_t>(bytes.size()));

@@ -2,7 +2,11 @@
 #include "kestrel/io/bags/sqlite_bag.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <filesystem>
+#include <fstream>
+#include <span>
 #include <sqlite3.h>
 #include <string_view>
 #include <zstd.h>
@@ -38,6 +42,15 @@ std::string UriOf(const std::string& path) {
   return uri;
 }
 
+// Big-endian number of 'count' bytes at 'offset'.
+std::uint32_t BigEndian(std::span<const char> bytes, std::size_t offset, std::size_t count) {
+  std::uint32_t number = 0;
+  for (const char byte : bytes.subspan(offset, count)) {
+    number = number << 8 | static_cast<unsigned char>(byte);
+  }
+  return number;
+}
+
 }  // namespace
 
 void CloseSqlite::operator()(sqlite3* database) const { sqlite3_close(database); }
@@ -45,17 +58,33 @@ void FinalizeSqlite::operator()(sqlite3_stmt* statement) const { sqlite3_finaliz
 
 SqliteBag::SqliteBag(const std::string& path, bool has_compressed_messages)
     : path_(path), has_compressed_messages_(has_compressed_messages) {
-  if (const auto cut = HasJournal() ? std::nullopt : FindSqliteCut(path)) {
-    OpenCut(*cut);
-  } else {
-    Open();
-  }
+  RequireWhole();
+  Open();
   ReadTopics();
 }
 
 bool SqliteBag::HasJournal() const {
   std::error_code error;
   return std::filesystem::file_size(path_ + "-wal", error) > 0 && !error;
+}
+
+// SQLite itself fills a page that was cut off with zeros, and gives out the messages on it as good.
+// What lies in a journal is not in the file yet.
+void SqliteBag::RequireWhole() const {
+  constexpr std::size_t kPageSize = 16, kPages = 28;  // offsets, sqlite.org/fileformat2.html
+  std::array<char, kPages + 4> header{};
+  std::ifstream file(path_, std::ios::binary);
+  if (!file.read(header.data(), header.size()) || HasJournal()) return;
+  if (!std::string_view(header.data(), header.size()).starts_with(kSqliteMagic)) return;
+  const std::uint64_t stored_size = BigEndian(header, kPageSize, 2);
+  const std::uint64_t page_size = stored_size == 1 ? 65536 : stored_size;
+  const std::uint64_t expected = page_size * BigEndian(header, kPages, 4);
+  const std::uint64_t size = std::filesystem::file_size(path_);
+  if (size >= expected) return;
+  throw InputError(fmt::format(
+      "{}: was cut off, has {} of {} bytes (a power loss, an unfinished copy?): copy it "
+      "again, or save its whole pages, {} bytes, as docs/bags.md says",
+      path_, size, expected, size - size % page_size));
 }
 
 void SqliteBag::Open() {
@@ -69,18 +98,6 @@ void SqliteBag::Open() {
   if (status != SQLITE_OK) Fail();
 }
 
-void SqliteBag::OpenCut(const SqliteCut& cut) {
-  cut_ = std::make_unique<CutSqlite>(path_, cut);
-  sqlite3* database = nullptr;
-  const int status = sqlite3_open(":memory:", &database);
-  database_.reset(database);
-  if (status != SQLITE_OK || cut_->OpenIn(database) != SQLITE_OK) Fail();
-  remark_ = fmt::format(
-      "{}: was not closed, or is damaged (a power loss?): it is read up to there; its last whole "
-      "page ends at byte {} of {}",
-      path_, cut.whole_pages, cut.expected);
-}
-
 SqliteStatement SqliteBag::Prepare(const std::string& sql) const {
   sqlite3_stmt* statement = nullptr;
   if (sqlite3_prepare_v2(database_.get(), sql.c_str(), -1, &statement, nullptr) != SQLITE_OK) {
@@ -91,8 +108,7 @@ SqliteStatement SqliteBag::Prepare(const std::string& sql) const {
 
 bool SqliteBag::Step(sqlite3_stmt* statement) const {
   const int status = sqlite3_step(statement);
-  const bool is_cut = cut_ != nullptr && status == SQLITE_CORRUPT;
-  if (status != SQLITE_ROW && status != SQLITE_DONE && !is_cut) Fail();
+  if (status != SQLITE_ROW && status != SQLITE_DONE) Fail();
   return status == SQLITE_ROW;
 }
 
@@ -122,14 +138,13 @@ bool SqliteBag::HasTimeIndex() const {
 }
 
 // The order is that of the index on the time. Without an index it is the order of recording, as
-// sorting would need the memory or disk space of all messages. So it is where a bag was cut: the
-// index may lie behind the cut.
+// sorting would need the memory or disk space of all messages.
 void SqliteBag::Select(const std::vector<std::size_t>& topics) {
   std::vector<std::int64_t> ids;
   for (const std::size_t topic : topics) ids.push_back(ids_.at(topic));
   messages_ = Prepare(fmt::format(
       "SELECT topic_id, timestamp, data FROM messages WHERE topic_id IN ({}) ORDER BY {}",
-      fmt::join(ids, ","), cut_ == nullptr && HasTimeIndex() ? "timestamp" : "id"));
+      fmt::join(ids, ","), HasTimeIndex() ? "timestamp" : "id"));
 }
 
 std::size_t SqliteBag::TopicOfId(std::int64_t id) const {

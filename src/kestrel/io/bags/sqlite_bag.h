@@ -3,13 +3,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "kestrel/io/bags/bag_reader.h"
-#include "kestrel/io/bags/cut_sqlite.h"
 #include "kestrel/io/bags/sqlite_handles.h"
 
 namespace kestrel {
@@ -21,22 +19,20 @@ inline constexpr std::string_view kSqliteMagic("SQLite format 3\0", 16);
 class SqliteBag : public BagReader {
  public:
   // 'has_compressed_messages': each message is compressed by zstd, as metadata.yaml says
-  // (compression_mode: MESSAGE). A file that was cut off is read up to there, as long as the pages
-  // that list its messages are left. Throws InputError when the file is not such a bag or is
-  // broken.
+  // (compression_mode: MESSAGE). Throws InputError when the file is not such a bag, was cut off or
+  // is broken.
   explicit SqliteBag(const std::string& path, bool has_compressed_messages = false);
 
   const std::vector<BagTopic>& topics() const override { return topics_; }
   void Select(const std::vector<std::size_t>& topics) override;
   bool Next(BagMessage* message) override;
-  std::string remark() const override { return remark_; }
 
  private:
   bool HasJournal() const;
+  void RequireWhole() const;
   void Open();
-  void OpenCut(const SqliteCut& cut);
   SqliteStatement Prepare(const std::string& sql) const;
-  // Returns whether there is a row; none behind a cut.
+  // Returns whether there is a row.
   bool Step(sqlite3_stmt* statement) const;
   [[noreturn]] void Fail() const;
   bool HasTimeIndex() const;
@@ -45,13 +41,11 @@ class SqliteBag : public BagReader {
 
   std::string path_;
   bool has_compressed_messages_;
-  std::unique_ptr<CutSqlite> cut_;  // of a file that was cut off
   SqliteDatabase database_;
   std::vector<BagTopic> topics_;
   std::vector<std::int64_t> ids_;  // the database's ids of the topics
   SqliteStatement messages_;
   std::string decompressed_;
-  std::string remark_;
 };
 
 }  // namespace kestrel

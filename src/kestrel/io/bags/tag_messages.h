@@ -11,7 +11,7 @@
 
 namespace kestrel {
 
-// The messages of apriltag_ros, by the same rules as in messages.h.
+// The messages of apriltag_ros in ROS 2, by the same rules as in messages.h.
 
 struct ImagePointMessage {  // apriltag_msgs/Point, px
   double x = 0;
@@ -24,7 +24,7 @@ struct ImagePointMessage {  // apriltag_msgs/Point, px
   }
 };
 
-struct TagMessage {  // apriltag_msgs/AprilTagDetection, ROS 2
+struct TagMessage {  // apriltag_msgs/AprilTagDetection
   std::string family;
   std::int32_t id = 0;
   std::int32_t hamming = 0;  // bits that were corrected
@@ -47,35 +47,10 @@ struct TagMessage {  // apriltag_msgs/AprilTagDetection, ROS 2
   }
 };
 
-struct TagArrayMessage {  // ROS 2
+struct TagArrayMessage {
   static constexpr std::string_view kType = "apriltag_msgs/AprilTagDetectionArray";
   HeaderMessage header;
   std::vector<TagMessage> detections;
-
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
-    wire(self.header);
-    wire.List(self.detections);
-  }
-};
-
-struct TagPoseMessage {  // apriltag_ros/AprilTagDetection, ROS 1: a tag or a bundle
-  std::vector<std::int32_t> ids;
-  std::vector<double> sizes;  // m
-  PoseWithCovarianceStampedMessage pose;
-
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
-    wire.List(self.ids);
-    wire.List(self.sizes);
-    wire(self.pose);
-  }
-};
-
-struct TagPoseArrayMessage {  // ROS 1
-  static constexpr std::string_view kType = "apriltag_ros/AprilTagDetectionArray";
-  HeaderMessage header;
-  std::vector<TagPoseMessage> detections;
 
   template <class Self, class Wire>
   static void Fields(Self& self, Wire& wire) {

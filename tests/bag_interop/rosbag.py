@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Bags that Debian's rosbag has written give what the recording gives, and rosbag reads Kestrel's.
 
-usage: bag_test.py KESTREL
+usage: rosbag.py KESTREL
 
 A simulated flight is written with the message classes of Debian's ROS, in every encoding and every
 compression. The table of `kestrel land` on each, without the names of the frames and detect_ms, is
