@@ -167,8 +167,9 @@ class AnyTagFinder {
     finder_.Begin(image, whole, &buffers);
     for (int step = 0; step < 2 * PlaneBorders::kPasses; ++step) {
       if (step == PlaneBorders::kPasses) finder_.BeginLinear(image, whole, &buffers);
-      finder_.Find(whole, step % PlaneBorders::kPasses, &buffers);
-      for (const TagQuad& quad : buffers.quads) AddLike(image, quad, dictionaries, &like);
+      for (const TagQuad& quad : finder_.Find(whole, step % PlaneBorders::kPasses, &buffers)) {
+        AddLike(image, quad, dictionaries, &like);
+      }
     }
     return like;
   }

@@ -67,8 +67,7 @@ class TagFinder {
     quads_.Begin(image, all, &buffers_);
     // From the coarsest image to the finest: the corners of the last are the best.
     for (int pass = 0; pass < PlaneBorders::kPasses; ++pass) {
-      quads_.Find(all, pass, &buffers_);
-      for (const TagQuad& quad : buffers_.quads) {
+      for (const TagQuad& quad : quads_.Find(all, pass, &buffers_)) {
         if (const auto match = MatchTag(image, camera_, board_, quad, &samples_)) {
           Add(*match, quad, &seen);
         }

@@ -88,10 +88,9 @@ class LandingPipeline::Impl {
     int symmetry;  // number of headings under which the pad looked the same
   };
 
-  // The search for tags of the wrong id, and the memory of it.
+  // The search for tags of the wrong id.
   struct Others {
     OtherTagFinder finder;
-    OtherTagBuffers buffers;
     std::optional<OtherTag> seen;
   };
   static std::optional<Others> OthersOf(const CameraModel& camera, const TargetOptions& target);
@@ -157,21 +156,17 @@ std::optional<LandingPipeline::Impl::Others> LandingPipeline::Impl::OthersOf(
     const CameraModel& camera, const TargetOptions& target) {
   std::optional<OtherTagFinder> finder = MakeOtherTagFinder(camera, target);
   if (!finder) return std::nullopt;
-  OtherTagBuffers buffers = finder->MakeBuffers();
-  return Others{std::move(*finder), std::move(buffers), std::nullopt};
+  return Others{std::move(*finder), std::nullopt};
 }
 
-// A search that ran out of time leaves none for others.
 void LandingPipeline::Impl::LookForOthers(const cv::Mat& image, LandingObservation* observation) {
   if (observation->report.detection) others_.reset();
   if (!others_) return;
-  if (observation->report.next_step == 0) {
-    const OtherTagFinder& finder = others_->finder;
-    if (const auto id = finder.Find(image, &others_->buffers)) {
-      const std::size_t before =
-          others_->seen && others_->seen->id == *id ? others_->seen->frames : 0;
-      others_->seen = OtherTag{finder.family(), finder.id(), *id, before + 1};
-    }
+  const OtherTagFinder& finder = others_->finder;
+  if (const auto id = finder.Find(image, workspace_.get())) {
+    const std::size_t before =
+        others_->seen && others_->seen->id == *id ? others_->seen->frames : 0;
+    others_->seen = OtherTag{finder.family(), finder.id(), *id, before + 1};
   }
   observation->other_tag = others_->seen;
 }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 
 #include <Eigen/Geometry>
 
@@ -37,7 +36,7 @@ constexpr PlaneBorders::Passes kQuadPasses{{
      .at_rim = true},
 }};
 
-constexpr std::size_t kMostQuads = 160;
+constexpr std::size_t kMostQuads = 160;  // of a pass
 
 using PlanePoints = std::vector<Eigen::Vector2d>;
 
@@ -155,21 +154,24 @@ TagQuadFinder::TagQuadFinder(const CameraModel& camera)
 
 void TagQuadFinder::Begin(const cv::Mat& image, const cv::Rect& part,
                           TagQuadBuffers* buffers) const {
-  buffers->quads.reserve(kMostQuads);
+  buffers->quads.clear();
+  buffers->quads.reserve(2 * PlaneBorders::kPasses * kMostQuads);
   borders_.Begin(image, part, &buffers->borders);
 }
 
-void TagQuadFinder::Find(const cv::Rect& part, int pass, TagQuadBuffers* buffers) const {
-  buffers->quads.clear();
+std::span<const TagQuad> TagQuadFinder::Find(const cv::Rect& part, int pass,
+                                             TagQuadBuffers* buffers) const {
+  const std::size_t before = buffers->quads.size();
   const std::span<const Border> borders = borders_.Trace(part, pass, &buffers->borders);
   buffers->examined = borders.size();
   for (const Border& border : borders) {
-    if (buffers->quads.size() == kMostQuads) return;
+    if (buffers->quads.size() == before + kMostQuads) break;
     TagQuad quad;
     if (MayBeQuad(border) && FitQuad(border, part, pass, &buffers->borders, &quad)) {
       buffers->quads.push_back(quad);
     }
   }
+  return std::span(buffers->quads).subspan(before);
 }
 
 bool TagQuadFinder::FitQuad(const Border& border, const cv::Rect& part, int pass,

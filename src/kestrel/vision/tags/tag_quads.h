@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -23,8 +24,8 @@ struct TagQuad {
 // Memory of one thread's search for quads.
 struct TagQuadBuffers {
   BorderBuffers borders;
-  std::vector<TagQuad> quads;
-  std::size_t examined = 0;  // number of borders
+  std::vector<TagQuad> quads;  // of all passes since Begin
+  std::size_t examined = 0;    // number of borders of the last pass
 };
 
 // Finds quads in the raw image: borders with four straight sides.
@@ -41,8 +42,8 @@ class TagQuadFinder {
     borders_.BeginLinear(image, part, &buffers->borders);
   }
 
-  // Writes what one pass finds to 'buffers->quads'.
-  void Find(const cv::Rect& part, int pass, TagQuadBuffers* buffers) const;
+  // Returns what one pass finds, which is added to 'buffers->quads'.
+  std::span<const TagQuad> Find(const cv::Rect& part, int pass, TagQuadBuffers* buffers) const;
 
  private:
   bool FitQuad(const Border& border, const cv::Rect& part, int pass, BorderBuffers* buffers,

@@ -45,7 +45,9 @@ double LikenessOf(std::span<const float> gray, const TagGrid& grid) {
 
 TagSearch::TagSearch(const TagSearchModels& models, const cv::Mat& image, const LandingHint& hint,
                      TagSearchBuffers* buffers)
-    : PadSearch(models.search, image, hint, &buffers->pad), tags_(models), quads_(buffers->quads) {}
+    : PadSearch(models.search, image, hint, &buffers->pad), tags_(models), quads_(buffers->quads) {
+  quads_.quads.clear();
+}
 
 // The largest tag of which enough is in view.
 const TagModel* TagSearch::LeadingTag(const RigidTransform& pose) {
@@ -87,17 +89,18 @@ bool TagSearch::MayHaveSize(int pass, double distance_m, double error) const {
 int TagSearch::Steps() const { return 2 * PlaneBorders::kPasses; }
 
 void TagSearch::SearchStep(const cv::Rect& part, int step) {
+  std::span<const TagQuad> quads;
   {
     const SearchLog::Timer timer = log_.Time(LandingStage::kAreas);
     if (step >= PlaneBorders::kPasses && !is_linear_) {
       tags_.finder.BeginLinear(image_, part, &quads_);
       is_linear_ = true;
     }
-    tags_.finder.Find(part, step % PlaneBorders::kPasses, &quads_);
+    quads = tags_.finder.Find(part, step % PlaneBorders::kPasses, &quads_);
   }
   ExamineBorders(quads_.examined, "no border is a quadrangle");
   const SearchLog::Timer timer = log_.Time(LandingStage::kCross);
-  for (const TagQuad& quad : quads_.quads) Try(quad);
+  for (const TagQuad& quad : quads) Try(quad);
 }
 
 void TagSearch::Try(const TagQuad& quad) {

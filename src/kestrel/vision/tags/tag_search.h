@@ -18,7 +18,7 @@ struct TagSearchModels {
   double min_quality;
 };
 
-// Memory of one thread's searches.
+// Memory of one thread's searches. It keeps the quads of the last one.
 struct TagSearchBuffers : TargetWorkspace {
   TagQuadBuffers quads;
   PadSearchBuffers pad;

@@ -8,6 +8,7 @@
 #include "kestrel/vision/tags/board_model.h"
 #include "kestrel/vision/tags/tag_family.h"
 #include "kestrel/vision/tags/tag_match.h"
+#include "kestrel/vision/tags/tag_search.h"
 
 namespace kestrel {
 namespace {
@@ -44,7 +45,7 @@ Threshold ThresholdOf(const TagGrid& layout, std::span<const float> gray) {
 }  // namespace
 
 OtherTagFinder::OtherTagFinder(const CameraModel& camera, const TagBoard& board)
-    : camera_(camera), finder_(camera), id_(board.tags.front().id) {
+    : camera_(camera), id_(board.tags.front().id) {
   const BoardTag& tag = board.tags.front();
   if (!tag.IsOfFamily()) return;
   const TagFamily family(tag.family);
@@ -69,12 +70,6 @@ OtherTagFinder::OtherTagFinder(const CameraModel& camera, const TagBoard& board)
             [](const Code& a, const Code& b) { return a.bits < b.bits; });
 }
 
-OtherTagBuffers OtherTagFinder::MakeBuffers() const {
-  OtherTagBuffers buffers;
-  buffers.samples.Reserve(layout_.cells.size());
-  return buffers;
-}
-
 std::uint64_t OtherTagFinder::BitsOf(const TagGrid& grid) const {
   std::uint64_t bits = 0;
   for (const std::size_t cell : data_cells_) {
@@ -83,16 +78,12 @@ std::uint64_t OtherTagFinder::BitsOf(const TagGrid& grid) const {
   return bits;
 }
 
-std::optional<int> OtherTagFinder::Find(const cv::Mat& image, OtherTagBuffers* buffers) const {
+std::optional<int> OtherTagFinder::Find(const cv::Mat& image, TargetWorkspace* searched) const {
   if (others_.empty()) return std::nullopt;
-  const cv::Rect whole(0, 0, image.cols, image.rows);
-  finder_.Begin(image, whole, &buffers->quads);
-  for (int pass = 0; pass < PlaneBorders::kPasses; ++pass) {
-    finder_.Find(whole, pass, &buffers->quads);
-    for (const TagQuad& quad : buffers->quads.quads) {
-      if (quad.dark_inside != dark_inside_) continue;
-      if (const auto id = Read(image, quad, &buffers->samples)) return id;
-    }
+  auto& buffers = dynamic_cast<TagSearchBuffers&>(*searched);
+  for (const TagQuad& quad : buffers.quads.quads) {
+    if (quad.dark_inside != dark_inside_) continue;
+    if (const auto id = Read(image, quad, &buffers.pad.samples)) return id;
   }
   return std::nullopt;
 }

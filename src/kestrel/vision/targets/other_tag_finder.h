@@ -13,17 +13,13 @@
 #include "kestrel/vision/search/pad_samples.h"
 #include "kestrel/vision/tags/tag_board.h"
 #include "kestrel/vision/tags/tag_quads.h"
+#include "kestrel/vision/target/target_detector.h"
 
 namespace kestrel {
 
-// Memory of one thread's search for other tags.
-struct OtherTagBuffers {
-  TagQuadBuffers quads;
-  PadSamples samples;
-};
-
 // Finds a tag of the family of a board's first tag whose id is not on the board: another pad is in
-// view than the one that is looked for. Reports only what is read without a single wrong cell.
+// view than the one that is looked for. Looks at the borders that the search for the board has
+// found; reports only what is read without a single wrong cell.
 class OtherTagFinder {
  public:
   // 'board' must be valid. One whose first tag is of no family has no other tags.
@@ -34,11 +30,9 @@ class OtherTagFinder {
   // Id of the tag that is looked for.
   int id() const { return id_; }
 
-  OtherTagBuffers MakeBuffers() const;
-
-  // Returns the id of another tag in the image, nothing when none is read. 'image': CV_8UC1 of the
-  // camera's size. Does not allocate once the buffers have warmed up.
-  std::optional<int> Find(const cv::Mat& image, OtherTagBuffers* buffers) const;
+  // Returns the id of another tag in the image, nothing when none is read. 'searched': the
+  // workspace with which a detector of the board has just searched this image. Does not allocate.
+  std::optional<int> Find(const cv::Mat& image, TargetWorkspace* searched) const;
 
  private:
   struct Code {
@@ -51,7 +45,6 @@ class OtherTagFinder {
   std::optional<int> IdOf(std::uint64_t bits) const;
 
   CameraModel camera_;
-  TagQuadFinder finder_;
   std::string_view family_;
   int id_;
   TagGrid layout_;                       // kNone where tags of the family differ

@@ -15,17 +15,18 @@
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/vision/tags/board_model.h"
 #include "kestrel/vision/tags/board_reading.h"
+#include "kestrel/vision/tags/tag_search.h"
 
 namespace kestrel {
 namespace {
 
 constexpr int kHeadings = LandingPattern::kArms;  // under which the ring looks the same
 
-class RingWithTagsWorkspace final : public TargetWorkspace {
- public:
+struct RingWithTagsWorkspace final : TagSearchBuffers {
+  RingWithTagsWorkspace(TagSearchBuffers&& tags, std::unique_ptr<TargetWorkspace> of_ring)
+      : TagSearchBuffers(std::move(tags)), ring(std::move(of_ring)) {}
+
   std::unique_ptr<TargetWorkspace> ring;
-  std::unique_ptr<TargetWorkspace> tags;
-  PadSamples samples;
 };
 
 RigidTransform Turned(const RigidTransform& camera_from_pattern, int quarters) {
@@ -158,7 +159,7 @@ LandingReport RingWithTagsDetector::Detect(const cv::Mat& image, const LandingHi
   const Clock::time_point start = Clock::now();
   auto& memory = dynamic_cast<RingWithTagsWorkspace&>(workspace);
   LandingReport by_ring = impl_->ring.Detect(image, hint, *memory.ring);
-  if (by_ring.detection) impl_->Identify(image, &memory.samples, &by_ring);
+  if (by_ring.detection) impl_->Identify(image, &memory.pad.samples, &by_ring);
   if (by_ring.detection) return by_ring;
 
   // The tags' search gets the time that is left, and always makes its first step.
@@ -169,7 +170,7 @@ LandingReport RingWithTagsDetector::Detect(const cv::Mat& image, const LandingHi
   if (hint.max_search_ms > 0) {
     of_tags.max_search_ms = std::max(kLeastMs, hint.max_search_ms - spent.count());
   }
-  LandingReport by_tags = impl_->tags.Detect(image, of_tags, *memory.tags);
+  LandingReport by_tags = impl_->tags.Detect(image, of_tags, memory);
   if (!by_tags.detection) {
     AddWork(by_tags, &by_ring);
     return by_ring;
@@ -179,11 +180,9 @@ LandingReport RingWithTagsDetector::Detect(const cv::Mat& image, const LandingHi
 }
 
 std::unique_ptr<TargetWorkspace> RingWithTagsDetector::MakeWorkspace() const {
-  auto workspace = std::make_unique<RingWithTagsWorkspace>();
-  workspace->ring = impl_->ring.MakeWorkspace();
-  workspace->tags = impl_->tags.MakeWorkspace();
-  workspace->samples.Reserve(impl_->board.most_cells);
-  return workspace;
+  const std::unique_ptr<TargetWorkspace> tags = impl_->tags.MakeWorkspace();
+  return std::make_unique<RingWithTagsWorkspace>(std::move(dynamic_cast<TagSearchBuffers&>(*tags)),
+                                                 impl_->ring.MakeWorkspace());
 }
 
 const CameraModel& RingWithTagsDetector::camera() const { return impl_->ring.camera(); }
