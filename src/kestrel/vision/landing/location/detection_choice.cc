@@ -101,6 +101,11 @@ bool DetectionChoice::Replaces(const PrintFinding& finding) {
   return true;
 }
 
+bool DetectionChoice::IsClear() const {
+  constexpr double kClearLogOdds = 4.6;  // 0.99
+  return best_ && best_->log_odds >= kClearLogOdds;
+}
+
 std::optional<LandingDetection> DetectionChoice::Detection() const {
   if (!best_) return std::nullopt;
   LandingDetection detection;

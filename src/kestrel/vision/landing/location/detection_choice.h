@@ -32,6 +32,10 @@ class DetectionChoice {
   // Adds a finding. True when it is accepted.
   bool Add(const PrintFinding& finding);
 
+  // True when the best finding so far is so probable that another start of its alignment would not
+  // improve it.
+  bool IsClear() const;
+
   // True when the best finding so far needs no further search.
   bool IsSure() const { return is_sure_; }
 

@@ -81,14 +81,16 @@ void NearPrintVerifier::Test(const RingCandidate& ring) {
   search_.log.Reach(LandingStage::kCross, "no cross inside of the ring");
   const PriorKnowledge::Order order = search_.prior.OrderOf(ring.poses);
   const double diameter_px = ring.diameters_px.x();
-  bool has_cross = false;
+  bool has_cross = false, is_doubtful = false;
   for (const int pose : order.poses) {
     const auto print = FindCross(PatternPose(ring.poses[pose], 0), diameter_px);
     has_cross |= print.has_value();
-    if (print && TestPrint(*print, ring.diameters_px, ring.reach_px, ring.poses, order)) return;
+    if (!print || !TestPrint(*print, ring.diameters_px, ring.reach_px, ring.poses, order)) continue;
+    if (search_.choice.IsClear()) return;
+    is_doubtful = true;
   }
   for (const double farther : kRefinedReaches) {
-    if (has_cross) return;
+    if (has_cross && !is_doubtful) return;
     bool is_whole = false;
     for (const int pose : order.poses) {
       const auto refined = RefineRing(ring.poses[pose], farther * ring.reach_px, kRefinements);
