@@ -41,7 +41,7 @@ std::vector<std::pair<std::string_view, std::string>> SomeMessages() {
   detections.header = header;
   Detection3DMessage& detection = detections.detections.emplace_back();
   detection.id = "17";
-  detection.results.push_back({0, "red", 0.9, pose, {}});
+  detection.results.push_back({"red", 0.9, pose, {}});
   MarkerArrayMessage markers;
   MarkerMessage& marker = markers.markers.emplace_back();
   marker.points = {{1, 2, 3}, {4, 5, 6}};
