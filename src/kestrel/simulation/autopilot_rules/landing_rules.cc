@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/comms/autopilot_rules/landing_rules.h"
+#include "kestrel/simulation/autopilot_rules/landing_rules.h"
 
 #include <algorithm>
 #include <cmath>

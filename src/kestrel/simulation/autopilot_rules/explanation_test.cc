@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/flight/doctor/explanation.h"
+#include "kestrel/simulation/autopilot_rules/explanation.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

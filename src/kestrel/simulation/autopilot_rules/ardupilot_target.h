@@ -7,10 +7,10 @@
 
 #include <Eigen/Geometry>
 
-#include "kestrel/comms/autopilot_rules/autopilot_parameters.h"
-#include "kestrel/comms/autopilot_rules/landing_rules.h"
-#include "kestrel/comms/autopilot_rules/position_velocity_filter.h"
 #include "kestrel/comms/mavlink/messages.h"
+#include "kestrel/simulation/autopilot_rules/autopilot_parameters.h"
+#include "kestrel/simulation/autopilot_rules/landing_rules.h"
+#include "kestrel/simulation/autopilot_rules/position_velocity_filter.h"
 
 namespace kestrel {
 

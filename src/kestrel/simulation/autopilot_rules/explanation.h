@@ -18,8 +18,8 @@ struct ExplainedScene {
   double size_m = 1;                         // diameter of the pattern
 };
 
-// Places at which the autopilots believe the pattern to be, according to their rules
-// (comms/autopilot_rules), after some seconds of targets sent by 'profile'.
+// Places at which the autopilots believe the pattern to be, according to their rules,
+// after some seconds of targets sent by 'profile'.
 struct Understanding {
   // m north, east, down in the local frame; nothing: it ignores the targets.
   std::optional<Eigen::Vector3d> ardupilot_in_ned;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/comms/autopilot_rules/px4_target.h"
+#include "kestrel/simulation/autopilot_rules/px4_target.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,12 +7,12 @@
 
 #include <Eigen/Core>
 
-#include "kestrel/comms/autopilot_rules/autopilot_parameters.h"
-#include "kestrel/comms/autopilot_rules/landing_rules.h"
-#include "kestrel/comms/autopilot_rules/position_velocity_filter.h"
-#include "kestrel/comms/autopilot_rules/px4_time_sync.h"
 #include "kestrel/comms/mavlink/messages.h"
 #include "kestrel/core/poses/pose_history.h"
+#include "kestrel/simulation/autopilot_rules/autopilot_parameters.h"
+#include "kestrel/simulation/autopilot_rules/landing_rules.h"
+#include "kestrel/simulation/autopilot_rules/position_velocity_filter.h"
+#include "kestrel/simulation/autopilot_rules/px4_time_sync.h"
 
 namespace kestrel {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/flight/doctor/explanation.h"
+#include "kestrel/simulation/autopilot_rules/explanation.h"
 
 #include <array>
 #include <chrono>
@@ -12,12 +12,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "kestrel/comms/autopilot_rules/ardupilot_target.h"
-#include "kestrel/comms/autopilot_rules/autopilot_parameters.h"
-#include "kestrel/comms/autopilot_rules/px4_target.h"
-#include "kestrel/comms/autopilot_rules/px4_time_sync.h"
 #include "kestrel/comms/mavlink/ned.h"
 #include "kestrel/core/geometry/angles.h"
+#include "kestrel/simulation/autopilot_rules/ardupilot_target.h"
+#include "kestrel/simulation/autopilot_rules/autopilot_parameters.h"
+#include "kestrel/simulation/autopilot_rules/px4_target.h"
+#include "kestrel/simulation/autopilot_rules/px4_time_sync.h"
 
 namespace kestrel {
 namespace {
