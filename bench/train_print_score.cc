@@ -25,7 +25,7 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/codec/image_codec.h"
 #include "kestrel/io/recording/image_file.h"
-#include "kestrel/vision/landing/search/landing_search.h"
+#include "kestrel/vision/landing/landing_search.h"
 #include "landing_falsehoods.h"
 #include "landing_frames.h"
 #include "landing_hardships.h"

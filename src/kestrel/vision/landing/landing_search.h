@@ -7,7 +7,7 @@
 
 #include "kestrel/vision/landing/candidates/ring_candidates.h"
 #include "kestrel/vision/landing/landing_pattern_detector.h"
-#include "kestrel/vision/landing/location/detection_choice.h"
+#include "kestrel/vision/landing/score/detection_choice.h"
 #include "kestrel/vision/landing/search/landing_models.h"
 #include "kestrel/vision/landing/search/prior_knowledge.h"
 #include "kestrel/vision/landing/search/search_context.h"

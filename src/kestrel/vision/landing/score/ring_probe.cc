@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/vision/landing/candidates/ring_probe.h"
+#include "kestrel/vision/landing/score/ring_probe.h"
 
 #include <algorithm>
 #include <cmath>

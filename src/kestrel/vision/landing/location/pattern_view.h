@@ -8,7 +8,7 @@
 
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/core/geometry/rigid_transform.h"
-#include "kestrel/vision/landing/search/image_region.h"
+#include "kestrel/vision/landing/image_region.h"
 #include "kestrel/vision/target/plane_warp.h"
 
 namespace kestrel {

@@ -6,7 +6,7 @@
 
 #include <Eigen/Geometry>
 
-#include "kestrel/vision/landing/alignment/small_pattern_model.h"
+#include "kestrel/vision/landing/small_pattern/small_pattern_model.h"
 
 namespace kestrel {
 namespace {

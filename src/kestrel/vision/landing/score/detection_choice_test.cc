@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/vision/landing/location/detection_choice.h"
+#include "kestrel/vision/landing/score/detection_choice.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,8 +8,8 @@
 #include <span>
 
 #include "kestrel/core/base/robust_statistics.h"
-#include "kestrel/vision/landing/alignment/small_pattern_model.h"
 #include "kestrel/vision/landing/image_properties.h"
+#include "kestrel/vision/landing/small_pattern/small_pattern_model.h"
 
 namespace kestrel {
 namespace {

@@ -2,7 +2,7 @@
 // Signs that distinguish other figures from a small print.
 #include <algorithm>
 
-#include "kestrel/vision/landing/alignment/small_pattern_model.h"
+#include "kestrel/vision/landing/small_pattern/small_pattern_model.h"
 
 namespace kestrel {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/vision/landing/alignment/small_pattern.h"
+#include "kestrel/vision/landing/small_pattern/small_pattern.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "kestrel/vision/landing/alignment/small_pattern_model.h"
+#include "kestrel/vision/landing/small_pattern/small_pattern_model.h"
 #include "kestrel/vision/landing/test_prints.h"
 
 namespace kestrel {

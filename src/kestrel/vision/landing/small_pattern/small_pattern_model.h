@@ -13,9 +13,9 @@
 
 #include "kestrel/core/geometry/rigid_transform.h"
 #include "kestrel/core/image/gray_sampling.h"
-#include "kestrel/vision/landing/alignment/small_pattern.h"
-#include "kestrel/vision/landing/alignment/small_pattern_kernel.h"
 #include "kestrel/vision/landing/image_properties.h"
+#include "kestrel/vision/landing/small_pattern/small_pattern.h"
+#include "kestrel/vision/landing/small_pattern/small_pattern_kernel.h"
 
 namespace kestrel {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/vision/landing/alignment/small_pattern_kernel.h"
+#include "kestrel/vision/landing/small_pattern/small_pattern_kernel.h"
 
 #include <array>
 #include <cmath>
@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/core/base/test_targets.h"
-#include "kestrel/vision/landing/alignment/small_pattern_model.h"
 #include "kestrel/vision/landing/location/pattern_pose.h"
+#include "kestrel/vision/landing/small_pattern/small_pattern_model.h"
 #include "kestrel/vision/landing/test_prints.h"
 
 namespace kestrel {

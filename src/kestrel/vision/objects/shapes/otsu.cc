@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/vision/objects/digits/otsu.h"
+#include "kestrel/vision/objects/shapes/otsu.h"
 
 namespace kestrel {
 

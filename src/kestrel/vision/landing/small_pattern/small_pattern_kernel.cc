@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/vision/landing/alignment/small_pattern_kernel.h"
+#include "kestrel/vision/landing/small_pattern/small_pattern_kernel.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kestrel/vision/landing/alignment/small_pattern_kernel.cc"
+#define HWY_TARGET_INCLUDE "kestrel/vision/landing/small_pattern/small_pattern_kernel.cc"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "kestrel/vision/landing/landing_pattern_detector.h"
-#include "kestrel/vision/landing/verification/print_finding.h"
+#include "kestrel/vision/landing/score/print_finding.h"
 #include "kestrel/vision/target/search_log.h"
 
 namespace kestrel {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/vision/landing/alignment/small_pattern.h"
+#include "kestrel/vision/landing/small_pattern/small_pattern.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,11 +11,11 @@
 
 #include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/vision/landing/alignment/column_products.h"
-#include "kestrel/vision/landing/alignment/small_pattern_kernel.h"
-#include "kestrel/vision/landing/alignment/small_pattern_model.h"
 #include "kestrel/vision/landing/image_properties.h"
 #include "kestrel/vision/landing/location/neighbor_correlation.h"
 #include "kestrel/vision/landing/print_places.h"
+#include "kestrel/vision/landing/small_pattern/small_pattern_kernel.h"
+#include "kestrel/vision/landing/small_pattern/small_pattern_model.h"
 
 namespace kestrel {
 namespace {

@@ -7,7 +7,7 @@
 #include <array>
 #include <cstddef>
 
-#include "kestrel/vision/landing/alignment/small_pattern.h"
+#include "kestrel/vision/landing/small_pattern/small_pattern.h"
 
 namespace kestrel {
 

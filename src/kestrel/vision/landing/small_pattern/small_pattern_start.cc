@@ -5,9 +5,9 @@
 
 #include <Eigen/Geometry>
 
-#include "kestrel/vision/landing/alignment/small_pattern_model.h"
 #include "kestrel/vision/landing/image_properties.h"
 #include "kestrel/vision/landing/location/pattern_pose.h"
+#include "kestrel/vision/landing/small_pattern/small_pattern_model.h"
 
 namespace kestrel {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/vision/landing/verification/pattern_view.h"
+#include "kestrel/vision/landing/location/pattern_view.h"
 
 #include <array>
 

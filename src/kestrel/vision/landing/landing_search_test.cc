@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/vision/landing/search/landing_search.h"
+#include "kestrel/vision/landing/landing_search.h"
 
 #include <algorithm>
 #include <chrono>

@@ -5,7 +5,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "kestrel/vision/landing/alignment/small_pattern_model.h"
+#include "kestrel/vision/landing/small_pattern/small_pattern_model.h"
 
 namespace kestrel {
 namespace {
