@@ -7,8 +7,8 @@
 #include "kestrel/comms/dds/test_dds.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/flight/ros/test_ros2_system.h"
-#include "kestrel/io/bags/result_messages.h"
-#include "kestrel/io/bags/serialization.h"
+#include "kestrel/io/ros_messages/result_messages.h"
+#include "kestrel/io/ros_messages/serialization.h"
 
 namespace kestrel {
 namespace {

@@ -13,9 +13,9 @@
 #include "kestrel/app/cli/test_command.h"
 #include "kestrel/comms/dds/ros2_node.h"
 #include "kestrel/comms/dds/test_dds.h"
-#include "kestrel/io/bags/result_messages.h"
-#include "kestrel/io/bags/serialization.h"
 #include "kestrel/io/recording/test_files.h"
+#include "kestrel/io/ros_messages/result_messages.h"
+#include "kestrel/io/ros_messages/serialization.h"
 #include "kestrel/vision/objects/test_objects.h"
 
 namespace kestrel {

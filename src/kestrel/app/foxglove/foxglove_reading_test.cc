@@ -6,7 +6,7 @@
 
 #include "kestrel/app/foxglove/foxglove_messages.h"
 #include "kestrel/core/base/error.h"
-#include "kestrel/io/bags/serialization.h"
+#include "kestrel/io/ros_messages/serialization.h"
 
 namespace kestrel {
 namespace {

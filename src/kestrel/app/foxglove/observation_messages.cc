@@ -11,7 +11,7 @@
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
-#include "kestrel/io/bags/camera_info.h"
+#include "kestrel/io/ros_messages/camera_info.h"
 
 namespace kestrel {
 namespace {

@@ -15,9 +15,9 @@
 #include "kestrel/comms/dds/ros2_node.h"
 #include "kestrel/comms/dds/test_dds.h"
 #include "kestrel/comms/dds/test_fast_dds.h"
-#include "kestrel/io/bags/result_messages.h"
-#include "kestrel/io/bags/serialization.h"
-#include "kestrel/io/bags/type_hash.h"
+#include "kestrel/io/ros_messages/result_messages.h"
+#include "kestrel/io/ros_messages/serialization.h"
+#include "kestrel/io/ros_messages/type_hash.h"
 
 namespace kestrel {
 namespace {

@@ -16,8 +16,8 @@
 #include "kestrel/comms/dds/dds_domain.h"
 #include "kestrel/comms/dds/opened_domain.h"
 #include "kestrel/core/base/error.h"
-#include "kestrel/io/bags/serialization.h"
-#include "kestrel/io/bags/type_hash.h"
+#include "kestrel/io/ros_messages/serialization.h"
+#include "kestrel/io/ros_messages/type_hash.h"
 #include "ros2_types.h"
 
 namespace kestrel {
@@ -279,7 +279,7 @@ void Ros2Node::Take(Duration timeout, const TakeMessage& take) {
   }
 }
 
-std::vector<BagTopic> Ros2Node::Topics() const {
+std::vector<RosTopic> Ros2Node::Topics() const {
   constexpr std::size_t kMost = 1024;
   std::vector<void*> samples(kMost, nullptr);
   std::vector<dds_sample_info_t> infos(kMost);
@@ -298,7 +298,7 @@ std::vector<BagTopic> Ros2Node::Topics() const {
     types.emplace(PlainTopicName(name.substr(kTopicPrefix.size() - 1)), *type);
   }
   if (count > 0) dds_return_loan(entities_->discovery, samples.data(), count);
-  std::vector<BagTopic> topics;
+  std::vector<RosTopic> topics;
   for (const auto& [name, type] : types) topics.push_back({name, type, WireFormat::kCdr, {}});
   return topics;
 }

@@ -11,9 +11,9 @@
 
 #include "kestrel/comms/dds/test_dds.h"
 #include "kestrel/core/base/error.h"
-#include "kestrel/io/bags/result_messages.h"
-#include "kestrel/io/bags/serialization.h"
-#include "kestrel/io/bags/tag_messages.h"
+#include "kestrel/io/ros_messages/result_messages.h"
+#include "kestrel/io/ros_messages/serialization.h"
+#include "kestrel/io/ros_messages/tag_messages.h"
 
 namespace kestrel {
 namespace {
@@ -191,7 +191,7 @@ TEST_F(Ros2NodeTest, TopicsOfOthersAreListed) {
   sender.Advertise("/odom", OdometryMessage::kType, kDefaultQos);
   Ros2Node receiver(domain_, {});
   receiver.Advertise("/own", OdometryMessage::kType, kDefaultQos);
-  std::vector<BagTopic> topics;
+  std::vector<RosTopic> topics;
   for (const Time end = Now() + kLong; topics.size() < 2 && Now() < end;) {
     topics = receiver.Topics();
   }

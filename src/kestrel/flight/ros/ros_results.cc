@@ -6,8 +6,8 @@
 #include <thread>
 #include <utility>
 
-#include "kestrel/io/bags/frame_tree.h"
-#include "kestrel/io/bags/serialization.h"
+#include "kestrel/io/ros_messages/frame_tree.h"
+#include "kestrel/io/ros_messages/serialization.h"
 
 namespace kestrel {
 namespace {

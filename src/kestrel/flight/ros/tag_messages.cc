@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "kestrel/io/bags/frame_tree.h"
+#include "kestrel/io/ros_messages/frame_tree.h"
 
 namespace kestrel {
 namespace {

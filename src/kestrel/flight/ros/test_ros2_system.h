@@ -15,11 +15,11 @@
 #include "kestrel/comms/dds/ros2_node.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/calibration.h"
-#include "kestrel/io/bags/camera_info.h"
-#include "kestrel/io/bags/frame_tree.h"
-#include "kestrel/io/bags/result_messages.h"
-#include "kestrel/io/bags/serialization.h"
 #include "kestrel/io/recording/open_source.h"
+#include "kestrel/io/ros_messages/camera_info.h"
+#include "kestrel/io/ros_messages/frame_tree.h"
+#include "kestrel/io/ros_messages/result_messages.h"
+#include "kestrel/io/ros_messages/serialization.h"
 
 namespace kestrel {
 

@@ -9,12 +9,12 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/flight/ros/ros_results.h"
-#include "kestrel/io/bags/bag_topics.h"
-#include "kestrel/io/bags/camera_info.h"
-#include "kestrel/io/bags/frame_tree.h"
-#include "kestrel/io/bags/image_message.h"
-#include "kestrel/io/bags/pose_message.h"
-#include "kestrel/io/bags/serialization.h"
+#include "kestrel/io/ros_messages/camera_info.h"
+#include "kestrel/io/ros_messages/frame_tree.h"
+#include "kestrel/io/ros_messages/image_message.h"
+#include "kestrel/io/ros_messages/pose_message.h"
+#include "kestrel/io/ros_messages/serialization.h"
+#include "kestrel/io/ros_messages/topic_choice.h"
 
 namespace kestrel {
 namespace {
@@ -31,7 +31,7 @@ void CheckJump(const std::optional<Time>& newest, Time stamp, const std::string&
 
 }  // namespace
 
-void TopicSource::Take(const BagTopic& topic, std::string_view bytes) {
+void TopicSource::Take(const RosTopic& topic, std::string_view bytes) {
   if (topic.type == ImageMessage::kType) {
     TakeImage<ImageMessage>(topic, bytes);
   } else if (topic.type == CompressedImageMessage::kType) {
@@ -82,7 +82,7 @@ Time TopicSource::TimeOf(Time stamp) {
 }
 
 template <class Message>
-void TopicSource::TakeImage(const BagTopic& topic, std::string_view bytes) {
+void TopicSource::TakeImage(const RosTopic& topic, std::string_view bytes) {
   {
     const std::lock_guard lock(mutex_);
     ++counters_.missed;  // until the message proves good
@@ -117,7 +117,7 @@ void TopicSource::CheckOrder(Time stamp, const std::string& topic) const {
   }
 }
 
-void TopicSource::TakePose(const BagTopic& topic, std::string_view bytes) {
+void TopicSource::TakePose(const RosTopic& topic, std::string_view bytes) {
   if (!IsPoseType(topic.type)) {
     throw InputError(fmt::format(
         "{}: is of type {}, expected PoseStamped, PoseWithCovarianceStamped, TransformStamped or "
@@ -137,7 +137,7 @@ void TopicSource::TakePose(const BagTopic& topic, std::string_view bytes) {
           FrameName(pose.world), topic.name);
 }
 
-void TopicSource::TakeTransforms(const BagTopic& topic, std::string_view bytes) {
+void TopicSource::TakeTransforms(const RosTopic& topic, std::string_view bytes) {
   const bool is_static = topic.name == kStaticTfTopic;
   for (const TransformStampedMessage& transform :
        ParseMessage<TfMessage>(bytes, topic.wire_format, topic.name).transforms) {

@@ -12,12 +12,12 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/codec/png_codec.h"
 #include "kestrel/io/bags/bag_writer.h"
-#include "kestrel/io/bags/camera_info.h"
-#include "kestrel/io/bags/frame_tree.h"
-#include "kestrel/io/bags/messages.h"
-#include "kestrel/io/bags/serialization.h"
 #include "kestrel/io/recording/euroc_writer.h"
 #include "kestrel/io/recording/recording_place.h"
+#include "kestrel/io/ros_messages/camera_info.h"
+#include "kestrel/io/ros_messages/frame_tree.h"
+#include "kestrel/io/ros_messages/messages.h"
+#include "kestrel/io/ros_messages/serialization.h"
 
 namespace kestrel {
 namespace {

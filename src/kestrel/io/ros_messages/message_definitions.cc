@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/io/bags/message_definitions.h"
+#include "kestrel/io/ros_messages/message_definitions.h"
 
 #include <algorithm>
 #include <array>
@@ -226,11 +226,6 @@ std::string MessageDefinition(std::string_view type, WireFormat format) {
 
 std::string_view MessageChecksum(std::string_view type) {
   return DefinitionOf(type, WireFormat::kRos1).checksum;
-}
-
-std::string Ros2TypeName(std::string_view type) {
-  const std::size_t slash = type.find('/');
-  return fmt::format("{}/msg{}", type.substr(0, slash), type.substr(slash));
 }
 
 }  // namespace kestrel

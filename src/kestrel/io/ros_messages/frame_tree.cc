@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/io/bags/frame_tree.h"
+#include "kestrel/io/ros_messages/frame_tree.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/io/bags/type_hash.h"
+#include "kestrel/io/ros_messages/type_hash.h"
 
 #include <array>
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/parse_number.h"
-#include "kestrel/io/bags/message_definitions.h"
+#include "kestrel/io/ros_messages/message_definitions.h"
 
 namespace kestrel {
 namespace {

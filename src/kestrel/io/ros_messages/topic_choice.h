@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "kestrel/io/bags/bag_reader.h"
+#include "kestrel/io/ros_messages/topic.h"
 
 namespace kestrel {
 
 // Indices of the topics that a bag is read for.
-struct BagTopics {
+struct TopicChoice {
   std::size_t image = 0;
   std::optional<std::size_t> camera_info;
   std::optional<std::size_t> pose;      // nothing: tf has the poses
@@ -23,8 +23,8 @@ struct BagTopics {
 // position from mavros. Of an image that exists raw and compressed the raw one is taken. The
 // camera_info is the one beside the image, or the only one. Throws InputError with 'bag' and its
 // topics when there is no image or the choice is ambiguous.
-BagTopics ChooseTopics(const std::vector<BagTopic>& topics, const std::vector<std::string>& names,
-                       const std::string& bag);
+TopicChoice ChooseTopics(const std::vector<RosTopic>& topics, const std::vector<std::string>& names,
+                         const std::string& bag);
 
 // True when the topic's name (image_rect) says that image_proc has undistorted its images.
 bool IsRectified(const std::string& topic);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/io/bags/type_hash.h"
+#include "kestrel/io/ros_messages/type_hash.h"
 
 #include <gtest/gtest.h>
 

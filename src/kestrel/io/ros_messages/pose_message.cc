@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/io/bags/pose_message.h"
+#include "kestrel/io/ros_messages/pose_message.h"
 
-#include "kestrel/io/bags/serialization.h"
+#include "kestrel/io/ros_messages/serialization.h"
 
 namespace kestrel {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "kestrel/io/bags/bag_reader.h"
+#include "kestrel/io/ros_messages/topic.h"
 
 namespace kestrel {
 
@@ -14,8 +14,5 @@ std::string MessageDefinition(std::string_view type, WireFormat format);
 
 // Returns the checksum of the definition of a type of messages.h in ROS 1.
 std::string_view MessageChecksum(std::string_view type);
-
-// Returns "sensor_msgs/msg/Image" for "sensor_msgs/Image".
-std::string Ros2TypeName(std::string_view type);
 
 }  // namespace kestrel

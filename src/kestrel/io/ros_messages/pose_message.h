@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "kestrel/core/poses/pose_history.h"
-#include "kestrel/io/bags/bag_reader.h"
-#include "kestrel/io/bags/messages.h"
+#include "kestrel/io/ros_messages/messages.h"
+#include "kestrel/io/ros_messages/topic.h"
 
 namespace kestrel {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "kestrel/io/bags/messages.h"
+#include "kestrel/io/ros_messages/messages.h"
 
 namespace kestrel {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/io/bags/image_message.h"
+#include "kestrel/io/ros_messages/image_message.h"
 
 #include <string>
 #include <vector>

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "kestrel/io/bags/messages.h"
+#include "kestrel/io/ros_messages/messages.h"
 
 namespace kestrel {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/io/bags/serialization.h"
+#include "kestrel/io/ros_messages/serialization.h"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "kestrel/core/camera/calibration.h"
-#include "kestrel/io/bags/messages.h"
+#include "kestrel/io/ros_messages/messages.h"
 
 namespace kestrel {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/io/bags/foxglove_message.h"
+#include "kestrel/io/ros_messages/foxglove_message.h"
 
 #include <algorithm>
 #include <array>
 #include <utility>
 #include <vector>
 
+#include "kestrel/core/base/byte_cursor.h"
 #include "kestrel/core/base/error.h"
-#include "kestrel/io/bags/byte_cursor.h"
 
 namespace kestrel {
 namespace {

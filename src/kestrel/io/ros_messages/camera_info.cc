@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/io/bags/camera_info.h"
+#include "kestrel/io/ros_messages/camera_info.h"
 
 #include <algorithm>
 #include <cctype>

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "kestrel/core/geometry/rigid_transform.h"
-#include "kestrel/io/bags/messages.h"
+#include "kestrel/io/ros_messages/messages.h"
 
 namespace kestrel {
 

@@ -5,8 +5,8 @@
 
 #include <opencv2/core.hpp>
 
-#include "kestrel/io/bags/messages.h"
 #include "kestrel/io/recording/frame.h"
+#include "kestrel/io/ros_messages/messages.h"
 
 namespace kestrel {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/io/bags/bag_topics.h"
+#include "kestrel/io/ros_messages/topic_choice.h"
 
 #include <algorithm>
 #include <string_view>
@@ -8,8 +8,8 @@
 #include <fmt/ranges.h>
 
 #include "kestrel/core/base/error.h"
-#include "kestrel/io/bags/messages.h"
-#include "kestrel/io/bags/pose_message.h"
+#include "kestrel/io/ros_messages/messages.h"
+#include "kestrel/io/ros_messages/pose_message.h"
 
 namespace kestrel {
 namespace {
@@ -18,7 +18,7 @@ constexpr std::string_view kCompressedSuffix = "/compressed";
 
 enum class TopicUse { kImage, kCameraInfo, kPose, kTransforms, kNone };
 
-TopicUse UseOf(const BagTopic& topic) {
+TopicUse UseOf(const RosTopic& topic) {
   if (topic.wire_format == WireFormat::kOther) return TopicUse::kNone;
   if (topic.type == CompressedImageMessage::kType && topic.name.ends_with("/compressedDepth")) {
     return TopicUse::kNone;
@@ -36,7 +36,7 @@ TopicUse UseOf(const BagTopic& topic) {
 // Chooses among the topics of a bag.
 class TopicChooser {
  public:
-  TopicChooser(const std::vector<BagTopic>& topics, const std::vector<std::string>& names,
+  TopicChooser(const std::vector<RosTopic>& topics, const std::vector<std::string>& names,
                const std::string& bag)
       : topics_(topics), names_(names), bag_(bag) {
     for (const std::string& name : names_) CheckName(name);
@@ -102,7 +102,7 @@ class TopicChooser {
   }
 
   void CheckName(const std::string& name) const {
-    const auto topic = std::find_if(topics_.begin(), topics_.end(), [&](const BagTopic& candidate) {
+    const auto topic = std::find_if(topics_.begin(), topics_.end(), [&](const RosTopic& candidate) {
       return candidate.name == name;
     });
     if (topic == topics_.end()) {
@@ -124,7 +124,7 @@ class TopicChooser {
   // True when this is the compressed copy of images that also exist raw.
   bool IsCopy(std::size_t image) const {
     if (!std::string_view(topics_[image].name).ends_with(kCompressedSuffix)) return false;
-    return std::any_of(topics_.begin(), topics_.end(), [&](const BagTopic& topic) {
+    return std::any_of(topics_.begin(), topics_.end(), [&](const RosTopic& topic) {
       return topic.name == RawName(image) && UseOf(topic) == TopicUse::kImage;
     });
   }
@@ -152,17 +152,17 @@ class TopicChooser {
                                  what, Listed(found)));
   }
 
-  const std::vector<BagTopic>& topics_;
+  const std::vector<RosTopic>& topics_;
   const std::vector<std::string>& names_;
   const std::string& bag_;
 };
 
 }  // namespace
 
-BagTopics ChooseTopics(const std::vector<BagTopic>& topics, const std::vector<std::string>& names,
-                       const std::string& bag) {
+TopicChoice ChooseTopics(const std::vector<RosTopic>& topics, const std::vector<std::string>& names,
+                         const std::string& bag) {
   const TopicChooser chooser(topics, names, bag);
-  BagTopics chosen;
+  TopicChoice chosen;
   chosen.image = chooser.Image();
   chosen.camera_info = chooser.CameraInfo(chosen.image);
   chosen.pose = chooser.Pose();

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "kestrel/core/base/time.h"
-#include "kestrel/io/bags/bag_reader.h"
-#include "kestrel/io/bags/foxglove_message.h"
-#include "kestrel/io/bags/messages.h"
+#include "kestrel/io/ros_messages/foxglove_message.h"
+#include "kestrel/io/ros_messages/messages.h"
+#include "kestrel/io/ros_messages/topic.h"
 
 namespace kestrel {
 
