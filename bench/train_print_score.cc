@@ -24,7 +24,7 @@
 #include "for_each_index.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/codec/image_codec.h"
-#include "kestrel/io/recording/image_file.h"
+#include "kestrel/io/recording/media/image_file.h"
 #include "kestrel/vision/landing/landing_search.h"
 #include "landing_falsehoods.h"
 #include "landing_frames.h"

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "kestrel/core/base/error.h"
-#include "kestrel/io/recording/euroc_text.h"
+#include "kestrel/io/recording/euroc/euroc_text.h"
 
 namespace kestrel {
 namespace {

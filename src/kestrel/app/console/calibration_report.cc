@@ -10,7 +10,7 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/geometry/angles.h"
-#include "kestrel/io/recording/euroc_text.h"
+#include "kestrel/io/recording/euroc/euroc_text.h"
 
 namespace kestrel {
 namespace {

@@ -10,7 +10,7 @@
 #include "kestrel/calibration/mount/flight_calibration.h"
 #include "kestrel/calibration/mount/flight_sightings.h"
 #include "kestrel/core/base/error.h"
-#include "kestrel/io/recording/calibration_output.h"
+#include "kestrel/io/recording/euroc/calibration_output.h"
 
 namespace kestrel {
 namespace {

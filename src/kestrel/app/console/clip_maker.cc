@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/core/base/error.h"
-#include "kestrel/io/recording/video_file.h"
+#include "kestrel/io/recording/media/video_file.h"
 
 namespace kestrel {
 namespace {

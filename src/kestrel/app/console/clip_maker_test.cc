@@ -10,7 +10,7 @@
 
 #include "kestrel/app/console/test_browser.h"
 #include "kestrel/core/base/error.h"
-#include "kestrel/io/recording/video_source.h"
+#include "kestrel/io/recording/media/video_source.h"
 
 namespace kestrel {
 namespace {

@@ -13,7 +13,7 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/test_folder.h"
 #include "kestrel/core/camera/paper_camera.h"
-#include "kestrel/io/recording/image_file.h"
+#include "kestrel/io/recording/media/image_file.h"
 
 namespace kestrel {
 namespace {

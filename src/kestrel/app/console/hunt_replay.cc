@@ -18,10 +18,10 @@
 #include "kestrel/app/evaluation/object_comparison.h"
 #include "kestrel/core/base/read_file.h"
 #include "kestrel/flight/session/hunt_run.h"
-#include "kestrel/io/recording/csv_columns.h"
-#include "kestrel/io/recording/csv_table.h"
-#include "kestrel/io/recording/object_csv.h"
-#include "kestrel/io/recording/object_map_csv.h"
+#include "kestrel/io/recording/tables/csv_columns.h"
+#include "kestrel/io/recording/tables/csv_table.h"
+#include "kestrel/io/recording/tables/object_csv.h"
+#include "kestrel/io/recording/tables/object_map_csv.h"
 
 namespace kestrel {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/codec/image_codec.h"
-#include "kestrel/io/recording/image_file.h"
+#include "kestrel/io/recording/media/image_file.h"
 
 namespace kestrel {
 

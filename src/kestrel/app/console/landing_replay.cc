@@ -14,7 +14,7 @@
 #include "kestrel/app/evaluation/landing_comparison.h"
 #include "kestrel/core/base/read_file.h"
 #include "kestrel/flight/session/landing_run.h"
-#include "kestrel/io/recording/landing_csv.h"
+#include "kestrel/io/recording/tables/landing_csv.h"
 
 namespace kestrel {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "kestrel/calibration/lens/board_view.h"
 #include "kestrel/core/base/error.h"
-#include "kestrel/io/recording/calibration_output.h"
-#include "kestrel/io/recording/euroc_text.h"
+#include "kestrel/io/recording/euroc/calibration_output.h"
+#include "kestrel/io/recording/euroc/euroc_text.h"
 #include "kestrel/io/recording/frame_source.h"
 
 namespace kestrel {

@@ -15,7 +15,7 @@
 #include "kestrel/comms/mavlink/telemetry_log.h"
 #include "kestrel/core/base/read_file.h"
 #include "kestrel/flight/session/autopilot_report.h"
-#include "kestrel/io/recording/euroc_recording.h"
+#include "kestrel/io/recording/euroc/euroc_recording.h"
 
 namespace kestrel {
 namespace {

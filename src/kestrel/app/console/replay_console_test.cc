@@ -12,8 +12,8 @@
 #include "kestrel/app/console/test_browser.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/codec/image_codec.h"
+#include "kestrel/io/recording/media/video_source.h"
 #include "kestrel/io/recording/test_files.h"
-#include "kestrel/io/recording/video_source.h"
 
 namespace kestrel {
 namespace {

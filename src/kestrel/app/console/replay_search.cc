@@ -5,7 +5,7 @@
 
 #include "kestrel/app/console/frame_winder.h"
 #include "kestrel/flight/session/recorded_session.h"
-#include "kestrel/io/recording/euroc_recording.h"
+#include "kestrel/io/recording/euroc/euroc_recording.h"
 
 namespace kestrel {
 namespace {

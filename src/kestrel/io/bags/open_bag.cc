@@ -15,7 +15,7 @@
 #include "kestrel/io/bags/mcap_reader.h"
 #include "kestrel/io/bags/ros1_bag.h"
 #include "kestrel/io/bags/sqlite_bag.h"
-#include "kestrel/io/recording/euroc_recording.h"
+#include "kestrel/io/recording/euroc/euroc_recording.h"
 
 namespace kestrel {
 namespace {

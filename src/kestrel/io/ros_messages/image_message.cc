@@ -10,7 +10,7 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/shown.h"
-#include "kestrel/io/recording/image_file.h"
+#include "kestrel/io/recording/media/image_file.h"
 
 namespace kestrel {
 namespace {
