@@ -123,9 +123,9 @@ void CameraConsole::AddSample(const cv::Mat& gray) {
   const PictureQuality quality = MeasurePicture(gray);
   best_sharpness_ = std::max(best_sharpness_, quality.sharpness);
   const double exposure_s = camera_.exposure_s().value_or(std::numeric_limits<double>::quiet_NaN());
-  feed_.Add(ConsoleSample{now,
-                          {rate_hz, 1e3 * exposure_s, quality.brightness, quality.clipped,
-                           quality.sharpness, best_sharpness_}});
+  feed_.Add(ViewSample{now,
+                       {rate_hz, 1e3 * exposure_s, quality.brightness, quality.clipped,
+                        quality.sharpness, best_sharpness_}});
   measured_ = now;
   frames_ = 0;
 }
@@ -137,7 +137,7 @@ void CameraConsole::TellAge() {
   aged_ = now;
   std::optional<Duration> age;
   if (!frame_.image.empty()) age = now - frame_.captured;
-  feed_.Add(ConsoleSources{now, {{ConsoleSource::kFrames, age}}});
+  feed_.Add(ConsoleSources{now, {{ValueSource::kFrames, age}}});
 }
 
 void CameraConsole::SetFault(const std::string& fault) {
@@ -148,9 +148,9 @@ void CameraConsole::SetFault(const std::string& fault) {
 
 void CameraConsole::TellState() {
   if (fault_.empty() && frame_.image.empty()) return;  // not open yet
-  const ConsoleStatus status{.state = fault_.empty() ? "live" : "no picture",
-                             .reason = fault_.empty() ? "" : "trying again: " + fault_,
-                             .is_recording = camera_.is_recording()};
+  const ViewStatus status{.state = fault_.empty() ? "live" : "no picture",
+                          .reason = fault_.empty() ? "" : "trying again: " + fault_,
+                          .is_recording = camera_.is_recording()};
   if (status == told_) return;
   told_ = status;
   feed_.Add(status);

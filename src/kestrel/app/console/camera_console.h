@@ -72,7 +72,7 @@ class CameraConsole {
   LiveSource* source_;  // null: to be opened
   Time next_attempt_{};
   std::string fault_;   // of the camera; empty: none
-  ConsoleStatus told_;  // the last status that the page got
+  ViewStatus told_;     // the last status that the page got
   ConsoleFrame frame_;  // the newest
   Time measured_{}, aged_{};
   int frames_ = 0;  // since then

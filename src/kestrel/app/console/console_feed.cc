@@ -13,27 +13,6 @@ constexpr std::size_t kMaxColorJobs = 64;
 
 }  // namespace
 
-const char* ToString(OverlayLayer layer) {
-  switch (layer) {
-    case OverlayLayer::kDetection:
-      return "detection";
-    case OverlayLayer::kPrediction:
-      return "prediction";
-    case OverlayLayer::kRejected:
-      return "rejected";
-    case OverlayLayer::kTruth:
-      return "truth";
-    case OverlayLayer::kSecond:
-      return "second";
-  }
-  return "";
-}
-
-const char* ToString(ConsoleSource source) {
-  static constexpr const char* kNames[] = {"frames", "autopilot", "pose"};
-  return kNames[static_cast<int>(source)];
-}
-
 ConsoleFeed::ConsoleFeed(Description description)
     : description_(std::move(description)),
       updates_(kMaxUpdates),

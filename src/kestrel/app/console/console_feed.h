@@ -9,7 +9,6 @@
 #include <variant>
 #include <vector>
 
-#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 #include "kestrel/app/console/calibration_report.h"
@@ -19,27 +18,13 @@
 #include "kestrel/app/console/lens_state.h"
 #include "kestrel/app/console/settings_state.h"
 #include "kestrel/app/console/study_state.h"
+#include "kestrel/app/views/view_data.h"
 #include "kestrel/core/base/bounded_queue.h"
 #include "kestrel/core/base/latest_value.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/flight/session/session_event.h"
 
 namespace kestrel {
-
-// Kinds of shapes over the image; the page switches each kind on and off. kTruth: the known truth.
-// kSecond: all that a second run found.
-enum class OverlayLayer { kDetection, kPrediction, kRejected, kTruth, kSecond };
-// Returns "detection", "prediction", "rejected", "truth" or "second".
-const char* ToString(OverlayLayer layer);
-
-// A line over the image with a label: what was found and how, or why it was rejected.
-struct OverlayShape {
-  OverlayLayer layer = OverlayLayer::kDetection;
-  std::vector<cv::Point2f> outline;  // pixels; a single point is drawn as a mark
-  std::string label;
-  bool is_closed = true;  // the last point is joined to the first
-  int run = 1;            // run of the detector over a recording: first or second
-};
 
 // A frame and what was found in it.
 struct ConsoleFrame {
@@ -49,87 +34,21 @@ struct ConsoleFrame {
   std::vector<OverlayShape> shapes;
 };
 
-// A picture that a browser can show instead of the camera's image, under the same shapes.
-struct ImageView {
-  std::string name;  // for people, as "threshold 1/8"
-  // Draws the view of a ConsoleFrame's image: same size, 8-bit gray or BGR; empty if there is none.
-  // Called by the console's thread, and only while a browser wants this view.
-  std::function<cv::Mat(const cv::Mat& image)> draw;
-};
-
-// Sources of a flight's values. A value is worth no more than the sources that it comes from.
-enum class ConsoleSource { kFrames, kAutopilot, kPose };
-// Returns "frames", "autopilot" or "pose".
-const char* ToString(ConsoleSource source);
-
 // Ages of what the sources of a flight gave last; nothing where a source has given nothing yet.
 // Sources that the flight does not have are left out.
 struct ConsoleSources {
   struct Age {
-    ConsoleSource source = ConsoleSource::kFrames;
+    ValueSource source = ValueSource::kFrames;
     std::optional<Duration> age;
   };
   Time time;  // of these ages
   std::vector<Age> ages;
 };
 
-// A quantity that the page plots over time.
-struct SeriesDescription {
-  std::string name;                      // as "height"
-  std::string unit;                      // as "m"; empty for a pure number
-  std::string label;                     // for people
-  std::vector<ConsoleSource> sources{};  // that its values come from
-  bool is_count = false;                 // whole numbers
-};
-
-// One value per series; NaN where unknown.
-struct ConsoleSample {
-  Time time;
-  std::vector<double> values;
-};
-
 // All samples of a recording: its plots at once.
 struct ConsoleSeries {
   std::vector<Duration> times;              // of the frames, since the first
   std::vector<std::vector<double>> values;  // for each series its values; NaN where unknown
-};
-
-// The state of the flight, in words that a pilot takes in at a glance.
-struct ConsoleStatus {
-  std::string state;   // as "searching", "tracking", "landing"
-  std::string reason;  // why the state is no better; empty where there is nothing to say
-  bool is_recording = false;
-  bool is_over = false;     // the flight has ended; 'reason' says how
-  std::string replay = {};  // folder in which an ended flight is recorded; empty: none
-
-  bool operator==(const ConsoleStatus&) const = default;
-};
-
-// A point on the map with its position and its covariance; world frame, m.
-struct ConsoleMapObject {
-  std::string label;
-  std::string color;  // colour of its class, as "red"; empty: none
-  Eigen::Vector2d position = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
-};
-struct ConsoleMap {
-  std::optional<Eigen::Vector2d> uav;
-  double uav_heading = 0;  // rad, from x (east) towards y (north)
-  std::optional<ConsoleMapObject> target;
-  Eigen::Vector2d target_velocity = Eigen::Vector2d::Zero();  // m/s
-  std::vector<ConsoleMapObject> prediction;  // predicted places of the target, in order of time
-  std::vector<ConsoleMapObject> objects;     // objects in view
-  std::vector<ConsoleMapObject> mapped;      // objects of a hunt's map so far
-};
-
-// Objects that the UAV's team knows of, in this UAV's world frame.
-struct ConsoleTeamObject {
-  ConsoleMapObject object;
-  std::vector<std::string> uavs;  // names of the UAVs that have it in their maps
-  std::string holder;             // name of the UAV that has claimed it; empty: none
-};
-struct ConsoleTeam {
-  std::vector<ConsoleTeamObject> objects;
 };
 
 // One check of the program's health, like those of the doctor.
@@ -182,16 +101,11 @@ struct ConsoleLog {
   std::vector<SessionEvent> events;  // in order of time
 };
 
-// A fact about a frame in words, as "method": "whole pattern".
-struct ConsoleFact {
-  std::string name;
-  std::string value;
-};
 // Facts about the frame that is shown: those of the first run and, once it is done, of the second.
 // Both have the same names in the same order.
 struct ConsoleFindings {
   std::uint64_t frame = 0;
-  std::vector<std::vector<ConsoleFact>> runs;
+  std::vector<std::vector<ViewFact>> runs;
 };
 
 // An option that the page can change for a second run, with its name in `kestrel config`.
@@ -222,10 +136,10 @@ struct ConsoleClip {
 };
 
 using ConsoleUpdate =
-    std::variant<ConsoleSample, ConsoleStatus, ConsoleMap, ConsoleHealth, SessionEvent,
-                 ConsoleTimeline, ConsolePlayback, ConsoleDoctor, ConsoleOptionList,
-                 ConsoleSecondRun, ConsoleFindings, ConsoleClip, ConsoleColors, ConsoleColorScores,
-                 ConsoleCalibration, ConsoleTeam, ConsoleVehicle, ConsoleStudy, ConsoleStudyReplay,
+    std::variant<ViewSample, ViewStatus, ViewMap, ConsoleHealth, SessionEvent, ConsoleTimeline,
+                 ConsolePlayback, ConsoleDoctor, ConsoleOptionList, ConsoleSecondRun,
+                 ConsoleFindings, ConsoleClip, ConsoleColors, ConsoleColorScores,
+                 ConsoleCalibration, ViewedTeam, ConsoleVehicle, ConsoleStudy, ConsoleStudyReplay,
                  ConsoleSources, ConsoleSeries, ConsoleLens, ConsoleLog, ConsoleSettings>;
 
 // A task of the page of colours.
@@ -239,7 +153,7 @@ class ConsoleFeed {
   struct Description {
     std::string title;                       // title of the page
     bool is_live = true;                     // times are those of Now()
-    std::vector<SeriesDescription> series;   // the values of a ConsoleSample
+    std::vector<SeriesDescription> series;   // the values of a ViewSample
     std::vector<OverlayLayer> layers;        // layers that the shapes can have
     std::vector<ImageView> views;            // views beside the camera's image
     std::vector<ConsoleCommandKind> offers;  // commands that the program executes

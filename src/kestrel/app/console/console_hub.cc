@@ -75,8 +75,8 @@ void ConsoleHub::Tick(Time now) {
 
 void ConsoleHub::Broadcast(const ConsoleUpdate& update) {
   // Values of the moment are not kept: a page that connects later needs the next ones.
-  const bool is_fleeting = std::holds_alternative<ConsoleSample>(update) ||
-                           std::holds_alternative<ConsoleSources>(update);
+  const bool is_fleeting =
+      std::holds_alternative<ViewSample>(update) || std::holds_alternative<ConsoleSources>(update);
   if (is_fleeting && clients_.empty()) return;
   const auto message = std::make_shared<const std::string>(ToJson(update));
   if (std::holds_alternative<SessionEvent>(update)) {

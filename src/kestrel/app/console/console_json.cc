@@ -45,7 +45,7 @@ Json Shape(const OverlayShape& shape) {
           {"run", shape.run}};
 }
 
-Json Object(const ConsoleMapObject& object) {
+Json Object(const ViewMapObject& object) {
   const Eigen::Matrix2d& c = object.covariance;
   return {{"label", object.label},
           {"color", object.color},
@@ -53,13 +53,13 @@ Json Object(const ConsoleMapObject& object) {
           {"covariance", {c(0, 0), c(0, 1), c(1, 1)}}};
 }
 
-Json Objects(const std::vector<ConsoleMapObject>& objects) {
+Json Objects(const std::vector<ViewMapObject>& objects) {
   Json list = Json::array();
-  for (const ConsoleMapObject& object : objects) list.push_back(Object(object));
+  for (const ViewMapObject& object : objects) list.push_back(Object(object));
   return list;
 }
 
-Json Message(const ConsoleSample& sample) {
+Json Message(const ViewSample& sample) {
   return {{"kind", "sample"}, {"time", TimeText(sample.time)}, {"values", sample.values}};
 }
 
@@ -71,13 +71,13 @@ Json Message(const ConsoleSources& sources) {
   return {{"kind", "sources"}, {"time", TimeText(sources.time)}, {"sources", std::move(ages)}};
 }
 
-Json Message(const ConsoleStatus& status) {
+Json Message(const ViewStatus& status) {
   return {{"kind", "status"},        {"state", status.state},
           {"reason", status.reason}, {"recording", status.is_recording},
           {"over", status.is_over},  {"replay", status.replay}};
 }
 
-Json Message(const ConsoleMap& map) {
+Json Message(const ViewMap& map) {
   return {{"kind", "map"},
           {"uav", map.uav ? Numbers(*map.uav) : Json()},
           {"heading", map.uav_heading},
@@ -88,9 +88,9 @@ Json Message(const ConsoleMap& map) {
           {"mapped", Objects(map.mapped)}};
 }
 
-Json Message(const ConsoleTeam& team) {
+Json Message(const ViewedTeam& team) {
   Json objects = Json::array();
-  for (const ConsoleTeamObject& known : team.objects) {
+  for (const ViewedTeamObject& known : team.objects) {
     Json object = Object(known.object);
     object["uavs"] = known.uavs;
     object["holder"] = known.holder;
@@ -194,9 +194,9 @@ Json Message(const ConsoleSecondRun& run) {
 
 Json Message(const ConsoleFindings& findings) {
   Json runs = Json::array();
-  for (const std::vector<ConsoleFact>& facts : findings.runs) {
+  for (const std::vector<ViewFact>& facts : findings.runs) {
     Json& run = runs.emplace_back(Json::array());
-    for (const ConsoleFact& fact : facts) {
+    for (const ViewFact& fact : facts) {
       run.push_back({{"name", fact.name}, {"value", fact.value}});
     }
   }
@@ -235,7 +235,7 @@ std::string ToJson(const ConsoleFeed::Description& description) {
   Json views = Json::array();
   for (const SeriesDescription& one : description.series) {
     Json sources = Json::array();
-    for (const ConsoleSource source : one.sources) sources.push_back(ToString(source));
+    for (const ValueSource source : one.sources) sources.push_back(ToString(source));
     series.push_back({{"name", one.name},
                       {"unit", one.unit},
                       {"label", one.label},

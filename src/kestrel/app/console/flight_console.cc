@@ -33,8 +33,8 @@ ConsoleFeed::Description DescriptionOf(const std::string& title, const FlightVie
       .offers = {ConsoleCommandKind::kRecord, ConsoleCommandKind::kSnapshot,
                  ConsoleCommandKind::kSettings},
       .has_colors = has_colors};
-  description.series.push_back({"latency", "ms", "Capture to result", {ConsoleSource::kFrames}});
-  description.series.push_back({"link", "1/s", "Packets", {ConsoleSource::kAutopilot}});
+  description.series.push_back({"latency", "ms", "Capture to result", {ValueSource::kFrames}});
+  description.series.push_back({"link", "1/s", "Packets", {ValueSource::kAutopilot}});
   return description;
 }
 
@@ -102,7 +102,7 @@ class FlightConsole::Page : public SinkWriter {
     vision_ = HuntStatus(observation);
   }
 
-  void AddSample(ConsoleSample sample, Duration latency) {
+  void AddSample(ViewSample sample, Duration latency) {
     constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
     sample.values.push_back(1e3 * ToSeconds(latency));
     sample.values.push_back(health_.link_rate_hz().value_or(kUnknown));
@@ -110,7 +110,7 @@ class FlightConsole::Page : public SinkWriter {
   }
 
   void ShowStatus() {
-    const ConsoleStatus status = FlightStatus(report_, vision_);
+    const ViewStatus status = FlightStatus(report_, vision_);
     if (status == told_) return;
     told_ = status;
     feed_.Add(status);
@@ -143,9 +143,9 @@ class FlightConsole::Page : public SinkWriter {
   Time examined_{};
   FlightHealth health_;
   SourceWatch sources_;
-  FlightReport report_;   // the newest
-  ConsoleStatus vision_;  // status from the newest frame
-  ConsoleStatus told_;    // the last status that the page got
+  FlightReport report_;  // the newest
+  ViewStatus vision_;    // status from the newest frame
+  ViewStatus told_;      // the last status that the page got
   ConsoleVehicle told_vehicle_;
 };
 

@@ -296,7 +296,7 @@ TEST(SourceWatchTest, TellsTheAgesOfWhatTheyGaveLast) {
   const ConsoleSources sources = watch.Update(report, start + 10ms);
   ASSERT_EQ(sources.ages.size(), 3u);
   EXPECT_EQ(sources.ages[0].age, Duration(10ms));
-  EXPECT_EQ(sources.ages[1].source, ConsoleSource::kAutopilot);
+  EXPECT_EQ(sources.ages[1].source, ValueSource::kAutopilot);
   EXPECT_EQ(sources.ages[1].age, Duration(0));
   EXPECT_EQ(sources.ages[2].age, Duration(50ms));
   EXPECT_EQ(watch.Update(report, start + 2s).ages[1].age, Duration(1990ms)) << "no more packets";
@@ -306,7 +306,7 @@ TEST(SourceWatchTest, TellsTheAgesOfWhatTheyGaveLast) {
 }
 
 TEST(FlightStatusTest, SaysWhatMattersMost) {
-  const ConsoleStatus vision{"tracking", "", false};
+  const ViewStatus vision{"tracking", "", false};
   FlightReport state;
   EXPECT_EQ(FlightStatus(state, vision), vision);
   state.autopilot.emplace().is_here = true;
@@ -318,7 +318,7 @@ TEST(FlightStatusTest, SaysWhatMattersMost) {
   EXPECT_EQ(FlightStatus(state, vision).state, "on the pattern");
   state.trouble = "the camera is gone";
   state.recorder.emplace();
-  EXPECT_EQ(FlightStatus(state, vision), (ConsoleStatus{"blind", "the camera is gone", true}));
+  EXPECT_EQ(FlightStatus(state, vision), (ViewStatus{"blind", "the camera is gone", true}));
 }
 
 TEST(FlightStatusTest, AnEndIsTheLastWord) {
@@ -326,7 +326,7 @@ TEST(FlightStatusTest, AnEndIsTheLastWord) {
   report.trouble = "the camera is gone";
   report.recording = "flight";
   report.end = FlightEnd{FlightOutcome::kOnPattern, 0.05};
-  const ConsoleStatus status = FlightStatus(report, {.state = "tracking", .reason = ""});
+  const ViewStatus status = FlightStatus(report, {.state = "tracking", .reason = ""});
   EXPECT_TRUE(status.is_over);
   EXPECT_EQ(status.reason, "landed 0.05 m from the centre (estimated)");
   EXPECT_EQ(status.replay, "flight");

@@ -135,17 +135,17 @@ void SourceWatch::Look(Time captured, bool has_pose) {
 // Others may send over the link of an autopilot that is dead.
 ConsoleSources SourceWatch::Update(const FlightReport& report, Time now) {
   ConsoleSources sources{now, {}};
-  const auto add = [&](ConsoleSource source, const std::optional<Time>& newest) {
+  const auto add = [&](ValueSource source, const std::optional<Time>& newest) {
     sources.ages.push_back({source, newest ? std::optional(now - *newest) : std::nullopt});
   };
-  add(ConsoleSource::kFrames, frame_);
+  add(ValueSource::kFrames, frame_);
   if (report.autopilot) {
     const std::uint64_t received = report.autopilot->link.received;
     if (report.autopilot->is_here && received != received_) autopilot_ = now;
     received_ = received;
-    add(ConsoleSource::kAutopilot, autopilot_);
+    add(ValueSource::kAutopilot, autopilot_);
   }
-  if (report.autopilot || pose_) add(ConsoleSource::kPose, pose_);
+  if (report.autopilot || pose_) add(ValueSource::kPose, pose_);
   return sources;
 }
 
@@ -174,8 +174,8 @@ ConsoleHealth FlightHealth::Compare(const FlightReport& report, double interval_
   return health;
 }
 
-ConsoleStatus FlightStatus(const FlightReport& report, const ConsoleStatus& vision) {
-  ConsoleStatus status = vision;
+ViewStatus FlightStatus(const FlightReport& report, const ViewStatus& vision) {
+  ViewStatus status = vision;
   status.is_recording = report.recorder.has_value();
   if (report.end) {
     status = {.state = "flight over", .reason = InWords(*report.end), .is_over = true};

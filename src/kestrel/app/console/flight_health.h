@@ -48,6 +48,6 @@ class SourceWatch {
 
 // Returns the state of a flight and what is in its way, in words for a pilot. 'vision': status from
 // the newest frame.
-ConsoleStatus FlightStatus(const FlightReport& report, const ConsoleStatus& vision);
+ViewStatus FlightStatus(const FlightReport& report, const ViewStatus& vision);
 
 }  // namespace kestrel

@@ -18,7 +18,7 @@ constexpr Duration kTellInterval = std::chrono::milliseconds(250);
 
 std::vector<SeriesDescription> ReplaySeries(const ReplaySubject& subject) {
   std::vector<SeriesDescription> series = subject.series;
-  if (subject.has_truth) series.push_back({"error", "px", "Error", {ConsoleSource::kFrames}});
+  if (subject.has_truth) series.push_back({"error", "px", "Error", {ValueSource::kFrames}});
   return series;
 }
 
@@ -167,8 +167,8 @@ void RecordingPlayer::ShowFrame() {
 void RecordingPlayer::TellFrame() {
   const std::size_t index = playhead_.frame();
   const ReplayFrame& frame = first_->frames[index];
-  feed_->Add(ConsoleSample{frame.time, ValuesOf(frame)});
-  ConsoleMap map = frame.map;
+  feed_->Add(ViewSample{frame.time, ValuesOf(frame)});
+  ViewMap map = frame.map;
   for (const MapEntry& entry : first_->map) {
     if (entry.since <= frame.time) map.mapped.push_back(entry.object);
   }

@@ -33,7 +33,7 @@ class ReplayConsole {
   std::vector<std::string> urls() const { return server_.urls(); }
 
   // Shows the progress in words before there is anything to play.
-  void SetProgress(const std::string& text) { feed_.Add(ConsoleStatus{"detecting", text, false}); }
+  void SetProgress(const std::string& text) { feed_.Add(ViewStatus{"detecting", text, false}); }
 
   // Gives the page the tools to calibrate. Call it before Play.
   void OfferCalibration(CalibrationPage::Tools tools) { tools_ = std::move(tools); }

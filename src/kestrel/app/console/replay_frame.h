@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "kestrel/app/console/console_feed.h"
-#include "kestrel/app/console/hunt_view.h"
-#include "kestrel/app/console/landing_view.h"
+#include "kestrel/app/views/hunt_view.h"
+#include "kestrel/app/views/landing_view.h"
 #include "kestrel/flight/session/observation.h"
 
 namespace kestrel {
@@ -18,11 +18,11 @@ struct ReplayFrame {
   Time time;
   FrameMark mark = FrameMark::kNothing;
   std::optional<double> error_px;  // error of the detected centre, where the truth is known
-  ConsoleSample sample;
-  ConsoleStatus status;
-  ConsoleMap map;
+  ViewSample sample;
+  ViewStatus status;
+  ViewMap map;
   std::vector<OverlayShape> shapes;
-  std::vector<ConsoleFact> facts;
+  std::vector<ViewFact> facts;
 };
 
 // Makes a frame without using the truth. Its mark is kFound when the pattern, or any object, was
@@ -37,7 +37,7 @@ ReplayFrame BrokenReplayFrame(ReplayFrame nothing, const BrokenFrame& broken);
 // An object of a hunt's map and the time at which the map gets it.
 struct MapEntry {
   Time since;
-  ConsoleMapObject object;
+  ViewMapObject object;
 };
 
 // Result of a run over a recording: all frames in order of time.

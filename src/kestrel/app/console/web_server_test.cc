@@ -292,8 +292,8 @@ TEST_F(WebServerTest, BadFramesEndTheConnection) {
 
 TEST_F(WebServerTest, NewcomersGetWhatIsKnown) {
   const WebServer server(AnyPort(), &feed_, kAssets);
-  feed_.Add(ConsoleStatus{"searching", "no pattern", false});
-  feed_.Add(ConsoleStatus{"tracking", "", true});
+  feed_.Add(ViewStatus{"searching", "no pattern", false});
+  feed_.Add(ViewStatus{"tracking", "", true});
   feed_.Add(SessionEvent{TimeFromNanoseconds(5), EventLevel::kWarning, "camera came back"});
   ASSERT_TRUE(Eventually([&] {
     TestSocket socket(server.port());
@@ -304,7 +304,7 @@ TEST_F(WebServerTest, NewcomersGetWhatIsKnown) {
   EXPECT_EQ((*socket.Next("hello"))["series"][0]["unit"], "m");
   EXPECT_EQ((*socket.Next("event"))["text"], "camera came back");
   EXPECT_TRUE(feed_.IsWatched());
-  feed_.Add(ConsoleSample{TimeFromNanoseconds(7), {std::numeric_limits<double>::quiet_NaN()}});
+  feed_.Add(ViewSample{TimeFromNanoseconds(7), {std::numeric_limits<double>::quiet_NaN()}});
   const auto sample = socket.Next("sample");
   EXPECT_EQ((*sample)["time"], "7");
   EXPECT_TRUE((*sample)["values"][0].is_null());
@@ -383,7 +383,7 @@ TEST_F(WebServerTest, AStalledBrowserCostsTheOthersNothing) {
       ConsoleFrame frame = SomeFrame();
       frame.image = noise;
       feed_.SetFrame(&frame);
-      for (int i = 0; i < 10; ++i) feed_.Add(ConsoleStatus{std::string(2000, 's'), "", false});
+      for (int i = 0; i < 10; ++i) feed_.Add(ViewStatus{std::string(2000, 's'), "", false});
       std::this_thread::sleep_for(5ms);
     }
   });

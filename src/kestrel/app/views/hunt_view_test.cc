@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/app/console/hunt_view.h"
+#include "kestrel/app/views/hunt_view.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/app/console/segmentation_view.h"
+#include "kestrel/app/views/segmentation_view.h"
 
 #include <algorithm>
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "kestrel/app/console/console_feed.h"
+#include "kestrel/app/views/view_data.h"
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/vision/pipeline/landing_pipeline.h"
@@ -12,7 +12,7 @@
 
 namespace kestrel {
 
-// The page's view of a landing.
+// The view of a landing.
 
 // Data that are the same for all frames.
 struct LandingView {
@@ -25,7 +25,7 @@ LandingView ViewOf(const CameraCalibration& calibration, const LandingPipelineOp
 // Returns the series of LandingSample: height of the camera above the target, horizontal offset
 // from it, speed of the target, quality of the detection, time of the detection.
 std::vector<SeriesDescription> LandingSeries();
-ConsoleSample LandingSample(const LandingObservation& observation);
+ViewSample LandingSample(const LandingObservation& observation);
 
 // Returns the outlines of the pad and its centre where they were found (layer kRejected if the
 // detection is far from the track), and the track's centre as an ellipse of two
@@ -40,14 +40,14 @@ std::vector<OverlayShape> LandingShapes(const LandingView& view,
 std::vector<ImageView> LandingImageViews();
 
 // Returns the state of the track, and why the pattern was not found.
-ConsoleStatus LandingStatus(const LandingObservation& observation);
+ViewStatus LandingStatus(const LandingObservation& observation);
 
 // Says whether the pattern was found or why not, the method, the quality, and by how many pixels
 // pose and calibration miss it.
-std::vector<ConsoleFact> LandingFacts(const LandingObservation& observation);
+std::vector<ViewFact> LandingFacts(const LandingObservation& observation);
 
 // Returns the camera (its heading is that of the image's upper edge), the target, and its predicted
 // positions in 1, 2 and 3 s.
-ConsoleMap LandingMap(const LandingView& view, const LandingObservation& observation);
+ViewMap LandingMap(const LandingView& view, const LandingObservation& observation);
 
 }  // namespace kestrel

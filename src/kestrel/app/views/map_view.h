@@ -4,13 +4,13 @@
 #include <cmath>
 #include <optional>
 
-#include "kestrel/app/console/console_feed.h"
+#include "kestrel/app/views/view_data.h"
 #include "kestrel/core/geometry/rigid_transform.h"
 
 namespace kestrel {
 
 // Puts the camera on the map if its pose is known. The heading is that of the image's upper edge.
-inline void PlaceUav(const std::optional<RigidTransform>& world_from_camera, ConsoleMap* map) {
+inline void PlaceUav(const std::optional<RigidTransform>& world_from_camera, ViewMap* map) {
   if (!world_from_camera) return;
   map->uav = world_from_camera->translation.head<2>();
   const Eigen::Vector3d up =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/app/console/landing_view.h"
+#include "kestrel/app/views/landing_view.h"
 
 #include <algorithm>
 #include <functional>
@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
-#include "kestrel/app/console/map_view.h"
+#include "kestrel/app/views/map_view.h"
 #include "kestrel/vision/landing/search/threshold_view.h"
 #include "kestrel/vision/target/closed_lines.h"
 #include "kestrel/vision/target/plane_warp.h"
@@ -124,7 +124,7 @@ std::string MisfitInWords(const LandingDetection& detection) {
                          : "");
 }
 
-ConsoleMapObject MapObject(const std::string& label, const TurnState& motion) {
+ViewMapObject MapObject(const std::string& label, const TurnState& motion) {
   return {.label = label,
           .color = "",
           .position = motion.position().head<2>(),
@@ -139,7 +139,7 @@ LandingView ViewOf(const CameraCalibration& calibration, const LandingPipelineOp
 }
 
 std::vector<SeriesDescription> LandingSeries() {
-  using enum ConsoleSource;
+  using enum ValueSource;
   return {{"height", "m", "Camera height", {kFrames, kPose}},
           {"offset", "m", "Camera offset", {kFrames, kPose}},
           {"speed", "m/s", "Target's speed", {kFrames, kPose}},
@@ -147,8 +147,8 @@ std::vector<SeriesDescription> LandingSeries() {
           {"detect", "ms", "Detection", {kFrames}}};
 }
 
-ConsoleSample LandingSample(const LandingObservation& observation) {
-  ConsoleSample sample{observation.time, std::vector<double>(LandingSeries().size(), kUnknown)};
+ViewSample LandingSample(const LandingObservation& observation) {
+  ViewSample sample{observation.time, std::vector<double>(LandingSeries().size(), kUnknown)};
   if (observation.target && observation.world_from_camera) {
     const Eigen::Vector3d offset =
         observation.world_from_camera->translation - observation.target->motion.position();
@@ -212,9 +212,9 @@ std::vector<ImageView> LandingImageViews() {
   return views;
 }
 
-ConsoleStatus LandingStatus(const LandingObservation& observation) {
+ViewStatus LandingStatus(const LandingObservation& observation) {
   const LandingReport& report = observation.report;
-  ConsoleStatus status;
+  ViewStatus status;
   status.state = ToString(observation.track_state);
   // One sighting is no track yet.
   if (report.detection && observation.track_state == TrackState::kSearching) status.state = "found";
@@ -232,7 +232,7 @@ ConsoleStatus LandingStatus(const LandingObservation& observation) {
   return status;
 }
 
-std::vector<ConsoleFact> LandingFacts(const LandingObservation& observation) {
+std::vector<ViewFact> LandingFacts(const LandingObservation& observation) {
   const auto& detection = observation.report.detection;
   if (!detection)
     return {{"found", "no, " + MissInWords(observation)},
@@ -246,8 +246,8 @@ std::vector<ConsoleFact> LandingFacts(const LandingObservation& observation) {
           {"misfit", MisfitInWords(*detection)}};
 }
 
-ConsoleMap LandingMap(const LandingView& view, const LandingObservation& observation) {
-  ConsoleMap map;
+ViewMap LandingMap(const LandingView& view, const LandingObservation& observation) {
+  ViewMap map;
   PlaceUav(observation.world_from_camera, &map);
   if (!observation.target) return map;
   const TurnState& motion = observation.target->motion;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/app/console/landing_view.h"
+#include "kestrel/app/views/landing_view.h"
 
 #include <algorithm>
 #include <cmath>
@@ -158,7 +158,7 @@ TEST(LandingViewTest, SaysWhichPadItIs) {
 }
 
 TEST(LandingViewTest, NumbersAreThoseOfTheTrack) {
-  const ConsoleSample sample = LandingSample(Seen());
+  const ViewSample sample = LandingSample(Seen());
   ASSERT_EQ(sample.values.size(), LandingSeries().size());
   EXPECT_NEAR(sample.values[0], 5, 1e-9);
   EXPECT_NEAR(sample.values[1], 1, 1e-9);
@@ -168,7 +168,7 @@ TEST(LandingViewTest, NumbersAreThoseOfTheTrack) {
 }
 
 TEST(LandingViewTest, TheMapLooksAhead) {
-  const ConsoleMap map = LandingMap(View(), Seen());
+  const ViewMap map = LandingMap(View(), Seen());
   EXPECT_NEAR(map.uav_heading, M_PI / 2, 1e-9);
   ASSERT_EQ(map.prediction.size(), 3U);
   EXPECT_NEAR(map.prediction[1].position.x(), 5, 0.1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/app/console/hunt_view.h"
+#include "kestrel/app/views/hunt_view.h"
 
 #include <cmath>
 #include <memory>
@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "kestrel/app/console/map_view.h"
-#include "kestrel/app/console/segmentation_view.h"
+#include "kestrel/app/views/map_view.h"
+#include "kestrel/app/views/segmentation_view.h"
 
 namespace kestrel {
 namespace {
@@ -51,12 +51,12 @@ std::string Rejections(const ObjectReport& report) {
 }  // namespace
 
 std::vector<SeriesDescription> HuntSeries() {
-  using enum ConsoleSource;
+  using enum ValueSource;
   return {{"objects", "", "Objects in view", {kFrames}, true},
           {"detect", "ms", "Detection", {kFrames}}};
 }
 
-ConsoleSample HuntSample(const HuntObservation& observation) {
+ViewSample HuntSample(const HuntObservation& observation) {
   return {observation.time,
           {static_cast<double>(observation.report.detections.size()),
            1e3 * ToSeconds(observation.detect_time)}};
@@ -84,16 +84,16 @@ std::vector<ImageView> HuntImageViews(const HuntView& view) {
       {"segmentation", [segmentation](const cv::Mat& image) { return segmentation->Draw(image); }}};
 }
 
-ConsoleStatus HuntStatus(const HuntObservation& observation) {
+ViewStatus HuntStatus(const HuntObservation& observation) {
   const std::size_t objects = observation.report.detections.size();
-  ConsoleStatus status;
+  ViewStatus status;
   status.state = objects == 0 ? "nothing in view" : fmt::format("{} in view", objects);
   if (objects == 0) status.reason = Rejections(observation.report);
   if (!observation.world_from_camera) status.reason = "where the UAV was is not known";
   return status;
 }
 
-std::vector<ConsoleFact> HuntFacts(const HuntView& view, const HuntObservation& observation) {
+std::vector<ViewFact> HuntFacts(const HuntView& view, const HuntObservation& observation) {
   std::vector<std::string> labels;
   for (const ObjectDetection& found : observation.report.detections) {
     labels.push_back(Label(view, found));
@@ -102,8 +102,8 @@ std::vector<ConsoleFact> HuntFacts(const HuntView& view, const HuntObservation& 
           {"classes", fmt::format("{}", fmt::join(labels, ", "))}};
 }
 
-ConsoleMap HuntMap(const HuntView& view, const HuntObservation& observation) {
-  ConsoleMap map;
+ViewMap HuntMap(const HuntView& view, const HuntObservation& observation) {
+  ViewMap map;
   PlaceUav(observation.world_from_camera, &map);
   for (std::size_t i = 0; i < observation.in_world.size(); ++i) {
     const auto& location = observation.in_world[i];
@@ -117,8 +117,8 @@ ConsoleMap HuntMap(const HuntView& view, const HuntObservation& observation) {
   return map;
 }
 
-ConsoleTeam HuntTeam(const HuntView& view, const TeamReport& report) {
-  ConsoleTeam team;
+ViewedTeam HuntTeam(const HuntView& view, const TeamReport& report) {
+  ViewedTeam team;
   for (const auto& [object, uavs, holder] : report.objects) {
     const auto class_index = ClassOf(object, view.model);
     team.objects.push_back({.object = {.label = class_index ? view.model.classes[*class_index].name
