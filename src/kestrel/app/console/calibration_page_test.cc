@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/app/console/replay_console.h"
-#include "kestrel/app/console/test_browser.h"
+#include "kestrel/app/web_server/test_browser.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/camera/paper_camera.h"
 

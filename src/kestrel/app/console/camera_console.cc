@@ -9,6 +9,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "kestrel/app/console/console_page.h"
 #include "kestrel/app/console/picture_quality.h"
 #include "kestrel/core/base/error.h"
 
@@ -46,7 +47,7 @@ CameraConsole::CameraConsole(const std::optional<ConsoleOptions>& page, Camera c
       source_(camera_.source),
       told_{.state = "opening", .reason = "waits for the first picture"},
       measured_(Now()) {
-  if (page) server_.emplace(*page, &feed_);
+  if (page) server_.emplace(ServeConsole(*page, &feed_));
   feed_.Add(told_);
 }
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "kestrel/app/console/console_feed.h"
-#include "kestrel/app/console/console_options.h"
 #include "kestrel/app/console/lens_page.h"
-#include "kestrel/app/console/web_server.h"
+#include "kestrel/app/web_server/console_options.h"
+#include "kestrel/app/web_server/web_server.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/flight/session/live_source.h"
 #include "kestrel/io/recording/frame.h"

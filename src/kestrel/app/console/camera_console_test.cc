@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "kestrel/app/console/test_browser.h"
+#include "kestrel/app/web_server/test_browser.h"
 #include "kestrel/calibration/lens/test_board_images.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/test_folder.h"

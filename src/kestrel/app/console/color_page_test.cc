@@ -12,8 +12,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "kestrel/app/console/test_browser.h"
-#include "kestrel/app/console/web_server.h"
+#include "kestrel/app/console/console_page.h"
+#include "kestrel/app/web_server/test_browser.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/read_file.h"
 #include "kestrel/core/base/test_folder.h"
@@ -83,7 +83,7 @@ class ColorPageTest : public testing::Test {
   const std::string folder_ = test_folder_ / "taught";
   std::atomic<std::size_t> missing_{99};
   ConsoleFeed feed_{Description()};
-  WebServer server_{FreePort(), &feed_};
+  WebServer server_ = ServeConsole(FreePort(), &feed_);
   std::unique_ptr<ColorPage> page_ = std::make_unique<ColorPage>(Source(), &feed_);
 };
 

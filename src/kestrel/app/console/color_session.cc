@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "kestrel/app/console/deflate.h"
+#include "kestrel/app/web_server/deflate.h"
 #include "kestrel/calibration/color_training/model_versions.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/read_file.h"

@@ -3,12 +3,10 @@
 
 #include <cstddef>
 #include <functional>
-#include <memory>
 #include <optional>
-#include <string>
 #include <string_view>
 
-#include "kestrel/app/console/temporary_folder.h"
+#include "kestrel/app/web_server/export_answer.h"
 
 namespace kestrel {
 
@@ -37,21 +35,6 @@ bool IsOfColors(const ExportRequest& request);
 
 // Returns nothing unless the path is exactly one of those above. Numbers have at most nine digits.
 std::optional<ExportRequest> ParseExportPath(std::string_view path);
-
-// A file on disk that is removed with its last owner.
-struct ExportFile {
-  TemporaryFolder folder;
-  std::string path;
-};
-
-struct ExportAnswer {
-  std::string content = {};  // empty: nothing, or it is in 'file'
-  std::string type = {};     // as "image/png"
-  std::string name = {};     // file name to save it as
-  std::shared_ptr<const ExportFile> file = nullptr;
-  std::string refusal = {};  // why it was not made; empty when the request is unknown
-  std::string coding = {};   // coding of the content, as "deflate"
-};
 
 // A request that waits for the thread that has the recording.
 struct PendingExport {

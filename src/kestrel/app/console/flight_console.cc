@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "kestrel/app/console/console_page.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/thread_setup.h"
 
@@ -154,7 +155,7 @@ FlightConsole::FlightConsole(const ConsoleOptions& options, const std::string& t
                              ChannelFeed* channels, std::optional<FlightColors> colors)
     : feed_(DescriptionOf(title, view, colors.has_value())),
       arrivals_(kArrivals),
-      server_(options, &feed_, WebAssets(), channels),
+      server_(ServeConsole(options, &feed_, WebAssets(), channels)),
       pictures_({.thread_name = "console frames",
                  .frames = kFrames,
                  .tell =

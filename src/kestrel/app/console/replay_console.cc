@@ -4,6 +4,8 @@
 #include <thread>
 #include <utility>
 
+#include "kestrel/app/console/console_page.h"
+
 namespace kestrel {
 namespace {
 
@@ -25,7 +27,7 @@ ReplayConsole::ReplayConsole(const ConsoleOptions& options, const std::string& t
                              ReplaySubject subject, std::optional<ColorSource> colors)
     : subject_(std::move(subject)),
       feed_(DescriptionWith(title, subject_, colors.has_value())),
-      server_(options, &feed_) {
+      server_(ServeConsole(options, &feed_)) {
   if (colors) colors_.emplace(*std::move(colors), &feed_);
 }
 

@@ -10,10 +10,10 @@
 #include "kestrel/app/console/calibration_page.h"
 #include "kestrel/app/console/color_page.h"
 #include "kestrel/app/console/console_feed.h"
-#include "kestrel/app/console/console_options.h"
 #include "kestrel/app/console/recording_player.h"
 #include "kestrel/app/console/replay_frame.h"
-#include "kestrel/app/console/web_server.h"
+#include "kestrel/app/web_server/console_options.h"
+#include "kestrel/app/web_server/web_server.h"
 
 namespace kestrel {
 

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/app/console/replay_options.h"
-#include "kestrel/app/console/test_browser.h"
+#include "kestrel/app/web_server/test_browser.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/codec/image_codec.h"
 #include "kestrel/io/recording/media/video_source.h"

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/app/console/console_page.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/parse_number.h"
 
@@ -45,7 +46,7 @@ StudyConsole::StudyConsole(const ConsoleOptions& options, const std::string& tit
       subject_(std::move(subject)),
       open_(std::move(open)),
       feed_(StudyDescription(title, subject_)),
-      server_(options, &feed_) {
+      server_(ServeConsole(options, &feed_)) {
   for (const StudyVariant& variant : variants_) {
     study_.variants.push_back(NameIn(variants_, variant));
   }

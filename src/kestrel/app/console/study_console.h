@@ -10,12 +10,12 @@
 
 #include "kestrel/app/console/background_run.h"
 #include "kestrel/app/console/console_feed.h"
-#include "kestrel/app/console/console_options.h"
 #include "kestrel/app/console/recording_player.h"
 #include "kestrel/app/console/replay_search.h"
 #include "kestrel/app/console/study_results.h"
 #include "kestrel/app/console/study_state.h"
-#include "kestrel/app/console/web_server.h"
+#include "kestrel/app/web_server/console_options.h"
+#include "kestrel/app/web_server/web_server.h"
 
 namespace kestrel {
 

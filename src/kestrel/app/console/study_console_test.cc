@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/app/console/landing_replay.h"
-#include "kestrel/app/console/test_browser.h"
 #include "kestrel/app/console/test_study.h"
+#include "kestrel/app/web_server/test_browser.h"
 #include "kestrel/core/base/error.h"
 
 namespace kestrel {
