@@ -13,7 +13,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "kestrel/app/console/flight_console.h"
+#include "kestrel/app/console/flight/flight_console.h"
 #include "kestrel/app/foxglove/mcap_sink.h"
 #include "kestrel/app/web_server/test_browser.h"
 #include "kestrel/comms/dds/ros2_node.h"

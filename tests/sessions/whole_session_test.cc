@@ -12,7 +12,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "kestrel/app/console/flight_console.h"
+#include "kestrel/app/console/flight/flight_console.h"
 #include "kestrel/app/foxglove/flight_live.h"
 #include "kestrel/app/foxglove/mcap_sink.h"
 #include "kestrel/app/foxglove/test_protobuf.h"

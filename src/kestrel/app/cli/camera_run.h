@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "kestrel/app/console/camera_console.h"
+#include "kestrel/app/console/camera/camera_console.h"
 #include "kestrel/app/fly/fly_source.h"
 #include "kestrel/app/options/kestrel_options.h"
 #include "kestrel/app/web_server/console_options.h"

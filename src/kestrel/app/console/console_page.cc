@@ -8,8 +8,8 @@
 #include <variant>
 #include <vector>
 
-#include "kestrel/app/console/console_json.h"
 #include "kestrel/app/console/image_channel.h"
+#include "kestrel/app/console/messages/console_json.h"
 #include "kestrel/app/console/telemetry_channel.h"
 #include "kestrel/core/base/options.h"
 

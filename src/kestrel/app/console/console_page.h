@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "kestrel/app/console/console_feed.h"
+#include "kestrel/app/console/messages/console_feed.h"
 #include "kestrel/app/console/web_assets.h"
 #include "kestrel/app/web_server/web_server.h"
 

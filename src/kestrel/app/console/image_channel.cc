@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "kestrel/app/console/console_json.h"
+#include "kestrel/app/console/messages/console_json.h"
 
 namespace kestrel {
 
