@@ -54,7 +54,7 @@ TEST_F(DdsCommandTest, LandTellsRos2WhatItFinds) {
     EXPECT_THAT(rows, HasSubstr(fmt::format(",{},1,", ToNanoseconds(message.header.stamp))));
     EXPECT_EQ(message.header.frame_id, "camera_optical_frame");
     EXPECT_EQ(message.detections.size(), 1u);
-    EXPECT_EQ(message.detections.at(0).results.at(0).class_id, "landing_pattern");
+    EXPECT_EQ(message.detections.at(0).results.at(0).hypothesis.class_id, "landing_pattern");
   }
   EXPECT_EQ(heard.at("/pad/target_pose").size(), 10u);
   EXPECT_EQ(heard.at("/pad/markers").size(), 10u);

@@ -11,6 +11,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "kestrel/core/base/bytes.h"
+
 namespace kestrel {
 namespace {
 
@@ -30,21 +32,14 @@ std::string Base64(const std::string& bytes) {
   return text;
 }
 
-template <class Number>
-void PutNumber(Number number, std::string* bytes) {
-  for (std::size_t i = 0; i < sizeof(number); ++i) {
-    bytes->push_back(static_cast<char>(number >> 8 * i & 0xFF));
-  }
-}
-
 std::string StatusJson(int level, const std::string& text) {
   return Json{{"op", "status"}, {"level", level}, {"message", text}}.dump();
 }
 
 WebMessage DataMessage(std::uint32_t id, const ChannelMessage& message) {
   WebMessage data{std::string(1, kMessageData), message.content, false};
-  PutNumber(id, &data.head);
-  PutNumber(static_cast<std::uint64_t>(ToNanoseconds(message.time)), &data.head);
+  Put(id, &data.head);
+  Put(static_cast<std::uint64_t>(ToNanoseconds(message.time)), &data.head);
   return data;
 }
 

@@ -55,7 +55,7 @@ std::string RosResults::TransformBytes(Time stamp, const std::string& parent,
   TransformStampedMessage& transform = message.transforms.emplace_back();
   transform.header = {0, stamp, parent};
   transform.child_frame_id = child;
-  transform.transform = PoseMessageOf(parent_from_child);
+  transform.transform = TransformMessageOf(parent_from_child);
   return SerializeMessage(message, WireFormat::kCdr);
 }
 

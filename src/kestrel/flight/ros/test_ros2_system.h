@@ -103,7 +103,7 @@ class RosSystem {
     TransformStampedMessage& transform = mount.transforms.emplace_back();
     transform.header.frame_id = "base_link";
     transform.child_frame_id = "camera";
-    transform.transform = PoseMessageOf(*calibration_.body_from_camera);
+    transform.transform = TransformMessageOf(*calibration_.body_from_camera);
     node_.Publish(node_.Advertise("/tf_static", TfMessage::kType, kLatchedQos), CdrBytesOf(mount));
   }
 
@@ -115,7 +115,7 @@ class RosSystem {
     OdometryMessage odometry;
     odometry.header = {0, stamp, "odom"};
     odometry.child_frame_id = "base_link";
-    odometry.pose = PoseMessageOf(pose->world_from_body);
+    odometry.pose.pose = PoseMessageOf(pose->world_from_body);
     node_.Publish(odometry_, CdrBytesOf(odometry));
     CameraInfoMessage info = CameraInfoOf(calibration_.intrinsics);
     info.header = {0, stamp, "camera"};

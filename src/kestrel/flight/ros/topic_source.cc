@@ -125,15 +125,13 @@ void TopicSource::TakePose(const RosTopic& topic, std::string_view bytes) {
         topic.name, topic.type));
   }
   const StampedPose pose = ParsePose(topic.type, bytes, topic.wire_format, topic.name);
-  const auto world_from_body = TransformOf(pose.pose);
-  if (!world_from_body || ToNanoseconds(pose.stamp) <= 0) {
+  if (!pose.pose || ToNanoseconds(pose.stamp) <= 0) {
     throw InputError(topic.name +
                      ": a pose is left out that has no stamp, is not finite, or is "
                      "turned by no unit quaternion");
   }
   body_frame_ = FrameName(pose.body);
-  AddPose({pose.stamp, *world_from_body,
-           pose.twist ? MotionOf(*pose.twist, *world_from_body) : std::nullopt},
+  AddPose({pose.stamp, *pose.pose, pose.twist ? MotionOf(*pose.twist, *pose.pose) : std::nullopt},
           FrameName(pose.world), topic.name);
 }
 

@@ -148,7 +148,7 @@ BagPoses ReadPoses(BagReader* bag, const TopicChoice& topics, const std::string&
     if (message.topic == topics.pose) {
       const StampedPose pose = ParsePose(topic.type, message.data, topic.wire_format, pose_name);
       if (told_body.empty()) told_body = FrameName(pose.body);
-      poses.Add(pose.stamp, message.arrival, TransformOf(pose.pose), pose.twist);
+      poses.Add(pose.stamp, message.arrival, pose.pose, pose.twist);
     } else {
       const std::string name = NameOfTopic(*bag, message.topic, path);
       for (const auto& transform :

@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "kestrel/core/base/byte_cursor.h"
+#include "kestrel/core/base/bytes.h"
 #include "kestrel/core/base/read_file.h"
 #include "kestrel/io/bags/bag_source.h"
 #include "kestrel/io/bags/ros1_bag.h"

@@ -11,7 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "kestrel/core/base/byte_cursor.h"
+#include "kestrel/core/base/bytes.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/read_file.h"
 #include "kestrel/core/base/test_folder.h"

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "kestrel/core/base/byte_cursor.h"
+#include "kestrel/core/base/bytes.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/io/bags/checksum.h"
 #include "kestrel/io/bags/mcap_opcodes.h"

@@ -99,11 +99,11 @@ class BagSink : public RecordingSink {
     OdometryMessage message;
     message.header = HeaderOf(pose.time, kWorldFrame, &pose_count_);
     message.child_frame_id = kBodyFrame;
-    message.pose = PoseMessageOf(pose.world_from_body);
+    message.pose.pose = PoseMessageOf(pose.world_from_body);
     if (pose.motion) {
       const Eigen::Quaterniond body_from_world = pose.world_from_body.rotation.conjugate();
-      message.twist = {Vector3Of(body_from_world * pose.motion->velocity_in_world),
-                       Vector3Of(pose.motion->rate_in_body)};
+      message.twist.twist = {Vector3Of(body_from_world * pose.motion->velocity_in_world),
+                             Vector3Of(pose.motion->rate_in_body)};
     }
     return message;
   }
@@ -114,7 +114,7 @@ class BagSink : public RecordingSink {
     TfMessage message;
     std::uint32_t count = 0;
     message.transforms.push_back({HeaderOf(time, kBodyFrame, &count), kCameraFrame,
-                                  PoseMessageOf(*head_.calibration->body_from_camera)});
+                                  TransformMessageOf(*head_.calibration->body_from_camera)});
     Write(*mount_, time, message);
   }
 

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "kestrel/core/base/byte_cursor.h"
+#include "kestrel/core/base/bytes.h"
 #include "kestrel/core/base/error.h"
 
 namespace kestrel {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "kestrel/core/base/byte_cursor.h"
+#include "kestrel/core/base/bytes.h"
 #include "kestrel/core/base/error.h"
 
 namespace kestrel {
@@ -29,18 +29,18 @@ class ProtobufFields {
   // Goes to the next field; false at the end.
   bool Next() {
     if (cursor_.left() == 0) return false;
-    const std::uint64_t tag = Varint();
+    const std::uint64_t tag = cursor_.Varint();
     number_ = static_cast<int>(tag >> 3);
     block_ = {};
     switch (tag & 7) {
       case 0:
-        integer_ = Varint();
+        integer_ = cursor_.Varint();
         return true;
       case 1:
         block_ = cursor_.Bytes(8);
         return true;
       case 2:
-        block_ = cursor_.Bytes(Varint());
+        block_ = cursor_.Bytes(cursor_.Varint());
         return true;
       case 5:
         block_ = cursor_.Bytes(4);
@@ -76,16 +76,6 @@ class ProtobufFields {
   }
 
  private:
-  std::uint64_t Varint() {
-    std::uint64_t value = 0;
-    for (int shift = 0; shift < 64; shift += 7) {
-      const auto byte = static_cast<unsigned char>(cursor_.Bytes(1).front());
-      value |= std::uint64_t{byte & 0x7fu} << shift;
-      if (byte < 0x80) return value;
-    }
-    throw InputError(*name_ + ": is no message of protobuf");
-  }
-
   ByteCursor cursor_;
   const std::string* name_;
   int number_ = 0;
@@ -115,7 +105,9 @@ std::array<double, 4> NumbersOf(const ProtobufFields& field) {
   return numbers;
 }
 
-Vector3Message VectorOf(const ProtobufFields& field) {
+// 'Vector': PointMessage or Vector3Message.
+template <class Vector>
+Vector VectorOf(const ProtobufFields& field) {
   const auto [x, y, z, unused] = NumbersOf(field);
   return {x, y, z};
 }
@@ -128,7 +120,7 @@ QuaternionMessage QuaternionOf(const ProtobufFields& field) {
 PoseMessage PoseOf(const ProtobufFields& field) {
   PoseMessage pose;
   for (ProtobufFields part(field.block(), field.name()); part.Next();) {
-    if (part.number() == 1) pose.position = VectorOf(part);
+    if (part.number() == 1) pose.position = VectorOf<PointMessage>(part);
     if (part.number() == 2) pose.orientation = QuaternionOf(part);
   }
   return pose;
@@ -140,8 +132,8 @@ TransformStampedMessage TransformOf(const ProtobufFields& field) {
     if (part.number() == 1) transform.header.stamp = TimeOf(part);
     if (part.number() == 2) transform.header.frame_id = part.Text();
     if (part.number() == 3) transform.child_frame_id = part.Text();
-    if (part.number() == 4) transform.transform.position = VectorOf(part);
-    if (part.number() == 5) transform.transform.orientation = QuaternionOf(part);
+    if (part.number() == 4) transform.transform.translation = VectorOf<Vector3Message>(part);
+    if (part.number() == 5) transform.transform.rotation = QuaternionOf(part);
   }
   return transform;
 }

@@ -19,18 +19,27 @@ bool IsSame(const RigidTransform& a, const RigidTransform& b) {
 
 }  // namespace
 
-std::optional<RigidTransform> TransformOf(const PoseMessage& pose) {
+std::optional<RigidTransform> TransformOf(const TransformMessage& message) {
   constexpr double kUnitTolerance = 0.01;
-  const QuaternionMessage& q = pose.orientation;
-  RigidTransform transform{{q.w, q.x, q.y, q.z},
-                           {pose.position.x, pose.position.y, pose.position.z}};
+  const auto& [p, q] = message;
+  RigidTransform transform{{q.w, q.x, q.y, q.z}, {p.x, p.y, p.z}};
   const bool is_unit = std::abs(transform.rotation.norm() - 1) <= kUnitTolerance;  // false for NaN
   if (!is_unit || !transform.translation.allFinite()) return std::nullopt;
   transform.rotation.normalize();
   return transform;
 }
 
+std::optional<RigidTransform> TransformOf(const PoseMessage& pose) {
+  const auto& [p, q] = pose;
+  return TransformOf(TransformMessage{{p.x, p.y, p.z}, q});
+}
+
 PoseMessage PoseMessageOf(const RigidTransform& transform) {
+  const auto [p, q] = TransformMessageOf(transform);
+  return {{p.x, p.y, p.z}, q};
+}
+
+TransformMessage TransformMessageOf(const RigidTransform& transform) {
   const Eigen::Vector3d& p = transform.translation;
   const Eigen::Quaterniond& q = transform.rotation;
   return {{p.x(), p.y(), p.z()}, {q.x(), q.y(), q.z(), q.w()}};

@@ -14,7 +14,9 @@ namespace kestrel {
 // Returns the rigid transform of a ROS pose; nothing when it is not finite or its quaternion does
 // not have unit length (to 1 %).
 std::optional<RigidTransform> TransformOf(const PoseMessage& pose);
+std::optional<RigidTransform> TransformOf(const TransformMessage& message);
 PoseMessage PoseMessageOf(const RigidTransform& transform);
+TransformMessage TransformMessageOf(const RigidTransform& transform);
 
 // Returns a frame's name without the leading slash of old ROS 1 versions.
 std::string FrameName(const std::string& frame_id);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/io/ros_messages/pose_message.h"
 
+#include "kestrel/io/ros_messages/frame_tree.h"
 #include "kestrel/io/ros_messages/serialization.h"
 
 namespace kestrel {
@@ -21,20 +22,22 @@ StampedPose ParsePose(std::string_view type, std::string_view data, WireFormat f
                       const std::string& name) {
   if (type == PoseStampedMessage::kType) {
     const auto message = ParseMessage<PoseStampedMessage>(data, format, name);
-    return {message.header.stamp, message.header.frame_id, "", message.pose, std::nullopt};
+    return {message.header.stamp, message.header.frame_id, "", TransformOf(message.pose),
+            std::nullopt};
   }
   if (type == PoseWithCovarianceStampedMessage::kType) {
     const auto message = ParseMessage<PoseWithCovarianceStampedMessage>(data, format, name);
-    return {message.header.stamp, message.header.frame_id, "", message.pose, std::nullopt};
+    return {message.header.stamp, message.header.frame_id, "", TransformOf(message.pose.pose),
+            std::nullopt};
   }
   if (type == TransformStampedMessage::kType) {
     const auto message = ParseMessage<TransformStampedMessage>(data, format, name);
     return {message.header.stamp, message.header.frame_id, message.child_frame_id,
-            message.transform, std::nullopt};
+            TransformOf(message.transform), std::nullopt};
   }
   const auto message = ParseMessage<OdometryMessage>(data, format, name);
-  return {message.header.stamp, message.header.frame_id, message.child_frame_id, message.pose,
-          message.twist};
+  return {message.header.stamp, message.header.frame_id, message.child_frame_id,
+          TransformOf(message.pose.pose), message.twist.twist};
 }
 
 std::optional<BodyMotion> MotionOf(const TwistMessage& twist, const RigidTransform& pose) {

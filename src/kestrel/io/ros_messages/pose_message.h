@@ -14,10 +14,10 @@ namespace kestrel {
 // A pose from a message of any supported type.
 struct StampedPose {
   Time stamp;
-  std::string world;  // frame of the pose
-  std::string body;   // empty if the type does not have it
-  PoseMessage pose;
-  std::optional<TwistMessage> twist;  // in the body's frame
+  std::string world;                   // frame of the pose
+  std::string body;                    // empty if the type does not have it
+  std::optional<RigidTransform> pose;  // nothing when it is not valid (TransformOf)
+  std::optional<TwistMessage> twist;   // in the body's frame
 };
 
 // True when ParsePose supports this type: PoseStamped, PoseWithCovarianceStamped, TransformStamped

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -20,12 +19,13 @@ struct PathMessage {
 
   template <class Self, class Wire>
   static void Fields(Self& self, Wire& wire) {
-    wire(self.header);
-    wire.List(self.poses);
+    wire("header", self.header);
+    wire("poses", self.poses);
   }
 };
 
-struct ColorMessage {  // std_msgs/ColorRGBA, 0 to 1
+struct ColorMessage {  // 0 to 1
+  static constexpr std::string_view kType = "std_msgs/ColorRGBA";
   float r = 0;
   float g = 0;
   float b = 0;
@@ -33,51 +33,55 @@ struct ColorMessage {  // std_msgs/ColorRGBA, 0 to 1
 
   template <class Self, class Wire>
   static void Fields(Self& self, Wire& wire) {
-    wire(self.r);
-    wire(self.g);
-    wire(self.b);
-    wire(self.a);
+    wire("r", self.r);
+    wire("g", self.g);
+    wire("b", self.b);
+    wire("a", self.a);
   }
 };
 
 struct RosDurationMessage {
-  std::int32_t seconds = 0;
-  std::int32_t nanoseconds = 0;
+  static constexpr std::string_view kType = "builtin_interfaces/Duration";
+  std::int32_t sec = 0;
+  std::uint32_t nanosec = 0;
 
   template <class Self, class Wire>
   static void Fields(Self& self, Wire& wire) {
-    wire(self.seconds);
-    wire(self.nanoseconds);
+    TimeMessage::Fields(self, wire);
   }
 };
 
-// The texture of a marker; always empty here.
-struct EmptyTextureMessage {
-  std::string resource;
-  CompressedImageMessage texture;
-  std::uint32_t coordinate_count = 0;
+struct UvCoordinateMessage {
+  static constexpr std::string_view kType = "visualization_msgs/UVCoordinate";
+  float u = 0;
+  float v = 0;
 
   template <class Self, class Wire>
   static void Fields(Self& self, Wire& wire) {
-    wire(self.resource);
-    wire(self.texture);
-    wire(self.coordinate_count);
+    wire("u", self.u);
+    wire("v", self.v);
   }
 };
 
-struct EmptyMeshMessage {  // visualization_msgs/MeshFile
-  std::string file_name;
-  std::uint32_t byte_count = 0;
+struct MeshFileMessage {
+  static constexpr std::string_view kType = "visualization_msgs/MeshFile";
+  std::string filename;
+  std::string_view data;
 
   template <class Self, class Wire>
   static void Fields(Self& self, Wire& wire) {
-    wire(self.file_name);
-    wire(self.byte_count);
+    wire("filename", self.filename);
+    wire("data", self.data);
   }
 };
 
-// visualization_msgs/Marker.
 struct MarkerMessage {
+  static constexpr std::string_view kType = "visualization_msgs/Marker";
+  static constexpr std::string_view kConstants =
+      "int32 ARROW=0\nint32 CUBE=1\nint32 SPHERE=2\nint32 CYLINDER=3\nint32 LINE_STRIP=4\n"
+      "int32 LINE_LIST=5\nint32 CUBE_LIST=6\nint32 SPHERE_LIST=7\nint32 POINTS=8\n"
+      "int32 TEXT_VIEW_FACING=9\nint32 MESH_RESOURCE=10\nint32 TRIANGLE_LIST=11\n"
+      "int32 ADD=0\nint32 MODIFY=0\nint32 DELETE=2\nint32 DELETEALL=3\n";
   enum Shape : std::int32_t { kArrow = 0, kCube = 1, kSphere = 2, kCylinder = 3, kText = 9 };
   enum Action : std::int32_t { kAdd = 0, kDelete = 2, kDeleteAll = 3 };
 
@@ -90,34 +94,38 @@ struct MarkerMessage {
   Vector3Message scale;  // m
   ColorMessage color;
   RosDurationMessage lifetime;  // 0: for ever
-  std::uint8_t frame_locked = 0;
-  std::vector<Vector3Message> points;  // for an arrow: its ends
+  bool frame_locked = false;
+  std::vector<PointMessage> points;  // for an arrow: its ends
   std::vector<ColorMessage> colors;
-  EmptyTextureMessage texture;
+  std::string texture_resource;
+  CompressedImageMessage texture;
+  std::vector<UvCoordinateMessage> uv_coordinates;
   std::string text;
   std::string mesh_resource;
-  EmptyMeshMessage mesh_file;
-  std::uint8_t mesh_use_embedded_materials = 0;
+  MeshFileMessage mesh_file;
+  bool mesh_use_embedded_materials = false;
 
   template <class Self, class Wire>
   static void Fields(Self& self, Wire& wire) {
-    wire(self.header);
-    wire(self.name_space);
-    wire(self.id);
-    wire(self.type);
-    wire(self.action);
-    wire(self.pose);
-    wire(self.scale);
-    wire(self.color);
-    wire(self.lifetime);
-    wire(self.frame_locked);
-    wire.List(self.points);
-    wire.List(self.colors);
-    wire(self.texture);
-    wire(self.text);
-    wire(self.mesh_resource);
-    wire(self.mesh_file);
-    wire(self.mesh_use_embedded_materials);
+    wire("header", self.header);
+    wire("ns", self.name_space);
+    wire("id", self.id);
+    wire("type", self.type);
+    wire("action", self.action);
+    wire("pose", self.pose);
+    wire("scale", self.scale);
+    wire("color", self.color);
+    wire("lifetime", self.lifetime);
+    wire("frame_locked", self.frame_locked);
+    wire("points", self.points);
+    wire("colors", self.colors);
+    wire("texture_resource", self.texture_resource);
+    wire("texture", self.texture);
+    wire("uv_coordinates", self.uv_coordinates);
+    wire("text", self.text);
+    wire("mesh_resource", self.mesh_resource);
+    wire("mesh_file", self.mesh_file);
+    wire("mesh_use_embedded_materials", self.mesh_use_embedded_materials);
   }
 };
 
@@ -127,25 +135,29 @@ struct MarkerArrayMessage {
 
   template <class Self, class Wire>
   static void Fields(Self& self, Wire& wire) {
-    wire.List(self.markers);
+    wire("markers", self.markers);
   }
 };
 
 struct KeyValueMessage {
+  static constexpr std::string_view kType = "diagnostic_msgs/KeyValue";
   std::string key;
   std::string value;
 
   template <class Self, class Wire>
   static void Fields(Self& self, Wire& wire) {
-    wire(self.key);
-    wire(self.value);
+    wire("key", self.key);
+    wire("value", self.value);
   }
 };
 
 struct DiagnosticStatusMessage {
+  static constexpr std::string_view kType = "diagnostic_msgs/DiagnosticStatus";
+  static constexpr std::string_view kConstants =
+      "byte OK=0\nbyte WARN=1\nbyte ERROR=2\nbyte STALE=3\n";
   enum Level : std::uint8_t { kOk = 0, kWarn = 1, kError = 2, kStale = 3 };
 
-  std::uint8_t level = kOk;
+  Level level = kOk;
   std::string name;
   std::string message;
   std::string hardware_id;
@@ -153,11 +165,11 @@ struct DiagnosticStatusMessage {
 
   template <class Self, class Wire>
   static void Fields(Self& self, Wire& wire) {
-    wire(self.level);
-    wire(self.name);
-    wire(self.message);
-    wire(self.hardware_id);
-    wire.List(self.values);
+    wire("level", self.level);
+    wire("name", self.name);
+    wire("message", self.message);
+    wire("hardware_id", self.hardware_id);
+    wire("values", self.values);
   }
 };
 
@@ -168,42 +180,60 @@ struct DiagnosticArrayMessage {
 
   template <class Self, class Wire>
   static void Fields(Self& self, Wire& wire) {
-    wire(self.header);
-    wire.List(self.status);
+    wire("header", self.header);
+    wire("status", self.status);
   }
 };
 
-// vision_msgs/ObjectHypothesisWithPose.
 struct ObjectHypothesisMessage {
+  static constexpr std::string_view kType = "vision_msgs/ObjectHypothesis";
   std::string class_id;  // name of the class
   double score = 0;      // 0 to 1
-  PoseMessage pose;
-  std::array<double, 36> covariance{};
 
   template <class Self, class Wire>
   static void Fields(Self& self, Wire& wire) {
-    wire(self.class_id);
-    wire(self.score);
-    wire(self.pose);
-    for (auto& number : self.covariance) wire(number);
+    wire("class_id", self.class_id);
+    wire("score", self.score);
   }
 };
 
-// vision_msgs/Detection3D.
-struct Detection3DMessage {
-  HeaderMessage header;
-  std::vector<ObjectHypothesisMessage> results;
-  PoseMessage box_center;
-  Vector3Message box_size;  // m
-  std::string id;           // the same from frame to frame
+struct ObjectHypothesisWithPoseMessage {
+  static constexpr std::string_view kType = "vision_msgs/ObjectHypothesisWithPose";
+  ObjectHypothesisMessage hypothesis;
+  PoseWithCovarianceMessage pose;
 
   template <class Self, class Wire>
   static void Fields(Self& self, Wire& wire) {
-    wire(self.header);
-    wire.List(self.results);
-    wire(self.box_center);
-    wire(self.box_size);
-    wire(self.id);
+    wire("hypothesis", self.hypothesis);
+    wire("pose", self.pose);
+  }
+};
+
+struct BoundingBox3DMessage {
+  static constexpr std::string_view kType = "vision_msgs/BoundingBox3D";
+  PoseMessage center;
+  Vector3Message size;  // m
+
+  template <class Self, class Wire>
+  static void Fields(Self& self, Wire& wire) {
+    wire("center", self.center);
+    wire("size", self.size);
+  }
+};
+
+struct Detection3DMessage {
+  static constexpr std::string_view kType = "vision_msgs/Detection3D";
+  HeaderMessage header;
+  std::vector<ObjectHypothesisWithPoseMessage> results;
+  BoundingBox3DMessage box;
+  std::string id;  // the same from frame to frame
+
+  template <class Self, class Wire>
+  static void Fields(Self& self, Wire& wire) {
+    wire("header", self.header);
+    wire("results", self.results);
+    wire("bbox", self.box);
+    wire("id", self.id);
   }
 };
 
@@ -214,8 +244,8 @@ struct Detection3DArrayMessage {
 
   template <class Self, class Wire>
   static void Fields(Self& self, Wire& wire) {
-    wire(self.header);
-    wire.List(self.detections);
+    wire("header", self.header);
+    wire("detections", self.detections);
   }
 };
 

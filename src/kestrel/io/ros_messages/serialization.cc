@@ -18,7 +18,7 @@ std::size_t PaddingBefore(std::size_t offset, std::size_t size) {
 }  // namespace
 
 WireReader::WireReader(std::string_view bytes, WireFormat format, const std::string& name)
-    : bytes_(bytes), format_(format), name_(&name) {
+    : reader_(bytes), size_(bytes.size()), format_(format), name_(&name) {
   if (format_ != WireFormat::kCdr) return;
   const std::string_view head = Take(kEncapsulation);
   if (head[0] != 0 || (head[1] != 0 && head[1] != 1)) {
@@ -31,18 +31,25 @@ WireReader::WireReader(std::string_view bytes, WireFormat format, const std::str
 }
 
 // The seconds are signed in ROS 2 and unsigned in ROS 1.
-void WireReader::operator()(Time& time) {
+void WireReader::Read(Time& time) {
   std::uint32_t seconds = 0;
   std::uint32_t nanoseconds = 0;
-  (*this)(seconds);
-  (*this)(nanoseconds);
+  Read(seconds);
+  Read(nanoseconds);
   const std::int64_t whole = format_ == WireFormat::kCdr
                                  ? static_cast<std::int64_t>(static_cast<std::int32_t>(seconds))
                                  : static_cast<std::int64_t>(seconds);
   time = TimeFromNanoseconds(whole * kSecond + nanoseconds);
 }
 
-void WireReader::operator()(std::string& text) {
+// Any byte but zero is true.
+void WireReader::Read(bool& value) {
+  std::uint8_t byte = 0;
+  Read(byte);
+  value = byte != 0;
+}
+
+void WireReader::Read(std::string& text) {
   std::string_view bytes = Take(Count());
   if (format_ == WireFormat::kCdr && bytes.ends_with('\0')) bytes.remove_suffix(1);
   text = bytes;
@@ -50,21 +57,20 @@ void WireReader::operator()(std::string& text) {
 
 std::uint32_t WireReader::Count() {
   std::uint32_t count = 0;
-  (*this)(count);
+  Read(count);
   return count;
 }
 
 void WireReader::Align(std::size_t size) {
-  if (format_ == WireFormat::kCdr) Take(PaddingBefore(offset_, size));
+  if (format_ == WireFormat::kCdr) Take(PaddingBefore(size_ - reader_.left(), size));
 }
 
 std::string_view WireReader::Take(std::size_t count) {
-  if (count > bytes_.size() - offset_) {
+  const std::string_view taken = reader_.Bytes(count);
+  if (reader_.has_failed()) {
     throw InputError(
-        fmt::format("{}: the message ends after {} bytes, expected more", *name_, bytes_.size()));
+        fmt::format("{}: the message ends after {} bytes, expected more", *name_, size_));
   }
-  const std::string_view taken = bytes_.substr(offset_, count);
-  offset_ += count;
   return taken;
 }
 
@@ -72,22 +78,27 @@ WireWriter::WireWriter(WireFormat format) : format_(format) {
   if (format_ == WireFormat::kCdr) bytes_.assign({0, 1, 0, 0});
 }
 
-void WireWriter::operator()(const Time& time) {
+void WireWriter::Write(const Time& time) {
   std::int64_t seconds = ToNanoseconds(time) / kSecond;
   std::int64_t nanoseconds = ToNanoseconds(time) % kSecond;
   if (nanoseconds < 0) {
     seconds -= 1;
     nanoseconds += kSecond;
   }
-  (*this)(static_cast<std::uint32_t>(seconds));
-  (*this)(static_cast<std::uint32_t>(nanoseconds));
+  Write(static_cast<std::uint32_t>(seconds));
+  Write(static_cast<std::uint32_t>(nanoseconds));
 }
 
-void WireWriter::operator()(const std::string& text) {
+void WireWriter::Write(const std::string& text) {
   const bool has_end = format_ == WireFormat::kCdr;
-  (*this)(static_cast<std::uint32_t>(text.size() + has_end));
+  Write(static_cast<std::uint32_t>(text.size() + has_end));
   bytes_.append(text);
   if (has_end) bytes_.push_back('\0');
+}
+
+void WireWriter::Write(const std::string_view& bytes) {
+  Write(static_cast<std::uint32_t>(bytes.size()));
+  bytes_.append(bytes);
 }
 
 void WireWriter::Align(std::size_t size) {

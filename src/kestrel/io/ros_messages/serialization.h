@@ -2,15 +2,16 @@
 #pragma once
 
 #include <algorithm>
-#include <concepts>
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
+#include "kestrel/core/base/bytes.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/io/ros_messages/foxglove_message.h"
 #include "kestrel/io/ros_messages/messages.h"
@@ -31,43 +32,60 @@ class WireReader {
   // Throws InputError for bytes of ROS 2 in another representation than plain CDR.
   WireReader(std::string_view bytes, WireFormat format, const std::string& name);
 
-  template <class Number>
-  requires std::is_arithmetic_v<Number>
-  void operator()(Number& number) {
-    Align(sizeof(Number));
-    char bytes[sizeof(Number)];
-    std::memcpy(bytes, Take(sizeof(Number)).data(), sizeof(Number));
-    if (is_big_endian_) std::reverse(bytes, bytes + sizeof(Number));
-    std::memcpy(&number, bytes, sizeof(Number));
+  template <class Field>
+  void operator()(FieldName, Field& field) {
+    Read(field);
   }
-  void operator()(Time& time);
-  void operator()(std::string& text);
-  template <class Message>
-  requires std::is_class_v<Message>
-  void operator()(Message& message) { Message::Fields(message, *this); }
-
   // Reads a field that the type has in ROS 1 only.
   template <class Field>
-  void OfRos1(Field& field) {
-    if (format_ == WireFormat::kRos1) (*this)(field);
-  }
-  void ByteList(std::string_view& bytes) { bytes = Take(Count()); }
-  // The list grows with the bytes that exist, whatever length they claim.
-  template <class Element>
-  void List(std::vector<Element>& list) {
-    list.clear();
-    for (std::uint32_t left = Count(); left > 0; --left) (*this)(list.emplace_back());
+  void OfRos1(FieldName, Field& field) {
+    if (format_ == WireFormat::kRos1) Read(field);
   }
 
  private:
+  template <class Number>
+  requires std::is_arithmetic_v<Number>
+  void Read(Number& number) {
+    Align(sizeof(Number));
+    std::array<char, sizeof(Number)> bytes;
+    std::copy_n(Take(sizeof(Number)).begin(), sizeof(Number), bytes.begin());
+    if (is_big_endian_) std::reverse(bytes.begin(), bytes.end());
+    std::memcpy(&number, bytes.data(), sizeof(Number));
+  }
+  void Read(bool& value);
+  template <class Enum>
+  requires std::is_enum_v<Enum>
+  void Read(Enum& value) {
+    std::underlying_type_t<Enum> number{};
+    Read(number);
+    value = static_cast<Enum>(number);
+  }
+  void Read(Time& time);
+  void Read(std::string& text);
+  void Read(std::string_view& bytes) { bytes = Take(Count()); }
+  template <RosMessage Message>
+  void Read(Message& message) {
+    Message::Fields(message, *this);
+  }
+  template <class Element, std::size_t kSize>
+  void Read(std::array<Element, kSize>& array) {
+    for (Element& element : array) Read(element);
+  }
+  // The list grows with the bytes that exist, whatever length they claim.
+  template <class Element>
+  void Read(std::vector<Element>& list) {
+    list.clear();
+    for (std::uint32_t left = Count(); left > 0; --left) Read(list.emplace_back());
+  }
+
   std::uint32_t Count();
   void Align(std::size_t size);
   std::string_view Take(std::size_t count);
 
-  std::string_view bytes_;
+  ByteReader reader_;
+  std::size_t size_;
   WireFormat format_;
   const std::string* name_;
-  std::size_t offset_ = 0;
   bool is_big_endian_ = false;
 };
 
@@ -77,35 +95,44 @@ class WireWriter {
   // 'format': kRos1 or kCdr (little-endian).
   explicit WireWriter(WireFormat format);
 
-  template <class Number>
-  requires std::is_arithmetic_v<Number>
-  void operator()(const Number& number) {
-    Align(sizeof(Number));
-    bytes_.append(reinterpret_cast<const char*>(&number), sizeof(Number));
-  }
-  void operator()(const Time& time);
-  void operator()(const std::string& text);
-  template <class Message>
-  requires std::is_class_v<Message>
-  void operator()(const Message& message) { Message::Fields(message, *this); }
-
   template <class Field>
-  void OfRos1(const Field& field) {
-    if (format_ == WireFormat::kRos1) (*this)(field);
+  void operator()(FieldName, const Field& field) {
+    Write(field);
   }
-  void ByteList(const std::string_view& bytes) {
-    (*this)(static_cast<std::uint32_t>(bytes.size()));
-    bytes_.append(bytes);
-  }
-  template <class Element>
-  void List(const std::vector<Element>& list) {
-    (*this)(static_cast<std::uint32_t>(list.size()));
-    for (const Element& element : list) (*this)(element);
+  template <class Field>
+  void OfRos1(FieldName, const Field& field) {
+    if (format_ == WireFormat::kRos1) Write(field);
   }
 
   std::string Take() { return std::move(bytes_); }
 
  private:
+  template <class Number>
+  requires std::is_arithmetic_v<Number>
+  void Write(const Number& number) {
+    Align(sizeof(Number));
+    Put(number, &bytes_);
+  }
+  template <class Enum>
+  requires std::is_enum_v<Enum>
+  void Write(const Enum& value) { Write(static_cast<std::underlying_type_t<Enum>>(value)); }
+  void Write(const Time& time);
+  void Write(const std::string& text);
+  void Write(const std::string_view& bytes);
+  template <RosMessage Message>
+  void Write(const Message& message) {
+    Message::Fields(message, *this);
+  }
+  template <class Element, std::size_t kSize>
+  void Write(const std::array<Element, kSize>& array) {
+    for (const Element& element : array) Write(element);
+  }
+  template <class Element>
+  void Write(const std::vector<Element>& list) {
+    Write(static_cast<std::uint32_t>(list.size()));
+    for (const Element& element : list) Write(element);
+  }
+
   void Align(std::size_t size);
 
   WireFormat format_;
@@ -114,7 +141,7 @@ class WireWriter {
 
 // Returns the message in 'bytes'; its lists of bytes point into them. Throws InputError with 'name'
 // when they are not such a message.
-template <class Message>
+template <RosMessage Message>
 Message ParseMessage(std::string_view bytes, WireFormat format, const std::string& name) {
   Message message;
   if constexpr (HasFoxgloveForm<Message>) {
@@ -124,15 +151,15 @@ Message ParseMessage(std::string_view bytes, WireFormat format, const std::strin
     }
   }
   WireReader reader(bytes, format, name);
-  reader(message);
+  Message::Fields(message, reader);
   return message;
 }
 
 // Returns the bytes of a message.
-template <class Message>
+template <RosMessage Message>
 std::string SerializeMessage(const Message& message, WireFormat format) {
   WireWriter writer(format);
-  writer(message);
+  Message::Fields(message, writer);
   return writer.Take();
 }
 

@@ -13,18 +13,20 @@ namespace kestrel {
 
 // The messages of apriltag_ros in ROS 2, by the same rules as in messages.h.
 
-struct ImagePointMessage {  // apriltag_msgs/Point, px
+struct ImagePointMessage {  // px
+  static constexpr std::string_view kType = "apriltag_msgs/Point";
   double x = 0;
   double y = 0;
 
   template <class Self, class Wire>
   static void Fields(Self& self, Wire& wire) {
-    wire(self.x);
-    wire(self.y);
+    wire("x", self.x);
+    wire("y", self.y);
   }
 };
 
-struct TagMessage {  // apriltag_msgs/AprilTagDetection
+struct TagMessage {
+  static constexpr std::string_view kType = "apriltag_msgs/AprilTagDetection";
   std::string family;
   std::int32_t id = 0;
   std::int32_t hamming = 0;  // bits that were corrected
@@ -36,14 +38,14 @@ struct TagMessage {  // apriltag_msgs/AprilTagDetection
 
   template <class Self, class Wire>
   static void Fields(Self& self, Wire& wire) {
-    wire(self.family);
-    wire(self.id);
-    wire(self.hamming);
-    wire(self.goodness);
-    wire(self.decision_margin);
-    wire(self.center);
-    for (auto& corner : self.corners) wire(corner);
-    for (auto& number : self.homography) wire(number);
+    wire("family", self.family);
+    wire("id", self.id);
+    wire("hamming", self.hamming);
+    wire("goodness", self.goodness);
+    wire("decision_margin", self.decision_margin);
+    wire("centre", self.center);
+    wire("corners", self.corners);
+    wire("homography", self.homography);
   }
 };
 
@@ -54,8 +56,8 @@ struct TagArrayMessage {
 
   template <class Self, class Wire>
   static void Fields(Self& self, Wire& wire) {
-    wire(self.header);
-    wire.List(self.detections);
+    wire("header", self.header);
+    wire("detections", self.detections);
   }
 };
 
