@@ -84,10 +84,11 @@ check-figures: configure-tests  ## what README and docs quote: form, commands, a
 format:
 	scripts/check-format --fix
 
-check:  ## format, layers, clang-tidy on every source but the tests, of all ROOMS or of some
+check:  ## format, layers, and every source but the tests compiled by itself and by clang-tidy, of all ROOMS or of some
 	scripts/install-deps --check
 	scripts/check-format
 	scripts/check-layers
+	scripts/check-syntax $(ROOMS)
 	scripts/check-tidy $(ROOMS)
 
 asan:  ## the unit tests, of all ROOMS or of some, with the address and undefined-behaviour sanitizers
