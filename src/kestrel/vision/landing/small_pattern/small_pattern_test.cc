@@ -109,20 +109,23 @@ TEST_F(SmallPatternTest, OtherFiguresInTheRingFitWorse) {
 }
 
 TEST_F(SmallPatternTest, TheCovarianceIsThatOfTheErrors) {
+  // Of less noise, the model's own error is the larger part, and the covariance is larger, too.
+  constexpr double kNoise = 20;
   Random random(3);
   const RigidTransform truth = PoseOf(22, &random);
   const cv::Mat image = Draw(SpokedPrint(pattern_, 4), truth);
   constexpr int kTrials = 100;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (int trial = 0; trial < kTrials; ++trial) {
-    const auto fit = Fit(AddNoise(image, 6, &random), truth);
+    const auto fit = Fit(AddNoise(image, kNoise, &random), truth);
     ASSERT_TRUE(fit);
     const auto error = PoseError(fit->location.camera_from_pattern, truth);
     for (int k = 0; k < 3; ++k) sum(k) += error(k) * error(k) / fit->location.covariance(k, k);
   }
   for (int k = 0; k < 3; ++k) {
-    EXPECT_GT(std::sqrt(sum(k) / kTrials), 1.0 / 3) << k;
-    EXPECT_LT(std::sqrt(sum(k) / kTrials), 3) << k;
+    const double ratio = std::sqrt(sum(k) / kTrials);  // of errors and standard deviations
+    EXPECT_GT(ratio, 0.8) << k;
+    EXPECT_LT(ratio, 1.25) << k;
   }
 }
 
