@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <thread>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -176,7 +175,6 @@ TEST_F(FlightConsoleTest, ObeysWhatThePageAsks) {
 TEST_F(FlightConsoleTest, KeepsNoImageWhenNobodyLooks) {
   const Frame frame = GrayFrame();
   console_.Take(ObservationOf(frame, LandingObservation()));
-  std::this_thread::sleep_for(20ms);
   EXPECT_EQ(frame.image.u->refcount, 1);
 }
 
