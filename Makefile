@@ -29,20 +29,20 @@ console: command  ## the web page over a simulated flight
 	$(BIN)/src/kestrel/app/cli/kestrel console --demo
 
 test: tests
-	ctest --preset release -j $$(nproc)
+	scripts/run-tests release
 
 dds:  ## ROS 2 and the team's map over DDS, and their tests
 	scripts/install-deps --test --dds
 	cmake --preset release
 	cmake --build --preset release --target kestrel $(DDS_ROOMS:%=kestrel_%_test)
-	ctest --preset release -j $$(nproc) -R '^(dds|ros|team|hosts)/|DdsCommand|TeamCommand' --no-tests=error
+	scripts/run-tests release -R '^(dds|ros|team|hosts)/|DdsCommand|TeamCommand' --no-tests=error
 
 python: python-module  ## `import kestrel`, and what `kestrel study` needs
 	@echo 'Try it: PYTHONPATH=$(BIN)/python /usr/bin/python3 -c "import kestrel; print(kestrel.simulate(\"calm\"))"'
 
 test-python: python-module  ## the tests of `import kestrel` and of studies
 	scripts/install-deps --test
-	ctest --preset release -j $$(nproc) -R ^python/ --no-tests=error
+	scripts/run-tests release -R ^python/ --no-tests=error
 
 python-module:
 	scripts/install-deps --python
@@ -84,10 +84,11 @@ check-figures: configure-tests  ## what README and docs quote: form, commands, a
 format:
 	scripts/check-format --fix
 
-check:  ## format, layers, clang-tidy on every source but the tests, of all ROOMS or of some
+check:  ## format, layers, and every source but the tests compiled by itself and by clang-tidy, of all ROOMS or of some
 	scripts/install-deps --check
 	scripts/check-format
 	scripts/check-layers
+	scripts/check-syntax $(ROOMS)
 	scripts/check-tidy $(ROOMS)
 
 asan:  ## the unit tests, of all ROOMS or of some, with the address and undefined-behaviour sanitizers

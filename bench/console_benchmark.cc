@@ -14,8 +14,8 @@
 
 #include <fmt/format.h>
 
-#include "kestrel/app/console/flight_console.h"
-#include "kestrel/app/console/test_browser.h"
+#include "kestrel/app/console/flight/flight_console.h"
+#include "kestrel/app/web_server/test_browser.h"
 #include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/core/camera/paper_camera.h"
 #include "kestrel/simulation/labelled_images/landing_stills.h"

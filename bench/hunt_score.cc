@@ -12,9 +12,9 @@
 #include "kestrel/core/base/parse_number.h"
 #include "kestrel/core/base/read_file.h"
 #include "kestrel/io/recording/event_source.h"
-#include "kestrel/io/recording/image_file.h"
-#include "kestrel/io/recording/object_csv.h"
+#include "kestrel/io/recording/media/image_file.h"
 #include "kestrel/io/recording/open_source.h"
+#include "kestrel/io/recording/tables/object_csv.h"
 #include "kestrel/vision/pipeline/hunt_pipeline.h"
 
 namespace kestrel {

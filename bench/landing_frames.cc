@@ -14,9 +14,9 @@
 #include "kestrel/core/base/read_file.h"
 #include "kestrel/core/camera/calibration_reader.h"
 #include "kestrel/core/camera/paper_camera.h"
-#include "kestrel/io/recording/csv_table.h"
-#include "kestrel/io/recording/euroc_recording.h"
-#include "kestrel/io/recording/image_file.h"
+#include "kestrel/io/recording/euroc/euroc_recording.h"
+#include "kestrel/io/recording/media/image_file.h"
+#include "kestrel/io/recording/tables/csv_table.h"
 
 namespace kestrel {
 namespace {

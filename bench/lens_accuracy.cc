@@ -19,7 +19,7 @@
 #include "kestrel/calibration/lens/lens_difference.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/geometry/angles.h"
-#include "kestrel/io/recording/euroc_text.h"
+#include "kestrel/io/recording/euroc/euroc_text.h"
 #include "kestrel/simulation/labelled_images/landing_stills.h"
 #include "landing_frames.h"
 #include "landing_score.h"

@@ -20,7 +20,7 @@
 #include "kestrel/app/evaluation/report_table.h"
 #include "kestrel/app/evaluation/statistics.h"
 #include "kestrel/core/base/error.h"
-#include "kestrel/io/recording/euroc_recording.h"
+#include "kestrel/io/recording/euroc/euroc_recording.h"
 #include "kestrel/simulation/recordings/hunt_simulation.h"
 #include "kestrel/simulation/recordings/scenarios.h"
 #include "kestrel/vision/pipeline/hunt_pipeline.h"

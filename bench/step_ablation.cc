@@ -14,7 +14,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "kestrel/vision/landing/search/landing_search.h"
+#include "kestrel/vision/landing/landing_search.h"
 #include "kestrel/vision/landing/search/search_plan.h"
 #include "landing_frames.h"
 #include "landing_score.h"

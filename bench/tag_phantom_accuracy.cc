@@ -21,7 +21,7 @@
 
 #include "for_each_index.h"
 #include "kestrel/core/base/random.h"
-#include "kestrel/io/recording/image_file.h"
+#include "kestrel/io/recording/media/image_file.h"
 #include "kestrel/vision/tags/tag_match.h"
 #include "kestrel/vision/tags/tag_search.h"
 #include "kestrel/vision/tags/test_tag_images.h"

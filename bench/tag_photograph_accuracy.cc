@@ -23,7 +23,7 @@
 #include "apriltag_peer.h"
 #include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/core/camera/camera_model.h"
-#include "kestrel/io/recording/image_file.h"
+#include "kestrel/io/recording/media/image_file.h"
 #include "kestrel/vision/tags/tag_board_detector.h"
 #include "kestrel/vision/tags/test_tag_images.h"
 #include "report_main.h"

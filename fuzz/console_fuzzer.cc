@@ -13,11 +13,11 @@
 #include <variant>
 #include <vector>
 
-#include "kestrel/app/console/client_message.h"
-#include "kestrel/app/console/export_request.h"
-#include "kestrel/app/console/request_guard.h"
-#include "kestrel/app/console/viewer_flow.h"
-#include "kestrel/app/console/viewer_request.h"
+#include "kestrel/app/console/messages/client_message.h"
+#include "kestrel/app/console/messages/export_request.h"
+#include "kestrel/app/web_server/request_guard.h"
+#include "kestrel/app/web_server/viewer_flow.h"
+#include "kestrel/app/web_server/viewer_request.h"
 
 namespace {
 

@@ -9,10 +9,10 @@
 #include <string_view>
 
 #include "kestrel/core/base/error.h"
-#include "kestrel/io/bags/camera_info.h"
-#include "kestrel/io/bags/image_message.h"
-#include "kestrel/io/bags/messages.h"
-#include "kestrel/io/bags/serialization.h"
+#include "kestrel/io/ros_messages/camera_info.h"
+#include "kestrel/io/ros_messages/image_message.h"
+#include "kestrel/io/ros_messages/messages.h"
+#include "kestrel/io/ros_messages/serialization.h"
 
 namespace {
 

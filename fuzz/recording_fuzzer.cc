@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "kestrel/core/base/error.h"
-#include "kestrel/io/recording/euroc_recording.h"
+#include "kestrel/io/recording/euroc/euroc_recording.h"
 
 namespace {
 

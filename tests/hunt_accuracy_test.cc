@@ -16,6 +16,7 @@
 #include "kestrel/calibration/color_training/color_editor.h"
 #include "kestrel/core/base/read_file.h"
 #include "kestrel/io/recording/open_source.h"
+#include "real_frames.h"
 
 namespace kestrel {
 namespace {
@@ -27,7 +28,7 @@ std::string DataFolder(const std::string& name) {
 bool IsThere(const std::string& name) { return std::filesystem::exists(DataFolder(name)); }
 
 TEST(HuntRealTest, DiscsAreFoundAndNothingElse) {
-  if (!IsThere("hunt_real")) GTEST_SKIP() << "no folder " << DataFolder("hunt_real");
+  if (!IsThere("hunt_real")) GTEST_SKIP() << kNoRealFrames;
   const RealFrameScore score = ScoreRealFrame(DataFolder("hunt_real"));
   int found = 0;
   for (const RealDisc& disc : score.discs) {
@@ -46,7 +47,7 @@ class HuntHardTest : public testing::TestWithParam<const char*> {
 };
 
 TEST_P(HuntHardTest, EveryWantedObjectIsFoundAndNothingElse) {
-  if (!IsThere(Name())) GTEST_SKIP() << "no folder " << DataFolder(Name());
+  if (!IsThere(Name())) GTEST_SKIP() << kNoRealFrames;
   std::vector<double> center_errors_px, depth_errors;
   for (const ObjectComparison& c : ScoreHunt(DataFolder(Name())).comparisons) {
     EXPECT_TRUE(c.IsObject()) << "false " << c.detected_class;
@@ -60,7 +61,7 @@ TEST_P(HuntHardTest, EveryWantedObjectIsFoundAndNothingElse) {
 }
 
 TEST_P(HuntHardTest, DigitsAreRight) {
-  if (!IsThere(Name())) GTEST_SKIP() << "no folder " << DataFolder(Name());
+  if (!IsThere(Name())) GTEST_SKIP() << kNoRealFrames;
   const DigitScore digits = ScoreHunt(DataFolder(Name())).digits;
   EXPECT_GE(digits.right, 0.9 * digits.count);
 }
@@ -105,7 +106,7 @@ ObjectModel TaughtModel(const std::string& folder) {
 
 TEST(TaughtModelTest, TenStrokesFindWhatTheBuiltInModelFindsAndNothingElse) {
   const std::string name = "hunt_hard/discs";
-  if (!IsThere(name)) GTEST_SKIP() << "no folder " << DataFolder(name);
+  if (!IsThere(name)) GTEST_SKIP() << kNoRealFrames;
   const auto found = [&](const ObjectModel& model) {
     int count = 0;
     for (const ObjectComparison& c : ScoreHunt(DataFolder(name), model).comparisons) {

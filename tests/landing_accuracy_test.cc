@@ -8,6 +8,7 @@
 
 #include "landing_frames.h"
 #include "landing_score.h"
+#include "real_frames.h"
 
 namespace kestrel {
 namespace {
@@ -68,7 +69,7 @@ TEST(LandingLookalikesTest, AreNotTakenForThePattern) {
 
 TEST(LandingRealTest, PatternIsFoundWhereItIs) {
   const std::vector<LandingFrameSet> sets = ReadLandingReal(KESTREL_DATA_DIR);
-  if (sets.empty()) GTEST_SKIP() << "there is no " << KESTREL_DATA_DIR << "/landing_real";
+  if (sets.empty()) GTEST_SKIP() << kNoRealFrames;
   const LandingTally tally = ScoreSets(sets, NoHint);
   EXPECT_EQ(tally.frames, 349);
   EXPECT_GE(tally.FoundShare(), 0.99);
@@ -83,7 +84,7 @@ class LandingHardTest : public testing::TestWithParam<HintOf> {};
 
 TEST_P(LandingHardTest, PatternIsFoundWhereItIs) {
   const std::vector<LandingFrameSet> sets = ReadLandingHard(KESTREL_DATA_DIR);
-  if (sets.empty()) GTEST_SKIP() << "there is no " << KESTREL_DATA_DIR << "/landing_hard";
+  if (sets.empty()) GTEST_SKIP() << kNoRealFrames;
   const LandingTally tally = ScoreSets(sets, GetParam());
   EXPECT_EQ(tally.frames, 100);
   EXPECT_EQ(tally.negatives, 30);

@@ -9,4 +9,4 @@
 //   const cv::Mat drawn = DrawLandingOverlay(image, pipeline.detector().camera(),
 //                                            pipeline.detector().shape(), seen);
 
-#include "kestrel/io/recording/landing_overlay.h"  // IWYU pragma: export
+#include "kestrel/io/recording/overlays/landing_overlay.h"  // IWYU pragma: export

@@ -8,4 +8,4 @@
 //   const HuntObservation& seen = pipeline.Process(color_image, time);
 //   const cv::Mat drawn = DrawObjectOverlay(color_image, pipeline.detector().model(), seen);
 
-#include "kestrel/io/recording/object_overlay.h"  // IWYU pragma: export
+#include "kestrel/io/recording/overlays/object_overlay.h"  // IWYU pragma: export

@@ -11,7 +11,7 @@
 #include "enum_casters.h"
 #include "kestrel/flight_calibration.h"
 #include "kestrel/frame_source.h"
-#include "kestrel/io/recording/euroc_text.h"
+#include "kestrel/io/recording/euroc/euroc_text.h"
 #include "kestrel/lens_calibration.h"
 #include "option_values.h"
 #include "value_class.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the server says of a calibration, as src/kestrel/app/console/calibration_json.cc writes it, and
+// What the server says of a calibration, as src/kestrel/app/console/messages/calibration_json.cc writes it, and
 // what the page makes of it.
 
 /** A quantity before and after; null where it is not known, a sigma of 0 where it was held. */

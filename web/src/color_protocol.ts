@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the server says of colours and is asked for, as src/kestrel/app/console/color_json.h and
+// What the server says of colours and is asked for, as src/kestrel/app/console/messages/color_json.h and
 // color_request.h have it.
 
 /** A Gaussian of a colour's mixture; hue in degrees, saturation 0 to 1. */

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The guided calibration of a live camera's lens, as src/kestrel/app/console/lens_json.cc writes it,
+// The guided calibration of a live camera's lens, as src/kestrel/app/console/messages/lens_json.cc writes it,
 // and what the page makes of it.
 
 export interface LensEstimate {

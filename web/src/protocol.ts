@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Messages of the server, as src/kestrel/app/console/console_json.h writes it. Times are whole
+// Messages of the server, as src/kestrel/app/console/messages/console_json.h writes it. Times are whole
 // nanoseconds as text: they are beyond what numbers hold here.
 import type { Calibration } from "./calibration";
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The results of a study: its recordings as two of its configurations saw them. What the server
-// says is of src/kestrel/app/console/study_json.h.
+// says is of src/kestrel/app/console/messages/study_json.h.
 
 /** The result of a configuration for a recording; null where it is not known. */
 export interface Outcome {

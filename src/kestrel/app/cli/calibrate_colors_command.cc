@@ -12,9 +12,9 @@
 #include "kestrel/core/base/write_file.h"
 #include "kestrel/core/codec/image_codec.h"
 #include "kestrel/io/recording/color_marks.h"
-#include "kestrel/io/recording/color_pictures.h"
-#include "kestrel/io/recording/image_file.h"
+#include "kestrel/io/recording/media/image_file.h"
 #include "kestrel/io/recording/output_folder.h"
+#include "kestrel/io/recording/overlays/color_pictures.h"
 #include "kestrel/vision/objects/color/color_grid.h"
 #include "kestrel/vision/objects/object_model.h"
 

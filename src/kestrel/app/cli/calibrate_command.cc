@@ -17,7 +17,7 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/io/bags/source_calibration.h"
-#include "kestrel/io/recording/calibration_output.h"
+#include "kestrel/io/recording/euroc/calibration_output.h"
 
 namespace kestrel {
 namespace {

@@ -17,8 +17,8 @@
 #include "kestrel/app/evaluation/lens_plots.h"
 #include "kestrel/calibration/lens/even_sample.h"
 #include "kestrel/calibration/lens/lens_calibration.h"
-#include "kestrel/io/recording/calibration_output.h"
-#include "kestrel/io/recording/euroc_text.h"
+#include "kestrel/io/recording/euroc/calibration_output.h"
+#include "kestrel/io/recording/euroc/euroc_text.h"
 #include "kestrel/io/recording/output_folder.h"
 
 namespace kestrel {

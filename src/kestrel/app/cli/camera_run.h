@@ -5,10 +5,10 @@
 #include <optional>
 #include <string>
 
-#include "kestrel/app/console/camera_console.h"
-#include "kestrel/app/console/console_options.h"
+#include "kestrel/app/console/camera/camera_console.h"
 #include "kestrel/app/fly/fly_source.h"
 #include "kestrel/app/options/kestrel_options.h"
+#include "kestrel/app/web_server/console_options.h"
 #include "kestrel/flight/onboard/flight_keeper.h"
 #include "kestrel/flight/onboard/recording_switch.h"
 #include "kestrel/io/bags/open_recording.h"

@@ -2,8 +2,8 @@
 #include "kestrel/app/cli/console_arguments.h"
 
 #include "kestrel/app/cli/console_camera.h"
-#include "kestrel/app/console/hunt_replay.h"
-#include "kestrel/app/console/landing_replay.h"
+#include "kestrel/app/console/replay/hunt_replay.h"
+#include "kestrel/app/console/replay/landing_replay.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/options.h"
 #include "kestrel/vision/objects/object_model.h"

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "kestrel/app/cli/source_arguments.h"
-#include "kestrel/app/console/console_options.h"
-#include "kestrel/app/console/replay_search.h"
+#include "kestrel/app/console/replay/replay_search.h"
 #include "kestrel/app/options/kestrel_options.h"
+#include "kestrel/app/web_server/console_options.h"
 #include "kestrel/vision/pipeline/landing_pipeline.h"
 
 namespace kestrel {

@@ -8,8 +8,8 @@
 
 #include "kestrel/app/cli/interrupt.h"
 #include "kestrel/app/cli/page_links.h"
-#include "kestrel/app/console/study_console.h"
-#include "kestrel/app/console/study_results.h"
+#include "kestrel/app/console/study/study_console.h"
+#include "kestrel/app/console/study/study_results.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/options.h"
 

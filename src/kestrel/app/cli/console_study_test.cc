@@ -2,8 +2,8 @@
 #include <string>
 
 #include "kestrel/app/cli/test_running_command.h"
-#include "kestrel/app/console/test_browser.h"
-#include "kestrel/app/console/test_study.h"
+#include "kestrel/app/console/study/test_study.h"
+#include "kestrel/app/web_server/test_browser.h"
 
 namespace kestrel {
 namespace {

@@ -20,10 +20,10 @@
 #include "kestrel/io/bags/bag_writer.h"
 #include "kestrel/io/bags/recording_sink.h"
 #include "kestrel/io/bags/source_calibration.h"
-#include "kestrel/io/recording/euroc_layout.h"
-#include "kestrel/io/recording/euroc_recording.h"
-#include "kestrel/io/recording/file_kind.h"
+#include "kestrel/io/recording/euroc/euroc_layout.h"
+#include "kestrel/io/recording/euroc/euroc_recording.h"
 #include "kestrel/io/recording/frame_source.h"
+#include "kestrel/io/recording/media/file_kind.h"
 
 namespace kestrel {
 namespace {

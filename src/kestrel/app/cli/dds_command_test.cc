@@ -7,8 +7,8 @@
 #include "kestrel/comms/dds/test_dds.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/flight/ros/test_ros2_system.h"
-#include "kestrel/io/bags/result_messages.h"
-#include "kestrel/io/bags/serialization.h"
+#include "kestrel/io/ros_messages/result_messages.h"
+#include "kestrel/io/ros_messages/serialization.h"
 
 namespace kestrel {
 namespace {
@@ -54,7 +54,7 @@ TEST_F(DdsCommandTest, LandTellsRos2WhatItFinds) {
     EXPECT_THAT(rows, HasSubstr(fmt::format(",{},1,", ToNanoseconds(message.header.stamp))));
     EXPECT_EQ(message.header.frame_id, "camera_optical_frame");
     EXPECT_EQ(message.detections.size(), 1u);
-    EXPECT_EQ(message.detections.at(0).results.at(0).class_id, "landing_pattern");
+    EXPECT_EQ(message.detections.at(0).results.at(0).hypothesis.class_id, "landing_pattern");
   }
   EXPECT_EQ(heard.at("/pad/target_pose").size(), 10u);
   EXPECT_EQ(heard.at("/pad/markers").size(), 10u);

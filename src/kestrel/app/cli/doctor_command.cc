@@ -26,8 +26,8 @@
 #include "kestrel/flight/doctor/check_list.h"
 #include "kestrel/flight/doctor/computer_checks.h"
 #include "kestrel/flight/doctor/examination.h"
-#include "kestrel/flight/doctor/explanation.h"
 #include "kestrel/flight/doctor/finding.h"
+#include "kestrel/simulation/autopilot_rules/explanation.h"
 #include "kestrel/vision/targets/make_target_detector.h"
 
 namespace kestrel {

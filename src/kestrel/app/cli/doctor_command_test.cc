@@ -8,7 +8,7 @@
 #include "kestrel/app/cli/test_command.h"
 #include "kestrel/core/camera/paper_camera.h"
 #include "kestrel/core/geometry/angles.h"
-#include "kestrel/io/recording/euroc_text.h"
+#include "kestrel/io/recording/euroc/euroc_text.h"
 
 namespace kestrel {
 namespace {

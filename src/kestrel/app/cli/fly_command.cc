@@ -20,7 +20,7 @@
 #include "kestrel/app/cli/interrupt.h"
 #include "kestrel/app/cli/page_links.h"
 #include "kestrel/app/cli/terminal.h"
-#include "kestrel/app/console/flight_console.h"
+#include "kestrel/app/console/flight/flight_console.h"
 #include "kestrel/app/fly/fly_autopilot.h"
 #include "kestrel/app/fly/fly_session.h"
 #include "kestrel/app/fly/fly_source.h"

@@ -12,7 +12,7 @@
 #include "kestrel/app/cli/recorded_run.h"
 #include "kestrel/app/cli/source_arguments.h"
 #include "kestrel/app/cli/team_arguments.h"
-#include "kestrel/app/console/hunt_view.h"
+#include "kestrel/app/views/hunt_view.h"
 #include "kestrel/comms/team/team_link.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/flight/session/hunt_files.h"

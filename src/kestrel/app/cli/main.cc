@@ -11,7 +11,7 @@
 #include "kestrel/app/cli/interrupt.h"
 #include "kestrel/app/cli/terminal.h"
 #include "kestrel/app/cli/usage_error.h"
-#include "kestrel/io/recording/silence_gstreamer.h"
+#include "kestrel/io/recording/media/silence_gstreamer.h"
 #include "kestrel/version.h"
 
 namespace {

@@ -16,7 +16,7 @@
 #include "kestrel/calibration/print/print_check.h"
 #include "kestrel/calibration/print/print_measurement.h"
 #include "kestrel/core/base/error.h"
-#include "kestrel/io/recording/image_file.h"
+#include "kestrel/io/recording/media/image_file.h"
 #include "kestrel/io/recording/output_folder.h"
 #include "kestrel/vision/targets/make_target_detector.h"
 

@@ -6,10 +6,10 @@
 #include <variant>
 
 #include "kestrel/app/cli/source_arguments.h"
-#include "kestrel/app/console/hunt_view.h"
-#include "kestrel/app/console/landing_view.h"
 #include "kestrel/app/foxglove/mcap_sink.h"
 #include "kestrel/app/options/kestrel_options.h"
+#include "kestrel/app/views/hunt_view.h"
+#include "kestrel/app/views/landing_view.h"
 #include "kestrel/flight/session/observation_sinks.h"
 #include "kestrel/flight/session/vision.h"
 #include "kestrel/io/bags/open_recording.h"

@@ -5,7 +5,7 @@
 #include <system_error>
 
 #include "kestrel/core/base/error.h"
-#include "kestrel/io/recording/euroc_recording.h"
+#include "kestrel/io/recording/euroc/euroc_recording.h"
 
 namespace kestrel {
 namespace {

@@ -17,7 +17,7 @@
 #include "kestrel/app/cli/simulate_arguments.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/options.h"
-#include "kestrel/io/recording/recording_place.h"
+#include "kestrel/io/recording/euroc/recording_place.h"
 #include "kestrel/simulation/recordings/hunt_simulation.h"
 #include "kestrel/simulation/recordings/landing_simulation.h"
 #include "kestrel/simulation/recordings/recording_plan.h"

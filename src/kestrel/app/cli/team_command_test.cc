@@ -13,9 +13,9 @@
 #include "kestrel/app/cli/test_command.h"
 #include "kestrel/comms/dds/ros2_node.h"
 #include "kestrel/comms/dds/test_dds.h"
-#include "kestrel/io/bags/result_messages.h"
-#include "kestrel/io/bags/serialization.h"
 #include "kestrel/io/recording/test_files.h"
+#include "kestrel/io/ros_messages/result_messages.h"
+#include "kestrel/io/ros_messages/serialization.h"
 #include "kestrel/vision/objects/test_objects.h"
 
 namespace kestrel {
@@ -150,9 +150,10 @@ TEST_F(TeamCommandTest, TheTeamsMapIsToldToRos2) {
   const auto map = ParseMessage<Detection3DArrayMessage>(heard[0], WireFormat::kCdr, "heard");
   EXPECT_EQ(map.header.frame_id, "map");
   ASSERT_EQ(map.detections.size(), 12u);
-  EXPECT_EQ(std::count_if(map.detections.begin(), map.detections.end(),
-                          [](const auto& one) { return one.results.at(0).class_id == "red"; }),
-            4);
+  EXPECT_EQ(
+      std::count_if(map.detections.begin(), map.detections.end(),
+                    [](const auto& one) { return one.results.at(0).hypothesis.class_id == "red"; }),
+      4);
   const auto markers = ParseMessage<MarkerArrayMessage>(heard[1], WireFormat::kCdr, "heard");
   EXPECT_EQ(markers.markers.size(), 25u);  // two per object, one that deletes the others
 }

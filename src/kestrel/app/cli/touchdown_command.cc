@@ -16,8 +16,8 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/options.h"
 #include "kestrel/flight/session/landing_files.h"
+#include "kestrel/io/recording/euroc/recording_writer.h"
 #include "kestrel/io/recording/output_folder.h"
-#include "kestrel/io/recording/recording_writer.h"
 #include "kestrel/simulation/recordings/landing_simulation.h"
 #include "kestrel/simulation/recordings/touchdown_simulation.h"
 

@@ -3,7 +3,8 @@
 
 #include <utility>
 
-#include "kestrel/app/console/console_json.h"
+#include "kestrel/app/console/messages/console_json.h"
+#include "kestrel/core/base/bytes.h"
 
 namespace kestrel {
 
@@ -86,10 +87,7 @@ SharedMessage ImageChannel::Encode(const ConsoleFrame& frame, std::size_t view, 
       description.is_live ? std::optional<Duration>(now - frame.captured) : std::nullopt;
   const std::string text = FrameJson(frame, drawn ? drawn->name : "", age);
   auto message = std::make_shared<std::string>();
-  for (int shift = 0; shift < 32; shift += 8) {
-    message->push_back(static_cast<char>(text.size() >> shift & 0xFF));
-  }
-  *message += text;
+  PutText(text, message.get());
   if (!encoder_.Append(drawn ? drawn->draw(frame.image) : frame.image, message.get())) {
     return nullptr;
   }

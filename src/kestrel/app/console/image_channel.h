@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "kestrel/app/console/console_feed.h"
+#include "kestrel/app/console/messages/console_feed.h"
 #include "kestrel/app/console/telemetry_channel.h"
 #include "kestrel/core/codec/jpeg_codec.h"
 

@@ -4,13 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <memory>
-#include <string>
+#include <utility>
+
+#include "kestrel/app/web_server/live_page.h"
 
 namespace kestrel {
-
-// A message as it is sent, shared by all clients that get it.
-using SharedMessage = std::shared_ptr<const std::string>;
 
 // The queue of messages for one client. When it is full the oldest is dropped. Used by one thread.
 class TelemetryChannel {

@@ -9,8 +9,8 @@
 #include "kestrel/app/evaluation/object_results.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/read_file.h"
-#include "kestrel/io/recording/csv_columns.h"
-#include "kestrel/io/recording/csv_table.h"
+#include "kestrel/io/recording/tables/csv_columns.h"
+#include "kestrel/io/recording/tables/csv_table.h"
 
 namespace kestrel {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/test_folder.h"
-#include "kestrel/io/recording/object_csv.h"
+#include "kestrel/io/recording/tables/object_csv.h"
 
 namespace kestrel {
 namespace {

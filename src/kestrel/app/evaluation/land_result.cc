@@ -15,8 +15,8 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/read_file.h"
 #include "kestrel/core/geometry/angles.h"
-#include "kestrel/io/recording/csv_table.h"
-#include "kestrel/io/recording/landing_csv.h"
+#include "kestrel/io/recording/tables/csv_table.h"
+#include "kestrel/io/recording/tables/landing_csv.h"
 
 namespace kestrel {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/app/evaluation/landing_results.h"
 
-#include "kestrel/io/recording/csv_columns.h"
+#include "kestrel/io/recording/tables/csv_columns.h"
 
 namespace kestrel {
 namespace {

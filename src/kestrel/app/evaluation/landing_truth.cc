@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "kestrel/io/recording/csv_columns.h"
+#include "kestrel/io/recording/tables/csv_columns.h"
 
 namespace kestrel {
 namespace {

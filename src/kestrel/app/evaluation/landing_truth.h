@@ -10,7 +10,7 @@
 
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/geometry/rigid_transform.h"
-#include "kestrel/io/recording/truth_rows.h"
+#include "kestrel/io/recording/euroc/truth_rows.h"
 
 namespace kestrel {
 

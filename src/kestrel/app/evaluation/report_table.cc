@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "kestrel/io/recording/csv_table.h"
+#include "kestrel/io/recording/tables/csv_table.h"
 
 namespace kestrel {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <variant>
 
-#include "kestrel/app/console/channel_feed.h"
-#include "kestrel/app/console/hunt_view.h"
-#include "kestrel/app/console/landing_view.h"
+#include "kestrel/app/views/hunt_view.h"
+#include "kestrel/app/views/landing_view.h"
+#include "kestrel/app/web_server/channel_feed.h"
 #include "kestrel/flight/session/asynchronous_sink.h"
 
 namespace kestrel {

@@ -6,7 +6,7 @@
 
 #include "kestrel/app/foxglove/foxglove_messages.h"
 #include "kestrel/core/base/error.h"
-#include "kestrel/io/bags/serialization.h"
+#include "kestrel/io/ros_messages/serialization.h"
 
 namespace kestrel {
 namespace {
@@ -64,7 +64,7 @@ TEST(ReadFoxglove, PosesAndTransforms) {
       Read<TfMessage>(ProtobufBytesOf(foxglove::FrameTransforms{{transform, transform}}));
   ASSERT_EQ(tf.transforms.size(), 2u);
   EXPECT_EQ(tf.transforms[1].child_frame_id, "base_link");
-  EXPECT_EQ(tf.transforms[1].transform.position.x, 1);
+  EXPECT_EQ(tf.transforms[1].transform.translation.x, 1);
 }
 
 TEST(ReadFoxglove, RefusesWhatIsBroken) {

@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "kestrel/app/console/hunt_view.h"
-#include "kestrel/app/console/landing_view.h"
 #include "kestrel/app/foxglove/observation_file.h"
+#include "kestrel/app/views/hunt_view.h"
+#include "kestrel/app/views/landing_view.h"
 
 namespace kestrel {
 namespace {

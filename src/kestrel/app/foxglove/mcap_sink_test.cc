@@ -11,10 +11,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "kestrel/app/console/hunt_view.h"
-#include "kestrel/app/console/landing_view.h"
 #include "kestrel/app/foxglove/test_observations.h"
 #include "kestrel/app/foxglove/test_protobuf.h"
+#include "kestrel/app/views/hunt_view.h"
+#include "kestrel/app/views/landing_view.h"
 #include "kestrel/core/base/test_folder.h"
 #include "kestrel/io/bags/mcap_reader.h"
 

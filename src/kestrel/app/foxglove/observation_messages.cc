@@ -11,7 +11,7 @@
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
-#include "kestrel/io/bags/camera_info.h"
+#include "kestrel/io/ros_messages/camera_info.h"
 
 namespace kestrel {
 namespace {
@@ -279,7 +279,7 @@ foxglove::SceneUpdate FoxgloveScene(const HuntView& view, const HuntObservation&
 }
 
 foxglove::FrameResult FoxgloveResult(const LandingObservation& observation) {
-  const ConsoleStatus status = LandingStatus(observation);
+  const ViewStatus status = LandingStatus(observation);
   foxglove::FrameResult result;
   result.timestamp = observation.time;
   result.detect_ms = 1e3 * ToSeconds(observation.detect_time);
@@ -293,7 +293,7 @@ foxglove::FrameResult FoxgloveResult(const LandingObservation& observation) {
 }
 
 foxglove::FrameResult FoxgloveResult(const HuntView& view, const HuntObservation& observation) {
-  const ConsoleStatus status = HuntStatus(observation);
+  const ViewStatus status = HuntStatus(observation);
   foxglove::FrameResult result;
   result.timestamp = observation.time;
   result.detect_ms = 1e3 * ToSeconds(observation.detect_time);

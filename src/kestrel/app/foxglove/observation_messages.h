@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "kestrel/app/console/hunt_view.h"
-#include "kestrel/app/console/landing_view.h"
 #include "kestrel/app/foxglove/foxglove_messages.h"
+#include "kestrel/app/views/hunt_view.h"
+#include "kestrel/app/views/landing_view.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/core/geometry/rigid_transform.h"

@@ -5,12 +5,12 @@
 #include <string>
 #include <variant>
 
-#include "kestrel/app/console/console_feed.h"
-#include "kestrel/app/console/hunt_view.h"
-#include "kestrel/app/console/landing_view.h"
 #include "kestrel/app/foxglove/camera_writer.h"
 #include "kestrel/app/foxglove/foxglove_messages.h"
 #include "kestrel/app/foxglove/foxglove_sink.h"
+#include "kestrel/app/views/hunt_view.h"
+#include "kestrel/app/views/landing_view.h"
+#include "kestrel/app/views/view_data.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/core/geometry/rigid_transform.h"

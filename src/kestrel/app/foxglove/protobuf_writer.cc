@@ -18,16 +18,9 @@ DurationMessage DurationOf(Duration duration) {
   return {duration.count() / kSecond_ns, static_cast<int>(duration.count() % kSecond_ns)};
 }
 
-// Seven bits per byte, the lowest first; the eighth bit is set in all bytes but the last.
-void ProtobufWriter::PutVarint(std::uint64_t value) {
-  constexpr std::uint64_t kMore = 0x80;
-  for (; value >= kMore; value >>= 7) *bytes_ += static_cast<char>(value | kMore);
-  *bytes_ += static_cast<char>(value);
-}
-
 void ProtobufWriter::PutBlock(int number, std::string_view content) {
   PutTag(number, kBlock);
-  PutVarint(content.size());
+  PutVarint(content.size(), bytes_);
   bytes_->append(content);
 }
 

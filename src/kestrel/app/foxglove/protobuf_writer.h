@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -11,11 +10,10 @@
 #include <type_traits>
 #include <vector>
 
+#include "kestrel/core/base/bytes.h"
 #include "kestrel/core/base/time.h"
 
 namespace kestrel {
-
-static_assert(std::endian::native == std::endian::little, "protobuf is little-endian");
 
 // Writes messages in protobuf's wire format (protobuf.dev/programming-guides/encoding). A message
 // lists its fields once, with their numbers, by
@@ -72,15 +70,15 @@ class ProtobufWriter {
 
   void operator()(int number, const char*, double value) {
     PutTag(number, kFixed64);
-    PutRaw(value);
+    Put(value, bytes_);
   }
   void operator()(int number, const char*, std::uint32_t value) {
     PutTag(number, kFixed32);
-    PutRaw(value);
+    Put(value, bytes_);
   }
   void operator()(int number, const char*, std::int64_t value) {
     PutTag(number, kVarint);
-    PutVarint(static_cast<std::uint64_t>(value));
+    PutVarint(static_cast<std::uint64_t>(value), bytes_);
   }
   void operator()(int number, const char* name, int value) {
     (*this)(number, name, static_cast<std::int64_t>(value));
@@ -133,15 +131,10 @@ class ProtobufWriter {
   enum WireType : std::uint32_t { kVarint = 0, kFixed64 = 1, kBlock = 2, kFixed32 = 5 };
 
   void PutTag(int number, WireType type) {
-    PutVarint((static_cast<std::uint32_t>(number) << 3) | type);
+    PutVarint((static_cast<std::uint32_t>(number) << 3) | type, bytes_);
   }
-  void PutVarint(std::uint64_t value);
   void PutBlock(int number, std::string_view content);
   void PutDoubles(int number, const double* values, std::size_t count);
-  template <class Number>
-  void PutRaw(Number number) {
-    bytes_->append(reinterpret_cast<const char*>(&number), sizeof(number));
-  }
 
   std::string* bytes_;
 };

@@ -5,7 +5,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "kestrel/app/console/landing_view.h"
+#include "kestrel/app/views/landing_view.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/io/recording/frame.h"

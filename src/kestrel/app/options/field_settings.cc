@@ -10,9 +10,9 @@
 #include "kestrel/app/options/config_file.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/options.h"
+#include "kestrel/io/recording/media/video_device.h"
+#include "kestrel/io/recording/media/video_source.h"
 #include "kestrel/io/recording/open_source.h"
-#include "kestrel/io/recording/video_device.h"
-#include "kestrel/io/recording/video_source.h"
 #include "kestrel/vision/targets/make_target_detector.h"
 
 namespace kestrel {

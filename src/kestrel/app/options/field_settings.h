@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "kestrel/app/console/settings_state.h"
+#include "kestrel/app/console/messages/settings_state.h"
 #include "kestrel/app/options/kestrel_options.h"
 #include "kestrel/flight/session/flight_report.h"
 

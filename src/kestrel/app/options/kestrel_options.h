@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "kestrel/app/console/console_options.h"
 #include "kestrel/app/options/fly_options.h"
+#include "kestrel/app/web_server/console_options.h"
 #include "kestrel/comms/team/team_link.h"
 #include "kestrel/flight/ros/dds_options.h"
 #include "kestrel/vision/pipeline/hunt_pipeline.h"

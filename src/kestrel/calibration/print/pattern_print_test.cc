@@ -15,7 +15,7 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/geometry/angles.h"
-#include "kestrel/io/recording/image_file.h"
+#include "kestrel/io/recording/media/image_file.h"
 #include "kestrel/io/recording/test_files.h"
 #include "kestrel/vision/landing/landing_pattern.h"
 

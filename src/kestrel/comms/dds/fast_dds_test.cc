@@ -15,9 +15,10 @@
 #include "kestrel/comms/dds/ros2_node.h"
 #include "kestrel/comms/dds/test_dds.h"
 #include "kestrel/comms/dds/test_fast_dds.h"
-#include "kestrel/io/bags/result_messages.h"
-#include "kestrel/io/bags/serialization.h"
-#include "kestrel/io/bags/type_hash.h"
+#include "kestrel/io/ros_messages/message_definitions.h"
+#include "kestrel/io/ros_messages/node_messages.h"
+#include "kestrel/io/ros_messages/result_messages.h"
+#include "kestrel/io/ros_messages/serialization.h"
 
 namespace kestrel {
 namespace {
@@ -46,8 +47,8 @@ OdometryMessage SomeOdometry() {
   OdometryMessage message;
   message.header = {0, TimeFromNanoseconds(1'700'000'000'123'456'789), "map"};
   message.child_frame_id = "target";
-  message.pose.position = {1, 2, 3};
-  message.pose_covariance[35] = 0.25;
+  message.pose.pose.position = {1, 2, 3};
+  message.pose.covariance[35] = 0.25;
   return message;
 }
 
@@ -106,8 +107,34 @@ std::string GidHeard(const FastParticipant& peer, const std::string& topic) {
   return gid;
 }
 
-// ParticipantEntitiesInfo, field by field, as Iron and later, and as Humble have it. The Gids are
-// those by which the other side knows the endpoints; for Humble zeros fill them up to 24 bytes.
+template <std::size_t kSize>
+void ExpectGid(const GidMessage<kSize>& gid, const FastParticipant& peer,
+               const std::string& topic) {
+  const std::string heard = GidHeard(peer, topic);
+  EXPECT_EQ(heard.size(), kGidSize) << topic;
+  EXPECT_EQ(std::string(gid.data.begin(), gid.data.end()),
+            heard + std::string(kSize - heard.size(), '\0'))
+      << topic;
+}
+
+// The Gids are those by which the other side knows the endpoints; for Humble zeros fill them up.
+template <std::size_t kSize>
+void ExpectListed(const std::string& bytes, const FastParticipant& peer) {
+  const auto info =
+      ParseMessage<ParticipantEntitiesMessage<kSize>>(bytes, WireFormat::kCdr, "info");
+  ExpectGid(info.participant, peer, "");
+  ASSERT_EQ(info.nodes.size(), 1u);
+  const NodeEntitiesMessage<kSize>& node = info.nodes[0];
+  EXPECT_EQ(node.name_space, "/");
+  EXPECT_EQ(node.name, "eyes");
+  ASSERT_EQ(node.readers.size(), 2u);
+  ExpectGid(node.readers[0], peer, "rt/b");
+  ExpectGid(node.readers[1], peer, "rt/c");
+  ASSERT_EQ(node.writers.size(), 1u);
+  ExpectGid(node.writers[0], peer, "rt/a");
+}
+
+// As Iron and later, and as Humble have it.
 TEST(FastDds, ListsTheNode) {
   for (const bool is_humble : {false, true}) {
     const int domain = TestDomain();
@@ -118,32 +145,11 @@ TEST(FastDds, ListsTheNode) {
     FastParticipant peer(domain);
     const std::string bytes = Hear(peer.Read(
         "ros_discovery_info", "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_", kKept));
-    const std::string name = "info";
-    WireReader wire(bytes, WireFormat::kCdr, name);
-    const auto expect_gid = [&](const std::string& topic) {
-      const std::string heard = GidHeard(peer, topic);
-      EXPECT_EQ(heard.size(), 16u) << topic;
-      std::string read(is_humble ? 24 : 16, '\xff');
-      for (char& byte : read) wire(byte);
-      EXPECT_EQ(read, heard + std::string(read.size() - heard.size(), '\0')) << topic;
-    };
-    const auto expect_count = [&](std::uint32_t expected) {
-      std::uint32_t number = 0;
-      wire(number);
-      EXPECT_EQ(number, expected);
-    };
-    expect_gid("");
-    expect_count(1);
-    std::string name_space, node_name;
-    wire(name_space);
-    wire(node_name);
-    EXPECT_EQ(name_space, "/");
-    EXPECT_EQ(node_name, "eyes");
-    expect_count(2);
-    expect_gid("rt/b");
-    expect_gid("rt/c");
-    expect_count(1);
-    expect_gid("rt/a");
+    if (is_humble) {
+      ExpectListed<kHumbleGidSize>(bytes, peer);
+    } else {
+      ExpectListed<kGidSize>(bytes, peer);
+    }
   }
 }
 

@@ -44,7 +44,7 @@ std::size_t Ros2Node::Subscribe(const std::string& /*topic*/, std::string_view /
 
 void Ros2Node::Take(Duration /*timeout*/, const TakeMessage& /*take*/) {}
 
-std::vector<BagTopic> Ros2Node::Topics() const { return {}; }
+std::vector<RosTopic> Ros2Node::Topics() const { return {}; }
 
 struct TeamTopic::Entities {};
 

@@ -2,7 +2,6 @@
 #include "kestrel/comms/dds/ros2_node.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <cstring>
 #include <dds/dds.h>
@@ -16,14 +15,15 @@
 #include "kestrel/comms/dds/dds_domain.h"
 #include "kestrel/comms/dds/opened_domain.h"
 #include "kestrel/core/base/error.h"
-#include "kestrel/io/bags/serialization.h"
-#include "kestrel/io/bags/type_hash.h"
+#include "kestrel/io/ros_messages/message_definitions.h"
+#include "kestrel/io/ros_messages/node_messages.h"
+#include "kestrel/io/ros_messages/serialization.h"
 #include "ros2_types.h"
 
 namespace kestrel {
 namespace {
 
-constexpr char kDiscoveryInfo[] = "rmw_dds_common/ParticipantEntitiesInfo";
+constexpr std::string_view kDiscoveryInfo = ParticipantEntitiesMessage<kGidSize>::kType;
 constexpr std::string_view kTypeMiddle = "::msg::dds_::";
 constexpr std::string_view kTopicPrefix = "rt/";
 
@@ -84,7 +84,7 @@ QosPointer MakeQos(const Ros2Qos& qos, const std::string& user_data) {
 // The type of the same name as in Humble.
 const dds_topic_descriptor_t& HumbleInfo() {
   static const dds_topic_descriptor_t kType = [] {
-    dds_topic_descriptor_t type = rmw_dds_common_humble_dds__ParticipantEntitiesInfo__desc;
+    dds_topic_descriptor_t type = rmw_dds_common_humble_msg_dds__ParticipantEntitiesInfo__desc;
     type.m_typename = rmw_dds_common_msg_dds__ParticipantEntitiesInfo__desc.m_typename;
     return type;
   }();
@@ -94,6 +94,14 @@ const dds_topic_descriptor_t& HumbleInfo() {
 const dds_topic_descriptor_t* KnownType(std::string_view type) {
   if (const auto* const known = DescriptorOf(type)) return known;
   throw InputError(fmt::format("the type {} is not spoken over DDS", type));
+}
+
+// Bytes beyond those of DDS are zeros.
+template <std::size_t kSize>
+GidMessage<kSize> GidMessageOf(const dds_guid_t& guid) {
+  GidMessage<kSize> message;
+  std::copy(std::begin(guid.v), std::end(guid.v), message.data.begin());
+  return message;
 }
 
 // Returns "rt/tf" for "/tf" and "tf".
@@ -106,38 +114,12 @@ std::string HashOf(std::string_view type) { return fmt::format("typehash={};", T
 }  // namespace
 
 struct Ros2Node::Entities {
-  // Lists this node's publishers and subscribers for others: a ParticipantEntitiesInfo with one
-  // node.
-  struct GidMessage {
-    dds_guid_t guid{};
-    bool is_humble = false;  // 24 bytes, the last of them zeros
-
-    template <class Self, class Wire>
-    static void Fields(Self& self, Wire& wire) {
-      for (const std::uint8_t byte : self.guid.v) wire(byte);
-      constexpr std::array<std::uint8_t, 8> kRest{};
-      if (!self.is_humble) return;
-      for (const std::uint8_t byte : kRest) wire(byte);
-    }
-  };
-
-  struct NodeInfoMessage {
-    GidMessage participant;
-    std::string name_space = "/";
+  // Lists a node's publishers and subscribers for others.
+  struct NodeInfo {
     std::string name;
-    std::vector<GidMessage> readers;
-    std::vector<GidMessage> writers;
-
-    template <class Self, class Wire>
-    static void Fields(Self& self, Wire& wire) {
-      constexpr std::uint32_t kNodes = 1;
-      wire(self.participant);
-      wire(kNodes);
-      wire(self.name_space);
-      wire(self.name);
-      wire.List(self.readers);
-      wire.List(self.writers);
-    }
+    dds_guid_t participant{};
+    std::vector<dds_guid_t> readers;
+    std::vector<dds_guid_t> writers;
   };
 
   // Deletes all its entities, too.
@@ -169,7 +151,7 @@ struct Ros2Node::Entities {
     discovery = Require(
         dds_create_reader(participant.id, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr),
         "reader");
-    info.participant = GidOf(participant.id);
+    info.participant = GuidOf(participant.id);
     info.name = options.name;
     const dds_topic_descriptor_t* const type =
         options.is_humble ? &HumbleInfo() : DescriptorOf(kDiscoveryInfo);
@@ -195,14 +177,28 @@ struct Ros2Node::Entities {
                    "writer");
   }
 
-  GidMessage GidOf(dds_entity_t entity) const {
-    GidMessage gid{{}, options.is_humble};
-    dds_get_guid(entity, &gid.guid);
-    return gid;
+  static dds_guid_t GuidOf(dds_entity_t entity) {
+    dds_guid_t guid{};
+    dds_get_guid(entity, &guid);
+    return guid;
+  }
+
+  template <std::size_t kSize>
+  static std::string BytesOf(const NodeInfo& info) {
+    ParticipantEntitiesMessage<kSize> message{GidMessageOf<kSize>(info.participant), {}};
+    auto& node = message.nodes.emplace_back();
+    node.name_space.push_back('/');
+    node.name.assign(info.name);
+    for (const dds_guid_t& reader : info.readers)
+      node.readers.push_back(GidMessageOf<kSize>(reader));
+    for (const dds_guid_t& writer : info.writers)
+      node.writers.push_back(GidMessageOf<kSize>(writer));
+    return SerializeMessage(message, WireFormat::kCdr);
   }
 
   void TellInfo() const {
-    static_cast<void>(Publish(info_publisher, SerializeMessage(info, WireFormat::kCdr)));
+    static_cast<void>(Publish(info_publisher, options.is_humble ? BytesOf<kHumbleGidSize>(info)
+                                                                : BytesOf<kGidSize>(info)));
   }
 
   static bool Publish(const Publisher& publisher, std::string_view bytes) {
@@ -216,7 +212,7 @@ struct Ros2Node::Entities {
   dds_entity_t waitset = 0;
   dds_entity_t discovery = 0;  // receives what others publish
   Publisher info_publisher{};
-  NodeInfoMessage info;
+  NodeInfo info;
   std::vector<Publisher> publishers;
   std::vector<dds_entity_t> subscribers;
 };
@@ -233,7 +229,7 @@ std::size_t Ros2Node::Advertise(const std::string& topic, std::string_view type,
   const dds_topic_descriptor_t* const known = KnownType(type);
   const dds_entity_t writer = entities_->Write(DdsTopicName(topic), known, qos, type);
   entities_->publishers.push_back({writer, known});
-  entities_->info.writers.push_back(entities_->GidOf(writer));
+  entities_->info.writers.push_back(Entities::GuidOf(writer));
   entities_->TellInfo();
   return entities_->publishers.size() - 1;
 }
@@ -267,7 +263,7 @@ std::size_t Ros2Node::Subscribe(const std::string& topic, std::string_view type,
                                         static_cast<dds_attach_t>(entities_->subscribers.size())),
                      "waiting for messages");
   entities_->subscribers.push_back(reader);
-  entities_->info.readers.push_back(entities_->GidOf(reader));
+  entities_->info.readers.push_back(Entities::GuidOf(reader));
   entities_->TellInfo();
   return entities_->subscribers.size() - 1;
 }
@@ -279,7 +275,7 @@ void Ros2Node::Take(Duration timeout, const TakeMessage& take) {
   }
 }
 
-std::vector<BagTopic> Ros2Node::Topics() const {
+std::vector<RosTopic> Ros2Node::Topics() const {
   constexpr std::size_t kMost = 1024;
   std::vector<void*> samples(kMost, nullptr);
   std::vector<dds_sample_info_t> infos(kMost);
@@ -289,7 +285,7 @@ std::vector<BagTopic> Ros2Node::Topics() const {
                     DDS_ANY_SAMPLE_STATE | DDS_ANY_VIEW_STATE | DDS_ALIVE_INSTANCE_STATE);
   for (int i = 0; i < count; ++i) {
     const auto* const endpoint = static_cast<const dds_builtintopic_endpoint_t*>(samples[i]);
-    const bool is_own = std::memcmp(endpoint->participant_key.v, entities_->info.participant.guid.v,
+    const bool is_own = std::memcmp(endpoint->participant_key.v, entities_->info.participant.v,
                                     sizeof(dds_guid_t)) == 0;
     const std::string_view name = infos[i].valid_data ? endpoint->topic_name : "";
     if (is_own || !name.starts_with(kTopicPrefix)) continue;
@@ -298,7 +294,7 @@ std::vector<BagTopic> Ros2Node::Topics() const {
     types.emplace(PlainTopicName(name.substr(kTopicPrefix.size() - 1)), *type);
   }
   if (count > 0) dds_return_loan(entities_->discovery, samples.data(), count);
-  std::vector<BagTopic> topics;
+  std::vector<RosTopic> topics;
   for (const auto& [name, type] : types) topics.push_back({name, type, WireFormat::kCdr, {}});
   return topics;
 }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "kestrel/core/base/time.h"
-#include "kestrel/io/bags/bag_reader.h"
+#include "kestrel/io/ros_messages/topic.h"
 
 namespace kestrel {
 
@@ -68,7 +68,7 @@ class Ros2Node {
 
   // Returns the topics of ROS that others publish, each name and type once, in the order of names.
   // They are complete only a moment after the node has begun.
-  std::vector<BagTopic> Topics() const;
+  std::vector<RosTopic> Topics() const;
 
  private:
   struct Entities;

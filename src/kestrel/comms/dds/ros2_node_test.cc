@@ -11,9 +11,9 @@
 
 #include "kestrel/comms/dds/test_dds.h"
 #include "kestrel/core/base/error.h"
-#include "kestrel/io/bags/result_messages.h"
-#include "kestrel/io/bags/serialization.h"
-#include "kestrel/io/bags/tag_messages.h"
+#include "kestrel/io/ros_messages/result_messages.h"
+#include "kestrel/io/ros_messages/serialization.h"
+#include "kestrel/io/ros_messages/tag_messages.h"
 
 namespace kestrel {
 namespace {
@@ -33,15 +33,15 @@ std::string BytesOf(const Message& message) {
 std::vector<std::pair<std::string_view, std::string>> SomeMessages() {
   const HeaderMessage header{0, TimeFromNanoseconds(1'700'000'000'123'456'789), "camera"};
   const PoseMessage pose{{1, 2, 3}, {0, 0.6, 0, 0.8}};
-  PoseWithCovarianceStampedMessage target{header, pose, {}};
-  target.covariance[7] = 0.25;
-  OdometryMessage odometry{header, "target", pose, {}, {{4, 5, 6}, {7, 8, 9}}, {}};
-  odometry.twist_covariance[35] = 1e-3;
+  PoseWithCovarianceStampedMessage target{header, {pose, {}}};
+  target.pose.covariance[7] = 0.25;
+  OdometryMessage odometry{header, "target", {pose, {}}, {{{4, 5, 6}, {7, 8, 9}}, {}}};
+  odometry.twist.covariance[35] = 1e-3;
   Detection3DArrayMessage detections;
   detections.header = header;
   Detection3DMessage& detection = detections.detections.emplace_back();
   detection.id = "17";
-  detection.results.push_back({"red", 0.9, pose, {}});
+  detection.results.push_back({{"red", 0.9}, {pose, {}}});
   MarkerArrayMessage markers;
   MarkerMessage& marker = markers.markers.emplace_back();
   marker.points = {{1, 2, 3}, {4, 5, 6}};
@@ -54,7 +54,7 @@ std::vector<std::pair<std::string_view, std::string>> SomeMessages() {
   const PoseStampedMessage stamped{header, pose};
   const PathMessage path{header, {stamped, stamped}};
   TfMessage transforms;
-  transforms.transforms.push_back({header, "pattern", pose});
+  transforms.transforms.push_back({header, "pattern", {{1, 2, 3}, pose.orientation}});
   CameraInfoMessage info;
   info.distortion_model = "plumb_bob";
   info.d = {1, 2, 3, 4, 5};
@@ -191,7 +191,7 @@ TEST_F(Ros2NodeTest, TopicsOfOthersAreListed) {
   sender.Advertise("/odom", OdometryMessage::kType, kDefaultQos);
   Ros2Node receiver(domain_, {});
   receiver.Advertise("/own", OdometryMessage::kType, kDefaultQos);
-  std::vector<BagTopic> topics;
+  std::vector<RosTopic> topics;
   for (const Time end = Now() + kLong; topics.size() < 2 && Now() < end;) {
     topics = receiver.Topics();
   }

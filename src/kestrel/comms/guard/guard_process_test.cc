@@ -183,7 +183,7 @@ TEST_P(GuardProcessTest, AProgramThatWakesWhileTheGuardWorksDoesNotDisturbIt) {
   Start();
   AwaitDescent();
   program_->Signal(SIGSTOP);
-  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  ASSERT_TRUE(Await([&] { return IsIn(FlightMode::kHold); }));
   program_->Signal(SIGCONT);
   EXPECT_EQ(program_->Wait(), static_cast<int>(GuardState::kTookOver));
   ExpectStopped(Watch(4));

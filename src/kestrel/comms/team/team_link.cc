@@ -18,7 +18,7 @@
 #include "kestrel/comms/mavlink/signing.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/violations.h"
-#include "kestrel/io/recording/object_map_files.h"
+#include "kestrel/io/recording/tables/object_map_files.h"
 
 namespace kestrel {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "kestrel/comms/team/byte_stream.h"
+#include "kestrel/core/base/bytes.h"
 
 namespace kestrel {
 namespace {
@@ -24,27 +24,32 @@ constexpr int kStanding = 3;  // number of values in the state of a standing obj
 enum Kind : std::uint8_t { kDigest, kPart };
 enum Flag : std::uint8_t { kMayMove = 1, kHasDigits = 2, kMoves = 4, kDone = 1 };
 
-void Write(const UavKey& key, ByteWriter* out) {
-  out->Text(key.name);
-  out->Fixed(key.boot);
+using Bytes = std::vector<std::uint8_t>;
+
+void PutSingle(double value, Bytes* out) { Put(static_cast<float>(value), out); }
+
+void Write(const UavKey& key, Bytes* out) {
+  PutVarint(key.name.size(), out);
+  out->insert(out->end(), key.name.begin(), key.name.end());
+  Put(key.boot, out);
 }
 
 UavKey ReadKey(ByteReader* in) {
-  UavKey key{in->Text(kMaxNameSize), 0};
+  UavKey key{std::string(in->Bytes(in->Varint(kMaxNameSize))), 0};
   in->Require(IsUavName(key.name));
   key.boot = in->Fixed<std::uint32_t>();
   return key;
 }
 
-std::int64_t ReadId(ByteReader* in) { return static_cast<std::int64_t>(in->Whole(kMaxId)); }
+std::int64_t ReadId(ByteReader* in) { return static_cast<std::int64_t>(in->Varint(kMaxId)); }
 
 // Writes the time before 'now'; a later time cannot be written.
-void WriteAge(Time time, Time now, ByteWriter* out) {
-  out->Whole(static_cast<std::uint64_t>((now - time).count()));
+void WriteAge(Time time, Time now, Bytes* out) {
+  PutVarint(static_cast<std::uint64_t>((now - time).count()), out);
 }
 
 Time ReadAge(Time now, ByteReader* in) {
-  return now - Duration(static_cast<std::int64_t>(in->Whole(kMaxAge_ns)));
+  return now - Duration(static_cast<std::int64_t>(in->Varint(kMaxAge_ns)));
 }
 
 double ReadBounded(double value, double max, ByteReader* in) {
@@ -52,49 +57,50 @@ double ReadBounded(double value, double max, ByteReader* in) {
   return value;
 }
 
-double ReadSingle(ByteReader* in) { return ReadBounded(in->Single(), kMaxNumber, in); }
+double ReadSingle(ByteReader* in) { return ReadBounded(in->Fixed<float>(), kMaxNumber, in); }
 
 template <class Array>
 void ReadSingles(std::size_t count, Array* array, ByteReader* in) {
   for (std::size_t i = 0; i < count; ++i) (*array)[i] = ReadSingle(in);
 }
 
-void Write(const MappedObject& object, Time now, ByteWriter* out) {
+void Write(const MappedObject& object, Time now, Bytes* out) {
   const auto& digits = object.digit_log_likelihoods;
   const bool has_digits =
       std::any_of(digits.begin(), digits.end(), [](double x) { return x != 0; });
-  out->Whole(static_cast<std::uint64_t>(object.id));
-  out->Byte(static_cast<std::uint8_t>(object.shape));
-  out->Byte((object.may_move ? kMayMove : 0) | (has_digits ? kHasDigits : 0) |
-            (object.moves ? kMoves : 0));
+  PutVarint(static_cast<std::uint64_t>(object.id), out);
+  Put(static_cast<std::uint8_t>(object.shape), out);
+  Put<std::uint8_t>((object.may_move ? kMayMove : 0) | (has_digits ? kHasDigits : 0) |
+                        (object.moves ? kMoves : 0),
+                    out);
   for (const Time time : {object.first_seen, object.last_seen, object.time}) {
     WriteAge(time, now, out);
   }
-  out->Whole(static_cast<std::uint64_t>(object.detections));
-  out->Single(object.log_odds);
-  out->Single(object.color.hue_deg);
-  out->Single(object.color.saturation);
-  out->Single(object.color.value);
+  PutVarint(static_cast<std::uint64_t>(object.detections), out);
+  PutSingle(object.log_odds, out);
+  PutSingle(object.color.hue_deg, out);
+  PutSingle(object.color.saturation, out);
+  PutSingle(object.color.value, out);
   const int size = object.may_move ? MappedObject::kStateSize : kStanding;
-  if (object.may_move) out->Single(object.move_log_odds);
-  for (int i = 0; i < kStanding; ++i) out->Double(object.state[i]);
-  for (int i = kStanding; i < size; ++i) out->Single(object.state[i]);
+  if (object.may_move) PutSingle(object.move_log_odds, out);
+  for (int i = 0; i < kStanding; ++i) Put(object.state[i], out);
+  for (int i = kStanding; i < size; ++i) PutSingle(object.state[i], out);
   for (int i = 0; i < size; ++i) {
-    for (int k = i; k < size; ++k) out->Single(object.covariance(i, k));
+    for (int k = i; k < size; ++k) PutSingle(object.covariance(i, k), out);
   }
   const auto& colors = object.color_log_likelihoods;
   std::size_t count = colors.size();
   while (count > 0 && colors[count - 1] == 0) --count;
-  out->Byte(static_cast<std::uint8_t>(count));
-  for (std::size_t i = 0; i < count; ++i) out->Single(colors[i]);
+  Put(static_cast<std::uint8_t>(count), out);
+  for (std::size_t i = 0; i < count; ++i) PutSingle(colors[i], out);
   if (!has_digits) return;
-  for (const double digit : digits) out->Single(digit);
+  for (const double digit : digits) PutSingle(digit, out);
 }
 
 void ReadState(ByteReader* in, MappedObject* object) {
   const int size = object->may_move ? MappedObject::kStateSize : kStanding;
   for (int i = 0; i < kStanding; ++i) {
-    object->state[i] = ReadBounded(in->Double(), kMaxPosition_m, in);
+    object->state[i] = ReadBounded(in->Fixed<double>(), kMaxPosition_m, in);
   }
   for (int i = kStanding; i < size; ++i) object->state[i] = ReadSingle(in);
   for (int i = 0; i < size; ++i) {
@@ -110,10 +116,10 @@ void ReadState(ByteReader* in, MappedObject* object) {
 MappedObject ReadObject(Time now, ByteReader* in) {
   MappedObject object;
   object.id = ReadId(in);
-  const std::uint8_t shape = in->Byte();
+  const std::uint8_t shape = in->Fixed<std::uint8_t>();
   in->Require(shape <= static_cast<std::uint8_t>(ObjectShape::kBar));
   object.shape = static_cast<ObjectShape>(shape);
-  const std::uint8_t flags = in->Byte();
+  const std::uint8_t flags = in->Fixed<std::uint8_t>();
   in->Require(flags <= (kMayMove | kHasDigits | kMoves));
   object.may_move = (flags & kMayMove) != 0;
   object.moves = (flags & kMoves) != 0;
@@ -122,14 +128,14 @@ MappedObject ReadObject(Time now, ByteReader* in) {
   object.last_seen = ReadAge(now, in);
   object.time = ReadAge(now, in);
   in->Require(object.first_seen <= object.last_seen);
-  object.detections = static_cast<int>(in->Whole(kMaxDetections));
+  object.detections = static_cast<int>(in->Varint(kMaxDetections));
   object.log_odds = ReadSingle(in);
   object.color.hue_deg = static_cast<float>(ReadSingle(in));
   object.color.saturation = static_cast<float>(ReadSingle(in));
   object.color.value = static_cast<float>(ReadSingle(in));
   if (object.may_move) object.move_log_odds = ReadSingle(in);
   ReadState(in, &object);
-  const std::size_t colors = in->Byte();
+  const std::size_t colors = in->Fixed<std::uint8_t>();
   if (!in->Require(colors <= object.color_log_likelihoods.size())) return object;
   ReadSingles(colors, &object.color_log_likelihoods, in);
   if ((flags & kHasDigits) != 0) {
@@ -138,43 +144,44 @@ MappedObject ReadObject(Time now, ByteReader* in) {
   return object;
 }
 
-void Write(const PartMessage& part, ByteWriter* out) {
+void Write(const PartMessage& part, Bytes* out) {
   const Contents& contents = part.contents;
   Write(part.uav, out);
-  out->Whole(static_cast<std::uint64_t>(
-      std::clamp<std::int64_t>(part.age.count(), 0, std::int64_t{kMaxAge_ns})));
-  out->Whole(contents.version);
-  out->Fixed(static_cast<std::uint64_t>(ToNanoseconds(contents.now)));
-  out->Whole(contents.objects.size());
+  PutVarint(static_cast<std::uint64_t>(
+                std::clamp<std::int64_t>(part.age.count(), 0, std::int64_t{kMaxAge_ns})),
+            out);
+  PutVarint(contents.version, out);
+  Put(static_cast<std::uint64_t>(ToNanoseconds(contents.now)), out);
+  PutVarint(contents.objects.size(), out);
   std::int64_t last_id = 0;
   for (const auto& [id, version] : contents.objects) {
-    out->Whole(static_cast<std::uint64_t>(id - last_id));
-    out->Whole(contents.version - version);
+    PutVarint(static_cast<std::uint64_t>(id - last_id), out);
+    PutVarint(contents.version - version, out);
     last_id = id;
   }
-  out->Whole(part.objects.size());
+  PutVarint(part.objects.size(), out);
   for (const MappedObject& object : part.objects) Write(object, contents.now, out);
 }
 
 PartMessage ReadPart(ByteReader* in) {
   PartMessage part;
   part.uav = ReadKey(in);
-  part.age = Duration(static_cast<std::int64_t>(in->Whole(kMaxAge_ns)));
+  part.age = Duration(static_cast<std::int64_t>(in->Varint(kMaxAge_ns)));
   Contents& contents = part.contents;
-  contents.version = in->Whole(kMaxVersion);
+  contents.version = in->Varint(kMaxVersion);
   const auto now = static_cast<std::int64_t>(in->Fixed<std::uint64_t>());
   constexpr std::int64_t kMaxNow = std::numeric_limits<std::int64_t>::max() / 2;
   in->Require(std::abs(now / 2) <= kMaxNow / 2);
   contents.now = in->has_failed() ? Time() : TimeFromNanoseconds(now);
-  const std::size_t count = in->Whole(kMaxToldObjects);
+  const std::size_t count = in->Varint(kMaxToldObjects);
   std::int64_t id = 0;
   for (std::size_t i = 0; i < count && !in->has_failed(); ++i) {
     id += ReadId(in);
     in->Require(id <= kMaxId);
-    const std::uint64_t version = contents.version - in->Whole(contents.version);
+    const std::uint64_t version = contents.version - in->Varint(contents.version);
     in->Require(contents.objects.emplace(id, version).second);
   }
-  const std::size_t objects = in->Whole(contents.objects.size());
+  const std::size_t objects = in->Varint(contents.objects.size());
   for (std::size_t i = 0; i < objects && !in->has_failed(); ++i) {
     part.objects.push_back(ReadObject(contents.now, in));
     in->Require(contents.objects.contains(part.objects.back().id));
@@ -183,44 +190,44 @@ PartMessage ReadPart(ByteReader* in) {
 }
 
 // A claim refers to the UAV by its line, because names are long.
-void Write(const Digest& digest, ByteWriter* out) {
-  out->Whole(digest.size());
+void Write(const Digest& digest, Bytes* out) {
+  PutVarint(digest.size(), out);
   for (const DigestLine& line : digest) {
     Write(line.uav, out);
-    out->Fixed(line.beat);
-    out->Whole(line.version);
-    out->Byte(static_cast<std::uint8_t>(line.tries));
-    out->Byte(line.is_done ? kDone : 0);
-    out->Whole(line.missing.size());
-    for (const std::int64_t id : line.missing) out->Whole(static_cast<std::uint64_t>(id));
+    Put(line.beat, out);
+    PutVarint(line.version, out);
+    Put(static_cast<std::uint8_t>(line.tries), out);
+    Put<std::uint8_t>(line.is_done ? kDone : 0, out);
+    PutVarint(line.missing.size(), out);
+    for (const std::int64_t id : line.missing) PutVarint(static_cast<std::uint64_t>(id), out);
     const auto claimed =
         !line.claim ? digest.end() : std::find_if(digest.begin(), digest.end(), [&](auto& other) {
           return other.uav == line.claim->object.uav;
         });
     const bool has_claim = claimed != digest.end();
-    out->Whole(has_claim ? 1 + static_cast<std::uint64_t>(claimed - digest.begin()) : 0);
+    PutVarint(has_claim ? 1 + static_cast<std::uint64_t>(claimed - digest.begin()) : 0, out);
     if (!has_claim) continue;
-    out->Whole(static_cast<std::uint64_t>(line.claim->object.id));
-    out->Single(line.claim->bid);
+    PutVarint(static_cast<std::uint64_t>(line.claim->object.id), out);
+    PutSingle(line.claim->bid, out);
   }
 }
 
 Digest ReadDigest(ByteReader* in) {
-  Digest digest(in->Whole(kMaxUavs));
+  Digest digest(in->Varint(kMaxUavs));
   std::vector<std::size_t> claimed;
   for (DigestLine& line : digest) {
     line.uav = ReadKey(in);
     line.beat = in->Fixed<std::uint32_t>();
-    line.version = in->Whole(kMaxVersion);
-    line.tries = in->Byte();
-    const std::uint8_t flags = in->Byte();
+    line.version = in->Varint(kMaxVersion);
+    line.tries = in->Fixed<std::uint8_t>();
+    const std::uint8_t flags = in->Fixed<std::uint8_t>();
     in->Require(flags <= kDone);
     line.is_done = flags == kDone;
-    const std::size_t missing = in->Whole(kMaxMissing);
+    const std::size_t missing = in->Varint(kMaxMissing);
     for (std::size_t i = 0; i < missing && !in->has_failed(); ++i) {
       line.missing.push_back(ReadId(in));
     }
-    claimed.push_back(in->Whole(digest.size()));
+    claimed.push_back(in->Varint(digest.size()));
     if (claimed.back() == 0) continue;
     const std::int64_t id = ReadId(in);
     line.claim = Claim{{{}, id}, ReadSingle(in)};
@@ -242,12 +249,12 @@ bool IsUavName(const std::string& name) {
 }
 
 std::vector<std::uint8_t> EncodeMessage(const TeamMessage& message) {
-  ByteWriter out;
-  out.Fixed(kMagic);
+  Bytes out;
+  Put(kMagic, &out);
   Write(message.sender, &out);
-  out.Byte(std::holds_alternative<Digest>(message.body) ? kDigest : kPart);
+  Put<std::uint8_t>(std::holds_alternative<Digest>(message.body) ? kDigest : kPart, &out);
   std::visit([&](const auto& body) { Write(body, &out); }, message.body);
-  return std::move(out.bytes());
+  return out;
 }
 
 std::optional<TeamMessage> ParseMessage(std::span<const std::uint8_t> bytes) {
@@ -256,21 +263,21 @@ std::optional<TeamMessage> ParseMessage(std::span<const std::uint8_t> bytes) {
   in.Require(in.Fixed<std::uint32_t>() == kMagic);
   TeamMessage message;
   message.sender = ReadKey(&in);
-  const std::uint8_t kind = in.Byte();
+  const std::uint8_t kind = in.Fixed<std::uint8_t>();
   in.Require(kind <= kPart);
   if (kind == kDigest) {
     message.body = ReadDigest(&in);
   } else {
     message.body = ReadPart(&in);
   }
-  if (in.has_failed() || !in.is_at_end()) return std::nullopt;
+  if (in.has_failed() || in.left() > 0) return std::nullopt;
   return message;
 }
 
 std::vector<std::uint8_t> EncodeObject(const MappedObject& object, Time now) {
-  ByteWriter out;
+  Bytes out;
   Write(object, now, &out);
-  return std::move(out.bytes());
+  return out;
 }
 
 std::optional<MappedObject> AsTold(const MappedObject& object, Time now) {

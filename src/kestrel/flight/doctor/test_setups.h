@@ -5,11 +5,11 @@
 #include <cmath>
 #include <string>
 
-#include "kestrel/comms/autopilot_rules/autopilot_parameters.h"
 #include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/flight/doctor/observations.h"
 #include "kestrel/flight/doctor/parameter_checks.h"
+#include "kestrel/simulation/autopilot_rules/autopilot_parameters.h"
 
 namespace kestrel {
 

@@ -88,34 +88,38 @@ TEST(RoadMemoryTest, OneThatStandsHasNoLap) {
   EXPECT_LT((road.Predict(AtSecond(60))->position - Vector2d(3, 4)).norm(), 1e-6);
 }
 
-// Flies to where the search wants it, and tells all its steps.
-std::string StepsOf(const Way& way, double driven_s, double search_s, double* nearest_m) {
+struct FlownSearch {
+  std::string steps;
+  double nearest_m = 1e9;  // to the target, later than five seconds after its loss
+};
+
+// Flies to where the search wants it.
+FlownSearch Search(const Way& way, double driven_s, double search_s) {
   const RoadMemory road = Driven(way, driven_s);
   TargetSearch search{GuidanceOptions()};
   search.StartAfterLoss(AtSecond(driven_s), road, way(driven_s));
-  std::string steps = search.step();
+  FlownSearch flown;
+  flown.steps = search.step();
   Vector2d uav = way(driven_s);
-  *nearest_m = 1e9;
   for (double s = 0; s < search_s && !search.IsOver(AtSecond(driven_s + s)); s += 0.1) {
     const std::string before = search.step();
     uav = search.Advance(AtSecond(driven_s + s), road, uav, 0.1);
-    if (search.step() != before) steps += std::string("; ") + search.step();
-    if (s > 5) *nearest_m = std::min(*nearest_m, (uav - way(driven_s + s)).norm());
+    if (search.step() != before) flown.steps += std::string("; ") + search.step();
+    if (s > 5) flown.nearest_m = std::min(flown.nearest_m, (uav - way(driven_s + s)).norm());
   }
-  return steps;
+  return flown;
 }
 
 TEST(TargetSearchTest, FollowsALapAndThenWaitsOnTheRoad) {
-  double nearest_m = 0;
-  EXPECT_THAT(StepsOf(Eight, 40, 40, &nearest_m),
+  const FlownSearch flown = Search(Eight, 40, 40);
+  EXPECT_THAT(flown.steps,
               testing::AllOf(HasSubstr("last lap"), HasSubstr("waits for the target on its road")));
-  EXPECT_LT(nearest_m, 2);
+  EXPECT_LT(flown.nearest_m, 2);
 }
 
 TEST(TargetSearchTest, FliesOnThenSearchesAround) {
-  double nearest_m = 0;
   EXPECT_THAT(
-      StepsOf(Straight, 20, 40, &nearest_m),
+      Search(Straight, 20, 40).steps,
       testing::AllOf(HasSubstr("flies on as it drove"), HasSubstr("searches around the place")));
 }
 

@@ -30,7 +30,7 @@
 #include "kestrel/flight/session/live_events.h"
 #include "kestrel/flight/session/live_source.h"
 #include "kestrel/flight/session/observation_sink.h"
-#include "kestrel/io/recording/truth_rows.h"
+#include "kestrel/io/recording/euroc/truth_rows.h"
 
 namespace kestrel {
 

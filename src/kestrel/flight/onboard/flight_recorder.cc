@@ -13,7 +13,7 @@
 #include "kestrel/core/base/options.h"
 #include "kestrel/core/base/violations.h"
 #include "kestrel/core/codec/png_codec.h"
-#include "kestrel/io/recording/recording_place.h"
+#include "kestrel/io/recording/euroc/recording_place.h"
 
 namespace kestrel {
 namespace {

@@ -25,9 +25,9 @@
 #include "kestrel/core/codec/jpeg_codec.h"
 #include "kestrel/core/poses/pose_history.h"
 #include "kestrel/flight/session/flight_report.h"
-#include "kestrel/io/recording/euroc_writer.h"
+#include "kestrel/io/recording/euroc/euroc_writer.h"
+#include "kestrel/io/recording/euroc/truth_rows.h"
 #include "kestrel/io/recording/frame.h"
-#include "kestrel/io/recording/truth_rows.h"
 
 namespace kestrel {
 

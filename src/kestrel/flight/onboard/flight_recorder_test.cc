@@ -14,9 +14,9 @@
 #include "kestrel/app/evaluation/flight_truth.h"
 #include "kestrel/app/evaluation/landing_truth.h"
 #include "kestrel/core/base/read_file.h"
-#include "kestrel/io/recording/csv_table.h"
-#include "kestrel/io/recording/euroc_recording.h"
+#include "kestrel/io/recording/euroc/euroc_recording.h"
 #include "kestrel/io/recording/open_source.h"
+#include "kestrel/io/recording/tables/csv_table.h"
 #include "kestrel/io/recording/test_files.h"
 
 namespace kestrel {

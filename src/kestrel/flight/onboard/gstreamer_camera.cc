@@ -14,8 +14,8 @@
 #include "kestrel/flight/onboard/exposure_drive.h"
 #include "kestrel/flight/onboard/gstreamer_pipeline.h"
 #include "kestrel/flight/onboard/image_pool.h"
-#include "kestrel/io/recording/video_device.h"
-#include "kestrel/io/recording/video_source.h"
+#include "kestrel/io/recording/media/video_device.h"
+#include "kestrel/io/recording/media/video_source.h"
 
 namespace kestrel {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "kestrel/core/base/time.h"
 #include "kestrel/io/recording/frame.h"
-#include "kestrel/io/recording/gstreamer.h"
+#include "kestrel/io/recording/media/gstreamer.h"
 
 namespace kestrel {
 

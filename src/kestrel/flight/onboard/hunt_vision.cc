@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "kestrel/core/base/error.h"
-#include "kestrel/io/recording/object_csv.h"
-#include "kestrel/io/recording/object_map_files.h"
+#include "kestrel/io/recording/tables/object_csv.h"
+#include "kestrel/io/recording/tables/object_map_files.h"
 
 namespace kestrel {
 namespace {

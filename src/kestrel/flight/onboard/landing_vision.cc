@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "kestrel/core/base/error.h"
-#include "kestrel/io/recording/landing_csv.h"
-#include "kestrel/io/recording/track_csv.h"
+#include "kestrel/io/recording/tables/landing_csv.h"
+#include "kestrel/io/recording/tables/track_csv.h"
 #include "kestrel/vision/pipeline/calibration_monitor.h"
 #include "kestrel/vision/pipeline/measurement_noise.h"
 #include "kestrel/vision/pipeline/pattern_area.h"

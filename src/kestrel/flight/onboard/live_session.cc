@@ -23,8 +23,8 @@
 #include "kestrel/flight/onboard/recording_switch.h"
 #include "kestrel/flight/session/autopilot_report.h"
 #include "kestrel/flight/session/observation_sinks.h"
+#include "kestrel/io/recording/euroc/truth_rows.h"
 #include "kestrel/io/recording/output_folder.h"
-#include "kestrel/io/recording/truth_rows.h"
 #include "kestrel/vision/objects/color/color_grid.h"
 
 namespace kestrel {

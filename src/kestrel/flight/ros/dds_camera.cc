@@ -13,7 +13,7 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/flight/ros/ros_results.h"
-#include "kestrel/io/bags/messages.h"
+#include "kestrel/io/ros_messages/messages.h"
 
 namespace kestrel {
 namespace {
@@ -25,7 +25,7 @@ constexpr Duration kStall = std::chrono::seconds(2);
 constexpr Ros2Qos kPosesQos{false, false, 200};
 constexpr Ros2Qos kStaticQos{true, true, 100};  // as all nodes that publish static transforms use
 
-Ros2Qos QosFor(const BagTopic& topic) {
+Ros2Qos QosFor(const RosTopic& topic) {
   if (topic.name == kStaticTfTopic) return kStaticQos;
   return IsImageType(topic.type) || topic.type == CameraInfoMessage::kType ? kSensorDataQos
                                                                            : kPosesQos;
@@ -36,10 +36,10 @@ Ros2Qos QosFor(const BagTopic& topic) {
 DdsCamera::DdsCamera(std::shared_ptr<Ros2Node> node, DdsCameraOptions options,
                      const std::function<void(const std::string&)>& tell)
     : node_(std::move(node)), options_(std::move(options)), name_("dds:" + options_.image) {
-  const std::vector<BagTopic> found = FindTopics();
+  const std::vector<RosTopic> found = FindTopics();
   std::vector<std::string> names = options_.topics;
   names.push_back(options_.image);
-  const BagTopics chosen = ChooseTopics(found, names, name_);
+  const TopicChoice chosen = ChooseTopics(found, names, name_);
   source_.emplace(TopicSourceOptions{
       .format = options_.format, .poses_by_tf = !chosen.pose, .body_frame = options_.body_frame});
   Subscribe(found, chosen);
@@ -57,7 +57,7 @@ DdsCamera::DdsCamera(std::shared_ptr<Ros2Node> node, DdsCameraOptions options,
   }
 }
 
-void DdsCamera::Subscribe(const std::vector<BagTopic>& found, const BagTopics& chosen) {
+void DdsCamera::Subscribe(const std::vector<RosTopic>& found, const TopicChoice& chosen) {
   std::vector<std::size_t> heard{chosen.image};
   if (chosen.camera_info) heard.push_back(*chosen.camera_info);
   if (chosen.pose) heard.push_back(*chosen.pose);
@@ -69,12 +69,12 @@ void DdsCamera::Subscribe(const std::vector<BagTopic>& found, const BagTopics& c
 }
 
 // Finds the image's topic, and the other topics a moment later.
-std::vector<BagTopic> DdsCamera::FindTopics() const {
+std::vector<RosTopic> DdsCamera::FindTopics() const {
   const Time end = Now() + DurationFromSeconds(options_.wait_s);
   std::optional<Time> found;
   for (;;) {
-    std::vector<BagTopic> topics = node_->Topics();
-    const bool has_image = std::any_of(topics.begin(), topics.end(), [this](const BagTopic& topic) {
+    std::vector<RosTopic> topics = node_->Topics();
+    const bool has_image = std::any_of(topics.begin(), topics.end(), [this](const RosTopic& topic) {
       return topic.name == options_.image;
     });
     const Time now = Now();
@@ -83,7 +83,7 @@ std::vector<BagTopic> DdsCamera::FindTopics() const {
     if (now >= end && !found) {
       std::vector<std::string> names;
       names.reserve(topics.size());
-      for (const BagTopic& topic : topics) names.push_back(topic.name);
+      for (const RosTopic& topic : topics) names.push_back(topic.name);
       throw InputError(fmt::format("{}: no publisher in this domain, expected one of: {}", name_,
                                    names.empty() ? "(there is no topic that can be read)"
                                                  : fmt::format("{}", fmt::join(names, ", "))));
@@ -92,14 +92,14 @@ std::vector<BagTopic> DdsCamera::FindTopics() const {
   }
 }
 
-bool DdsCamera::HasAll(const BagTopics& chosen) const {
+bool DdsCamera::HasAll(const TopicChoice& chosen) const {
   const bool asks_for_poses = chosen.pose || !chosen.transforms.empty();
   const bool needs_info = !options_.camera && chosen.camera_info;
   return source_->has_images() && (source_->has_camera_info() || !needs_info) &&
          (!asks_for_poses || (source_->has_poses() && mount()));
 }
 
-void DdsCamera::RequireAll(const BagTopics& chosen) const {
+void DdsCamera::RequireAll(const TopicChoice& chosen) const {
   if (!source_->has_images()) {
     throw InputError(error().empty() ? name_ + ": no images received" : error());
   }

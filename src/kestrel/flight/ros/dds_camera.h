@@ -12,9 +12,9 @@
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/flight/ros/topic_source.h"
 #include "kestrel/flight/session/live_source.h"
-#include "kestrel/io/bags/bag_reader.h"
-#include "kestrel/io/bags/bag_topics.h"
 #include "kestrel/io/recording/frame.h"
+#include "kestrel/io/ros_messages/topic.h"
+#include "kestrel/io/ros_messages/topic_choice.h"
 
 namespace kestrel {
 
@@ -52,16 +52,16 @@ class DdsCamera : public LiveSource {
   CaptureCounters counters() const override { return source_->counters(); }
 
  private:
-  std::vector<BagTopic> FindTopics() const;
-  void Subscribe(const std::vector<BagTopic>& found, const BagTopics& chosen);
+  std::vector<RosTopic> FindTopics() const;
+  void Subscribe(const std::vector<RosTopic>& found, const TopicChoice& chosen);
   void TakeMessages(Duration timeout);
-  bool HasAll(const BagTopics& chosen) const;
-  void RequireAll(const BagTopics& chosen) const;
+  bool HasAll(const TopicChoice& chosen) const;
+  void RequireAll(const TopicChoice& chosen) const;
 
   std::shared_ptr<Ros2Node> node_;
   DdsCameraOptions options_;
   std::string name_;                   // "dds:/camera/image_raw"
-  std::vector<BagTopic> topics_;       // the subscribed topics, in the order of their indices
+  std::vector<RosTopic> topics_;       // the subscribed topics, in the order of their indices
   std::optional<TopicSource> source_;  // once the topics are known
   std::optional<CameraCalibration> calibration_;
   bool has_poses_ = false;

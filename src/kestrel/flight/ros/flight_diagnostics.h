@@ -7,7 +7,7 @@
 #include "kestrel/core/base/time.h"
 #include "kestrel/flight/onboard/latency_statistics.h"
 #include "kestrel/flight/session/flight_report.h"
-#include "kestrel/io/bags/result_messages.h"
+#include "kestrel/io/ros_messages/result_messages.h"
 
 namespace kestrel {
 

@@ -124,13 +124,9 @@ Detection3DArrayMessage DetectionsOf(const HuntObservation& observation, const O
     const ObjectClass& found_class = model.classes[detection.class_index];
     Detection3DMessage& found = message.detections.emplace_back();
     found.header = message.header;
-    found.box_center = PoseAt(detection.location->position);
-    found.box_size = SizeOf(found_class);
-    ObjectHypothesisMessage& result = found.results.emplace_back();
-    result.class_id = found_class.name;
-    result.score = detection.class_probability;
-    result.pose = found.box_center;
-    result.covariance = CovarianceOf(detection.location->covariance);
+    found.box = {PoseAt(detection.location->position), SizeOf(found_class)};
+    found.results.push_back({{found_class.name, detection.class_probability},
+                             {found.box.center, CovarianceOf(detection.location->covariance)}});
   }
   return message;
 }
@@ -164,15 +160,12 @@ Detection3DArrayMessage TeamDetectionsOf(const TeamReport& team, const ObjectMod
     const Body body = BodyOf(object, model);
     Detection3DMessage& mapped = message.detections.emplace_back();
     mapped.header = message.header;
-    mapped.box_center = body.center;
-    mapped.box_size = body.size;
+    mapped.box = {body.center, body.size};
     mapped.id = fmt::to_string(object.id);
     if (!body.class_index) continue;
-    ObjectHypothesisMessage& result = mapped.results.emplace_back();
-    result.class_id = model.classes[*body.class_index].name;
-    result.score = 1 / (1 + std::exp(-object.log_odds));
-    result.pose = PoseAt(object.position());
-    result.covariance = CovarianceOf(object.covariance.topLeftCorner<3, 3>());
+    mapped.results.push_back(
+        {{model.classes[*body.class_index].name, 1 / (1 + std::exp(-object.log_odds))},
+         {PoseAt(object.position()), CovarianceOf(object.covariance.topLeftCorner<3, 3>())}});
   }
   return message;
 }

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "kestrel/flight/session/flight_report.h"
-#include "kestrel/io/bags/result_messages.h"
+#include "kestrel/io/ros_messages/result_messages.h"
 #include "kestrel/vision/objects/object_model.h"
 #include "kestrel/vision/pipeline/hunt_pipeline.h"
 

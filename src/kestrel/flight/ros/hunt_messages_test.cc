@@ -39,20 +39,20 @@ TEST(HuntMessages, TheTeamsMapIsOfOneTime) {
   EXPECT_EQ(object.header.stamp, kMapTime);
   EXPECT_EQ(object.id, "5");
   ASSERT_EQ(object.results.size(), 1);
-  const ObjectHypothesisMessage& result = object.results[0];
-  EXPECT_EQ(result.class_id, "red");
-  EXPECT_NEAR(result.score, 0.9, 1e-9);
-  EXPECT_EQ(result.pose.position.x, 10);
-  EXPECT_EQ(result.pose.position.y, 20);
-  EXPECT_EQ(result.pose.position.z, 0.012);
-  EXPECT_EQ(result.pose.orientation.x, 0);
-  EXPECT_EQ(result.pose.orientation.w, 1);
-  EXPECT_EQ(result.covariance[0], 0.01);
-  EXPECT_EQ(result.covariance[7], 0.04);
-  EXPECT_GT(result.covariance[35], 3) << "nothing is known of how it is turned";
+  const auto& [hypothesis, location] = object.results[0];
+  EXPECT_EQ(hypothesis.class_id, "red");
+  EXPECT_NEAR(hypothesis.score, 0.9, 1e-9);
+  EXPECT_EQ(location.pose.position.x, 10);
+  EXPECT_EQ(location.pose.position.y, 20);
+  EXPECT_EQ(location.pose.position.z, 0.012);
+  EXPECT_EQ(location.pose.orientation.x, 0);
+  EXPECT_EQ(location.pose.orientation.w, 1);
+  EXPECT_EQ(location.covariance[0], 0.01);
+  EXPECT_EQ(location.covariance[7], 0.04);
+  EXPECT_GT(location.covariance[35], 3) << "nothing is known of how it is turned";
   // The box stands on the ground.
-  EXPECT_EQ(object.box_size.x, 0.2);
-  EXPECT_NEAR(object.box_center.position.z, 0.006, 1e-12);
+  EXPECT_EQ(object.box.size.x, 0.2);
+  EXPECT_NEAR(object.box.center.position.z, 0.006, 1e-12);
 }
 
 TEST(HuntMessages, AnObjectWithoutAClassHasABoxAndNoHypothesis) {
@@ -78,7 +78,7 @@ TEST(HuntMessages, TheTeamsMarkersReplaceThoseBeforeAndSayWhoHasAnObjectAndWhoGo
   EXPECT_EQ(message.markers[4].text, "red: one two");
   for (const MarkerMessage& marker : message.markers) {
     EXPECT_EQ(marker.header.frame_id, "map");
-    EXPECT_EQ(marker.lifetime.seconds, 0);
+    EXPECT_EQ(marker.lifetime.sec, 0);
   }
 }
 

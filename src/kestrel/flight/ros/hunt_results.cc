@@ -5,7 +5,7 @@
 
 #include "kestrel/flight/ros/hunt_messages.h"
 #include "kestrel/flight/ros/landing_messages.h"
-#include "kestrel/io/recording/object_overlay.h"
+#include "kestrel/io/recording/overlays/object_overlay.h"
 
 namespace kestrel {
 

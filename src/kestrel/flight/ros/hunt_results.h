@@ -8,7 +8,7 @@
 
 #include "kestrel/flight/ros/result_connection.h"
 #include "kestrel/flight/session/flight_report.h"
-#include "kestrel/io/bags/serialization.h"
+#include "kestrel/io/ros_messages/serialization.h"
 #include "kestrel/vision/objects/object_model.h"
 #include "kestrel/vision/pipeline/hunt_pipeline.h"
 

@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "kestrel/flight/ros/message_covariance.h"
-#include "kestrel/io/bags/frame_tree.h"
+#include "kestrel/io/ros_messages/frame_tree.h"
 
 namespace kestrel {
 namespace {
@@ -21,6 +21,8 @@ constexpr double kShownSigmas = 3;
 Vector3Message MessageOf(const Eigen::Vector3d& vector) {
   return {vector.x(), vector.y(), vector.z()};
 }
+
+PointMessage PointOf(const Eigen::Vector3d& point) { return {point.x(), point.y(), point.z()}; }
 
 HeaderMessage HeaderOf(Time stamp, const std::string& frame) { return {0, stamp, frame}; }
 
@@ -69,7 +71,7 @@ MarkerMessage VelocityMarker(const LandingObservation& observation, const std::s
     return marker;
   }
   const TurnState& motion = observation.target->motion;
-  marker.points = {MessageOf(motion.position()), MessageOf(motion.position() + motion.velocity())};
+  marker.points = {PointOf(motion.position()), PointOf(motion.position() + motion.velocity())};
   marker.scale = {kShaft_m, kHead_m, 0};
   marker.color = {1, 0.6F, 0, 0.9F};
   return marker;
@@ -103,27 +105,24 @@ Detection3DArrayMessage DetectionsOf(const LandingObservation& observation,
   Detection3DMessage& found = message.detections.emplace_back();
   found.header = message.header;
   if (detection->id) found.id = std::to_string(*detection->id);
-  found.box_center = PoseMessageOf(detection->camera_from_pattern);
-  found.box_size = {shape.board_size_m, shape.board_size_m, kBoardThickness_m};
-  ObjectHypothesisMessage& result = found.results.emplace_back();
-  result.class_id = "landing_pattern";
-  result.score = detection->quality;
-  result.pose = found.box_center;
-  result.covariance = NumbersOf(detection->covariance);
+  found.box = {PoseMessageOf(detection->camera_from_pattern),
+               {shape.board_size_m, shape.board_size_m, kBoardThickness_m}};
+  found.results.push_back({{"landing_pattern", detection->quality},
+                           {found.box.center, NumbersOf(detection->covariance)}});
   return message;
 }
 
 PoseWithCovarianceStampedMessage TargetPoseOf(const LandingDetection& detection, Time stamp,
                                               const std::string& camera_frame) {
-  return {HeaderOf(stamp, camera_frame), PoseMessageOf(detection.camera_from_pattern),
-          NumbersOf(detection.covariance)};
+  return {HeaderOf(stamp, camera_frame),
+          {PoseMessageOf(detection.camera_from_pattern), NumbersOf(detection.covariance)}};
 }
 
 TfMessage PatternTransformOf(const LandingDetection& detection, Time stamp,
                              const std::string& camera_frame, const std::string& pattern_frame) {
   TfMessage message;
-  message.transforms.push_back(
-      {HeaderOf(stamp, camera_frame), pattern_frame, PoseMessageOf(detection.camera_from_pattern)});
+  message.transforms.push_back({HeaderOf(stamp, camera_frame), pattern_frame,
+                                TransformMessageOf(detection.camera_from_pattern)});
   return message;
 }
 
@@ -150,11 +149,10 @@ OdometryMessage TrackOf(const TargetEstimate& target, const std::string& world_f
   OdometryMessage message;
   message.header = HeaderOf(target.time, world_frame);
   message.child_frame_id = target_frame;
-  message.pose = PoseMessageOf(world_from_target);
-  message.pose_covariance = NumbersOf(pose);
-  message.twist.linear = MessageOf(target_from_world * motion.velocity());
-  message.twist.angular.z = motion.turn_rate();
-  message.twist_covariance = NumbersOf(twist);
+  message.pose = {PoseMessageOf(world_from_target), NumbersOf(pose)};
+  message.twist.twist.linear = MessageOf(target_from_world * motion.velocity());
+  message.twist.twist.angular.z = motion.turn_rate();
+  message.twist.covariance = NumbersOf(twist);
   return message;
 }
 

@@ -6,8 +6,8 @@
 
 #include <opencv2/core.hpp>
 
-#include "kestrel/io/bags/messages.h"
-#include "kestrel/io/bags/result_messages.h"
+#include "kestrel/io/ros_messages/messages.h"
+#include "kestrel/io/ros_messages/result_messages.h"
 #include "kestrel/vision/pipeline/landing_pipeline.h"
 #include "kestrel/vision/target/landing_detection.h"
 #include "kestrel/vision/target/target_shape.h"

@@ -27,18 +27,18 @@ TEST(LandingMessages, TheTrackIsHeadedWhereItDrives) {
   EXPECT_EQ(track.header.frame_id, "map");
   EXPECT_EQ(track.header.stamp, kTrackTime);
   EXPECT_EQ(track.child_frame_id, "target");
-  EXPECT_EQ(track.pose.position.y, 20);
-  EXPECT_NEAR(track.pose.orientation.z, std::sqrt(0.5), 1e-9);
-  EXPECT_NEAR(track.pose.orientation.w, std::sqrt(0.5), 1e-9);
-  EXPECT_NEAR(track.twist.linear.x, 2, 1e-9);
-  EXPECT_NEAR(track.twist.linear.y, 0, 1e-9);
-  EXPECT_NEAR(track.twist.angular.z, 0.3, 1e-9);
+  EXPECT_EQ(track.pose.pose.position.y, 20);
+  EXPECT_NEAR(track.pose.pose.orientation.z, std::sqrt(0.5), 1e-9);
+  EXPECT_NEAR(track.pose.pose.orientation.w, std::sqrt(0.5), 1e-9);
+  EXPECT_NEAR(track.twist.twist.linear.x, 2, 1e-9);
+  EXPECT_NEAR(track.twist.twist.linear.y, 0, 1e-9);
+  EXPECT_NEAR(track.twist.twist.angular.z, 0.3, 1e-9);
 }
 
 TEST(LandingMessages, TheTrackHasTheCovariancesOfItsFrames) {
   const OdometryMessage track = TrackOf(DrivingNorth(), "map", "target");
-  const auto pose = [&](int row, int column) { return track.pose_covariance[6 * row + column]; };
-  const auto twist = [&](int row, int column) { return track.twist_covariance[6 * row + column]; };
+  const auto pose = [&](int row, int column) { return track.pose.covariance[6 * row + column]; };
+  const auto twist = [&](int row, int column) { return track.twist.covariance[6 * row + column]; };
   EXPECT_EQ(pose(0, 0), 1);
   EXPECT_EQ(pose(2, 2), 3);
   EXPECT_GT(pose(3, 3), 3);                             // roll is not known
@@ -53,7 +53,7 @@ TEST(LandingMessages, TheTrackHasTheCovariancesOfItsFrames) {
 TEST(LandingMessages, OfATargetThatStandsTheHeadingIsNotKnown) {
   TargetEstimate target = DrivingNorth();
   target.motion.mean.segment<3>(TurnState::kVelocity).setZero();
-  EXPECT_GT(TrackOf(target, "map", "target").pose_covariance[35], 3);
+  EXPECT_GT(TrackOf(target, "map", "target").pose.covariance[35], 3);
 }
 
 TEST(LandingMessages, ADetectionSaysWhichPadItIs) {

@@ -5,7 +5,7 @@
 
 #include "kestrel/flight/ros/landing_messages.h"
 #include "kestrel/flight/ros/tag_messages.h"
-#include "kestrel/io/recording/landing_overlay.h"
+#include "kestrel/io/recording/overlays/landing_overlay.h"
 
 namespace kestrel {
 

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "kestrel/io/bags/frame_tree.h"
+#include "kestrel/io/ros_messages/frame_tree.h"
 
 namespace kestrel {
 

@@ -8,7 +8,7 @@
 
 #include "kestrel/core/geometry/rigid_transform.h"
 #include "kestrel/core/poses/pose_history.h"
-#include "kestrel/io/bags/messages.h"
+#include "kestrel/io/ros_messages/messages.h"
 
 namespace kestrel {
 

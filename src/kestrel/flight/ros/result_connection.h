@@ -7,9 +7,9 @@
 #include <string>
 #include <string_view>
 
-#include "kestrel/io/bags/messages.h"
-#include "kestrel/io/bags/result_messages.h"
-#include "kestrel/io/bags/tag_messages.h"
+#include "kestrel/io/ros_messages/messages.h"
+#include "kestrel/io/ros_messages/result_messages.h"
+#include "kestrel/io/ros_messages/tag_messages.h"
 
 namespace kestrel {
 

@@ -6,8 +6,8 @@
 #include <thread>
 #include <utility>
 
-#include "kestrel/io/bags/frame_tree.h"
-#include "kestrel/io/bags/serialization.h"
+#include "kestrel/io/ros_messages/frame_tree.h"
+#include "kestrel/io/ros_messages/serialization.h"
 
 namespace kestrel {
 namespace {
@@ -55,7 +55,7 @@ std::string RosResults::TransformBytes(Time stamp, const std::string& parent,
   TransformStampedMessage& transform = message.transforms.emplace_back();
   transform.header = {0, stamp, parent};
   transform.child_frame_id = child;
-  transform.transform = PoseMessageOf(parent_from_child);
+  transform.transform = TransformMessageOf(parent_from_child);
   return SerializeMessage(message, WireFormat::kCdr);
 }
 

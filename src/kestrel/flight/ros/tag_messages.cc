@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "kestrel/io/bags/frame_tree.h"
+#include "kestrel/io/ros_messages/frame_tree.h"
 
 namespace kestrel {
 namespace {
@@ -79,7 +79,7 @@ TfMessage TagTransformsOf(const LandingObservation& observation, const TargetSha
     TransformStampedMessage& transform = message.transforms.emplace_back();
     transform.header = {0, observation.time, camera_frame};
     transform.child_frame_id = fmt::format("{}:{}", tag.family, tag.id);
-    transform.transform = PoseMessageOf(detection->camera_from_pattern * tag.pattern_from_tag);
+    transform.transform = TransformMessageOf(detection->camera_from_pattern * tag.pattern_from_tag);
   });
   return message;
 }

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "kestrel/core/camera/camera_model.h"
-#include "kestrel/io/bags/serialization.h"
-#include "kestrel/io/bags/tag_messages.h"
+#include "kestrel/io/ros_messages/serialization.h"
+#include "kestrel/io/ros_messages/tag_messages.h"
 #include "kestrel/vision/pipeline/landing_pipeline.h"
 #include "kestrel/vision/target/target_shape.h"
 

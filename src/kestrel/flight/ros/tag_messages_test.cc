@@ -129,10 +129,10 @@ TEST_F(TagMessagesTest, TransformsHaveThePosesOfTheTags) {
   EXPECT_EQ(transforms[0].child_frame_id, "tag36h11:7");
   EXPECT_EQ(transforms[1].child_frame_id, "tag36h11:3");
   const RigidTransform second = pose_ * board.tags[1].board_from_tag;
-  EXPECT_NEAR(transforms[1].transform.position.x, second.translation.x(), 0.02);
-  EXPECT_NEAR(transforms[1].transform.position.y, second.translation.y(), 0.02);
-  EXPECT_NEAR(transforms[1].transform.position.z, second.translation.z(), 0.05);
-  EXPECT_NEAR(std::abs(transforms[1].transform.orientation.w), std::abs(second.rotation.w()), 0.02);
+  EXPECT_NEAR(transforms[1].transform.translation.x, second.translation.x(), 0.02);
+  EXPECT_NEAR(transforms[1].transform.translation.y, second.translation.y(), 0.02);
+  EXPECT_NEAR(transforms[1].transform.translation.z, second.translation.z(), 0.05);
+  EXPECT_NEAR(std::abs(transforms[1].transform.rotation.w), std::abs(second.rotation.w()), 0.02);
 }
 
 TEST_F(TagMessagesTest, NothingFoundIsAnEmptyList) {

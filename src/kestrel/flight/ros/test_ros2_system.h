@@ -15,11 +15,11 @@
 #include "kestrel/comms/dds/ros2_node.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/calibration.h"
-#include "kestrel/io/bags/camera_info.h"
-#include "kestrel/io/bags/frame_tree.h"
-#include "kestrel/io/bags/result_messages.h"
-#include "kestrel/io/bags/serialization.h"
 #include "kestrel/io/recording/open_source.h"
+#include "kestrel/io/ros_messages/camera_info.h"
+#include "kestrel/io/ros_messages/frame_tree.h"
+#include "kestrel/io/ros_messages/result_messages.h"
+#include "kestrel/io/ros_messages/serialization.h"
 
 namespace kestrel {
 
@@ -103,7 +103,7 @@ class RosSystem {
     TransformStampedMessage& transform = mount.transforms.emplace_back();
     transform.header.frame_id = "base_link";
     transform.child_frame_id = "camera";
-    transform.transform = PoseMessageOf(*calibration_.body_from_camera);
+    transform.transform = TransformMessageOf(*calibration_.body_from_camera);
     node_.Publish(node_.Advertise("/tf_static", TfMessage::kType, kLatchedQos), CdrBytesOf(mount));
   }
 
@@ -115,7 +115,7 @@ class RosSystem {
     OdometryMessage odometry;
     odometry.header = {0, stamp, "odom"};
     odometry.child_frame_id = "base_link";
-    odometry.pose = PoseMessageOf(pose->world_from_body);
+    odometry.pose.pose = PoseMessageOf(pose->world_from_body);
     node_.Publish(odometry_, CdrBytesOf(odometry));
     CameraInfoMessage info = CameraInfoOf(calibration_.intrinsics);
     info.header = {0, stamp, "camera"};

@@ -9,12 +9,12 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/flight/ros/ros_results.h"
-#include "kestrel/io/bags/bag_topics.h"
-#include "kestrel/io/bags/camera_info.h"
-#include "kestrel/io/bags/frame_tree.h"
-#include "kestrel/io/bags/image_message.h"
-#include "kestrel/io/bags/pose_message.h"
-#include "kestrel/io/bags/serialization.h"
+#include "kestrel/io/ros_messages/camera_info.h"
+#include "kestrel/io/ros_messages/frame_tree.h"
+#include "kestrel/io/ros_messages/image_message.h"
+#include "kestrel/io/ros_messages/pose_message.h"
+#include "kestrel/io/ros_messages/serialization.h"
+#include "kestrel/io/ros_messages/topic_choice.h"
 
 namespace kestrel {
 namespace {
@@ -31,7 +31,7 @@ void CheckJump(const std::optional<Time>& newest, Time stamp, const std::string&
 
 }  // namespace
 
-void TopicSource::Take(const BagTopic& topic, std::string_view bytes) {
+void TopicSource::Take(const RosTopic& topic, std::string_view bytes) {
   if (topic.type == ImageMessage::kType) {
     TakeImage<ImageMessage>(topic, bytes);
   } else if (topic.type == CompressedImageMessage::kType) {
@@ -82,7 +82,7 @@ Time TopicSource::TimeOf(Time stamp) {
 }
 
 template <class Message>
-void TopicSource::TakeImage(const BagTopic& topic, std::string_view bytes) {
+void TopicSource::TakeImage(const RosTopic& topic, std::string_view bytes) {
   {
     const std::lock_guard lock(mutex_);
     ++counters_.missed;  // until the message proves good
@@ -117,7 +117,7 @@ void TopicSource::CheckOrder(Time stamp, const std::string& topic) const {
   }
 }
 
-void TopicSource::TakePose(const BagTopic& topic, std::string_view bytes) {
+void TopicSource::TakePose(const RosTopic& topic, std::string_view bytes) {
   if (!IsPoseType(topic.type)) {
     throw InputError(fmt::format(
         "{}: is of type {}, expected PoseStamped, PoseWithCovarianceStamped, TransformStamped or "
@@ -125,19 +125,17 @@ void TopicSource::TakePose(const BagTopic& topic, std::string_view bytes) {
         topic.name, topic.type));
   }
   const StampedPose pose = ParsePose(topic.type, bytes, topic.wire_format, topic.name);
-  const auto world_from_body = TransformOf(pose.pose);
-  if (!world_from_body || ToNanoseconds(pose.stamp) <= 0) {
+  if (!pose.pose || ToNanoseconds(pose.stamp) <= 0) {
     throw InputError(topic.name +
                      ": a pose is left out that has no stamp, is not finite, or is "
                      "turned by no unit quaternion");
   }
   body_frame_ = FrameName(pose.body);
-  AddPose({pose.stamp, *world_from_body,
-           pose.twist ? MotionOf(*pose.twist, *world_from_body) : std::nullopt},
+  AddPose({pose.stamp, *pose.pose, pose.twist ? MotionOf(*pose.twist, *pose.pose) : std::nullopt},
           FrameName(pose.world), topic.name);
 }
 
-void TopicSource::TakeTransforms(const BagTopic& topic, std::string_view bytes) {
+void TopicSource::TakeTransforms(const RosTopic& topic, std::string_view bytes) {
   const bool is_static = topic.name == kStaticTfTopic;
   for (const TransformStampedMessage& transform :
        ParseMessage<TfMessage>(bytes, topic.wire_format, topic.name).transforms) {

@@ -14,9 +14,9 @@
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/flight/ros/live_transforms.h"
 #include "kestrel/flight/session/live_source.h"
-#include "kestrel/io/bags/bag_reader.h"
-#include "kestrel/io/bags/messages.h"
 #include "kestrel/io/recording/frame.h"
+#include "kestrel/io/ros_messages/messages.h"
+#include "kestrel/io/ros_messages/topic.h"
 
 namespace kestrel {
 
@@ -46,7 +46,7 @@ class TopicSource : public LiveSource {
   // Takes a message of one of the topics. Throws InputError, and leaves it out, when it is broken
   // or out of order, its type is none of these, or the clock of the stamps went back by more than a
   // second, as when a bag is played again.
-  void Take(const BagTopic& topic, std::string_view bytes);
+  void Take(const RosTopic& topic, std::string_view bytes);
 
   // Returns the newest camera_info, with the mount by tf if it is known; nothing before the first
   // one. Throws InputError when the camera is not calibrated.
@@ -75,10 +75,10 @@ class TopicSource : public LiveSource {
 
  private:
   template <class Message>
-  void TakeImage(const BagTopic& topic, std::string_view bytes);
+  void TakeImage(const RosTopic& topic, std::string_view bytes);
   void CheckOrder(Time stamp, const std::string& topic) const;
-  void TakePose(const BagTopic& topic, std::string_view bytes);
-  void TakeTransforms(const BagTopic& topic, std::string_view bytes);
+  void TakePose(const RosTopic& topic, std::string_view bytes);
+  void TakeTransforms(const RosTopic& topic, std::string_view bytes);
   void AddPose(PoseSample pose, const std::string& world, const std::string& topic);
   Time TimeOf(Time stamp);
   void Add(Event event);

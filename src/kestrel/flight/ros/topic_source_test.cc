@@ -11,8 +11,8 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/core/base/error.h"
-#include "kestrel/io/bags/camera_info.h"
-#include "kestrel/io/bags/serialization.h"
+#include "kestrel/io/ros_messages/camera_info.h"
+#include "kestrel/io/ros_messages/serialization.h"
 
 namespace kestrel {
 namespace {
@@ -92,7 +92,7 @@ TEST_F(TopicSourceTest, RefusesBrokenMessagesAndCountsTheirImages) {
   TakeImage(kStamp);
   EXPECT_THAT(ErrorOf([&] { TakeImage(kStamp); }), HasSubstr("not later than the one before"));
   EXPECT_THAT(ErrorOf([&] { TakeImage(Time()); }), HasSubstr("have no stamps"));
-  const BagTopic images{"/image", std::string(ImageMessage::kType), WireFormat::kCdr, {}};
+  const RosTopic images{"/image", std::string(ImageMessage::kType), WireFormat::kCdr, {}};
   EXPECT_THAT(ErrorOf([&] { source_.Take(images, std::string_view("\0\1\0\0cut", 7)); }),
               HasSubstr("/image: the message ends after 7 bytes"));
   EXPECT_THAT(ErrorOf([&] {

@@ -3,9 +3,9 @@
 
 #include <variant>
 
-#include "kestrel/io/recording/object_csv.h"
-#include "kestrel/io/recording/object_map_files.h"
-#include "kestrel/io/recording/object_overlay.h"
+#include "kestrel/io/recording/overlays/object_overlay.h"
+#include "kestrel/io/recording/tables/object_csv.h"
+#include "kestrel/io/recording/tables/object_map_files.h"
 
 namespace kestrel {
 

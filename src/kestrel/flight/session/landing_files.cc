@@ -3,9 +3,9 @@
 
 #include <variant>
 
-#include "kestrel/io/recording/landing_csv.h"
-#include "kestrel/io/recording/landing_overlay.h"
-#include "kestrel/io/recording/track_csv.h"
+#include "kestrel/io/recording/overlays/landing_overlay.h"
+#include "kestrel/io/recording/tables/landing_csv.h"
+#include "kestrel/io/recording/tables/track_csv.h"
 
 namespace kestrel {
 namespace {

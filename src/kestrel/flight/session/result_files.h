@@ -8,8 +8,8 @@
 
 #include <opencv2/core.hpp>
 
-#include "kestrel/io/recording/annotated_writer.h"
 #include "kestrel/io/recording/output_folder.h"
+#include "kestrel/io/recording/overlays/annotated_writer.h"
 
 namespace kestrel {
 

@@ -11,7 +11,7 @@
 #include "kestrel/core/base/load_yaml.h"
 #include "kestrel/core/base/read_file.h"
 #include "kestrel/core/base/shown.h"
-#include "kestrel/io/recording/file_kind.h"
+#include "kestrel/io/recording/media/file_kind.h"
 
 namespace kestrel {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/shown.h"
-#include "kestrel/io/bags/messages.h"
-#include "kestrel/io/bags/pose_message.h"
-#include "kestrel/io/bags/serialization.h"
+#include "kestrel/io/ros_messages/messages.h"
+#include "kestrel/io/ros_messages/pose_message.h"
+#include "kestrel/io/ros_messages/serialization.h"
 
 namespace kestrel {
 namespace {
@@ -134,7 +134,7 @@ std::vector<PoseSample> ReadTransformPoses(BagReader* bag, const std::vector<std
 
 }  // namespace
 
-BagPoses ReadPoses(BagReader* bag, const BagTopics& topics, const std::string& camera_frame,
+BagPoses ReadPoses(BagReader* bag, const TopicChoice& topics, const std::string& camera_frame,
                    bool use_arrival_times, const std::string& path) {
   std::vector<std::size_t> selected = topics.transforms;
   if (topics.pose) selected.push_back(*topics.pose);
@@ -144,11 +144,11 @@ BagPoses ReadPoses(BagReader* bag, const BagTopics& topics, const std::string& c
   std::string told_body;
   bag->Select(selected);
   for (BagMessage message; bag->Next(&message);) {
-    const BagTopic& topic = bag->topics()[message.topic];
+    const RosTopic& topic = bag->topics()[message.topic];
     if (message.topic == topics.pose) {
       const StampedPose pose = ParsePose(topic.type, message.data, topic.wire_format, pose_name);
       if (told_body.empty()) told_body = FrameName(pose.body);
-      poses.Add(pose.stamp, message.arrival, TransformOf(pose.pose), pose.twist);
+      poses.Add(pose.stamp, message.arrival, pose.pose, pose.twist);
     } else {
       const std::string name = NameOfTopic(*bag, message.topic, path);
       for (const auto& transform :

@@ -9,8 +9,8 @@
 
 #include "kestrel/core/poses/pose_history.h"
 #include "kestrel/io/bags/bag_reader.h"
-#include "kestrel/io/bags/bag_topics.h"
-#include "kestrel/io/bags/frame_tree.h"
+#include "kestrel/io/ros_messages/frame_tree.h"
+#include "kestrel/io/ros_messages/topic_choice.h"
 
 namespace kestrel {
 
@@ -25,7 +25,7 @@ struct BagPoses {
 // the poses, or base_link, or the frame that the camera is fixed to. 'camera_frame': frame of the
 // images; empty if they do not name it. 'use_arrival_times': use them instead of the stamps. Throws
 // InputError when a message is broken or all stamps are zero.
-BagPoses ReadPoses(BagReader* bag, const BagTopics& topics, const std::string& camera_frame,
+BagPoses ReadPoses(BagReader* bag, const TopicChoice& topics, const std::string& camera_frame,
                    bool use_arrival_times, const std::string& path);
 
 }  // namespace kestrel

@@ -2,32 +2,14 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "kestrel/core/base/shown.h"
 #include "kestrel/core/base/time.h"
+#include "kestrel/io/ros_messages/topic.h"
 
 namespace kestrel {
-
-// Serialization of a topic's messages.
-enum class WireFormat {
-  kRos1,      // ROS 1
-  kCdr,       // ROS 2: XCDR1 after a header of four bytes
-  kProtobuf,  // messages of Foxglove, by the types of ROS that they correspond to
-  kOther,     // JSON, other messages in protobuf, ...: not read
-};
-
-// A name and type of a bag.
-struct BagTopic {
-  std::string name;  // "/camera/image_raw"
-  std::string type;  // "sensor_msgs/Image", for ROS 2 too
-  WireFormat wire_format = WireFormat::kOther;
-  std::optional<std::uint64_t> messages;  // number of messages, if the bag tells it
-};
 
 struct BagMessage {
   std::size_t topic = 0;  // index in BagReader::topics()
@@ -42,7 +24,7 @@ class BagReader {
   virtual ~BagReader() = default;
 
   // Returns the topics of the bag; they never change.
-  virtual const std::vector<BagTopic>& topics() const = 0;
+  virtual const std::vector<RosTopic>& topics() const = 0;
 
   // Starts from the beginning with only the messages of these topics (indices, in order).
   virtual void Select(const std::vector<std::size_t>& topics) = 0;
@@ -57,15 +39,5 @@ class BagReader {
   // Returns what has been left out so far because it is damaged, in one line; else empty.
   virtual std::string damage() const { return ""; }
 };
-
-// Returns the type's name in the form used here: "sensor_msgs/Image" for "sensor_msgs/msg/Image".
-std::string NormalTypeName(std::string_view type);
-
-// Returns the name of a topic or type in a form for messages and results: characters that ROS
-// allows in names are unchanged, characters that would break a line are replaced.
-inline std::string PlainTopicName(std::string_view name) {
-  constexpr std::size_t kMaxLength = 256;
-  return Shown(name, kMaxLength);
-}
 
 }  // namespace kestrel

@@ -7,11 +7,11 @@
 #include <fmt/format.h>
 
 #include "kestrel/core/base/error.h"
-#include "kestrel/io/bags/camera_info.h"
-#include "kestrel/io/bags/image_message.h"
 #include "kestrel/io/bags/open_bag.h"
-#include "kestrel/io/bags/serialization.h"
 #include "kestrel/io/recording/open_source.h"
+#include "kestrel/io/ros_messages/camera_info.h"
+#include "kestrel/io/ros_messages/image_message.h"
+#include "kestrel/io/ros_messages/serialization.h"
 
 namespace kestrel {
 namespace {
@@ -74,7 +74,7 @@ std::optional<std::size_t> BagSource::frame_count() const {
 // Estimates the frame rate. Returns the camera's frame.
 std::string BagSource::ReadFirstImages() {
   bag_->Select({topics_.image});
-  const BagTopic& topic = bag_->topics()[topics_.image];
+  const RosTopic& topic = bag_->topics()[topics_.image];
   std::string camera_frame;
   std::vector<Time> times;
   std::string fault;
@@ -116,7 +116,7 @@ std::string BagSource::FrameName(const BagMessage& message, Time time) const {
 // Fills 'frame'; its name and time, too, when the image cannot be decoded.
 template <class Message>
 void BagSource::Decode(const BagMessage& message, Frame* frame) const {
-  const BagTopic& topic = bag_->topics()[message.topic];
+  const RosTopic& topic = bag_->topics()[message.topic];
   const auto image = ParseMessage<Message>(message.data, topic.wire_format, NameOf(message.topic));
   frame->time = TimeOf(image.header, message);
   frame->name = FrameName(message, frame->time);

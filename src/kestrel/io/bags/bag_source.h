@@ -10,9 +10,9 @@
 #include "kestrel/io/bags/bag_choice.h"
 #include "kestrel/io/bags/bag_poses.h"
 #include "kestrel/io/bags/bag_reader.h"
-#include "kestrel/io/bags/bag_topics.h"
-#include "kestrel/io/bags/messages.h"
 #include "kestrel/io/recording/frame_source.h"
+#include "kestrel/io/ros_messages/messages.h"
+#include "kestrel/io/ros_messages/topic_choice.h"
 
 namespace kestrel {
 
@@ -56,7 +56,7 @@ class BagSource : public FrameSource {
   std::string path_;
   BagChoice choice_;
   std::unique_ptr<BagReader> bag_;
-  BagTopics topics_;
+  TopicChoice topics_;
   std::optional<CameraInfoMessage> camera_info_;
   std::optional<RigidTransform> body_from_camera_;
   std::vector<PoseSample> poses_;

@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "kestrel/core/base/time.h"
-#include "kestrel/io/bags/bag_reader.h"
 #include "kestrel/io/bags/decompression.h"
+#include "kestrel/io/ros_messages/topic.h"
 
 namespace kestrel {
 

@@ -8,9 +8,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kestrel/core/base/bytes.h"
 #include "kestrel/core/base/read_file.h"
 #include "kestrel/io/bags/bag_source.h"
-#include "kestrel/io/bags/byte_cursor.h"
 #include "kestrel/io/bags/ros1_bag.h"
 #include "kestrel/io/bags/test_bags.h"
 #include "kestrel/io/recording/test_files.h"

@@ -19,13 +19,6 @@ class DamagedChunk : public InputError {
 
 }  // namespace
 
-std::string NormalTypeName(std::string_view type) {
-  constexpr std::string_view kMiddle = "/msg/";
-  const std::size_t middle = type.find(kMiddle);
-  if (middle == std::string_view::npos) return std::string(type);
-  return fmt::format("{}/{}", type.substr(0, middle), type.substr(middle + kMiddle.size()));
-}
-
 void ChunkedBag::Select(const std::vector<std::size_t>& topics) {
   is_wanted_.assign(topics_.size(), false);
   for (const std::size_t topic : topics) is_wanted_.at(topic) = true;
@@ -112,8 +105,8 @@ void ChunkedBag::CountMessage(std::size_t topic) {
   topics_[topic].messages = topics_[topic].messages.value_or(0) + 1;
 }
 
-std::size_t ChunkedBag::TopicOf(const BagTopic& topic) {
-  const auto known = std::find_if(topics_.begin(), topics_.end(), [&](const BagTopic& other) {
+std::size_t ChunkedBag::TopicOf(const RosTopic& topic) {
+  const auto known = std::find_if(topics_.begin(), topics_.end(), [&](const RosTopic& other) {
     return other.name == topic.name && other.type == topic.type &&
            other.wire_format == topic.wire_format;
   });

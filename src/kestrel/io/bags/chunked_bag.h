@@ -21,7 +21,7 @@ namespace kestrel {
 // is left of the selected topics, that is an error.
 class ChunkedBag : public BagReader {
  public:
-  const std::vector<BagTopic>& topics() const override { return topics_; }
+  const std::vector<RosTopic>& topics() const override { return topics_; }
   void Select(const std::vector<std::size_t>& topics) override;
   bool Next(BagMessage* message) override;
   std::string remark() const override { return remark_; }
@@ -54,7 +54,7 @@ class ChunkedBag : public BagReader {
   ByteSource* OpenChunk(const Chunk& chunk);
 
   // Returns the index of the topic with this name and type; adds it when it is new.
-  std::size_t TopicOf(const BagTopic& topic);
+  std::size_t TopicOf(const RosTopic& topic);
 
   void CountMessage(std::size_t topic);
 
@@ -70,7 +70,7 @@ class ChunkedBag : public BagReader {
   const std::string& path() const { return path_; }
   FileBytes& file() { return file_; }
   std::vector<Chunk>& chunks() { return chunks_; }
-  std::vector<BagTopic>& mutable_topics() { return topics_; }
+  std::vector<RosTopic>& mutable_topics() { return topics_; }
 
  private:
   bool HasWanted(const Chunk& chunk) const;
@@ -80,7 +80,7 @@ class ChunkedBag : public BagReader {
 
   std::string path_;
   FileBytes file_;
-  std::vector<BagTopic> topics_;
+  std::vector<RosTopic> topics_;
   std::vector<Chunk> chunks_;  // in the order of the file
   std::string remark_;
 

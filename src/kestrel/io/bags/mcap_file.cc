@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "kestrel/io/bags/byte_cursor.h"
+#include "kestrel/core/base/bytes.h"
 #include "kestrel/io/bags/checksum.h"
 #include "kestrel/io/bags/compression.h"
 #include "kestrel/io/bags/mcap_opcodes.h"

@@ -11,10 +11,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kestrel/core/base/bytes.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/read_file.h"
 #include "kestrel/core/base/test_folder.h"
-#include "kestrel/io/bags/byte_cursor.h"
 #include "kestrel/io/bags/mcap_opcodes.h"
 #include "kestrel/io/bags/mcap_reader.h"
 

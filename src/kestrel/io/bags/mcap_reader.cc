@@ -9,11 +9,11 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/core/base/bytes.h"
 #include "kestrel/core/base/error.h"
-#include "kestrel/io/bags/byte_cursor.h"
 #include "kestrel/io/bags/checksum.h"
-#include "kestrel/io/bags/foxglove_message.h"
 #include "kestrel/io/bags/mcap_opcodes.h"
+#include "kestrel/io/ros_messages/foxglove_message.h"
 
 namespace kestrel {
 namespace {
@@ -148,7 +148,7 @@ bool McapReader::ReadSummaryRecords(std::uint64_t offset, std::uint64_t end) {
 }
 
 void McapReader::SetMessageCounts(std::string_view counts, const std::string& name) {
-  for (BagTopic& topic : mutable_topics()) topic.messages = 0;
+  for (RosTopic& topic : mutable_topics()) topic.messages = 0;
   for (ByteCursor cursor(counts, name); cursor.left() > 0;) {
     const std::size_t topic = TopicOfChannel(cursor.Take<std::uint16_t>(), name);
     *mutable_topics()[topic].messages += cursor.Take<std::uint64_t>();
@@ -274,7 +274,7 @@ void McapReader::AddChannel(std::string_view content, const std::string& name) {
   ByteCursor cursor(content, name);
   const auto id = cursor.Take<std::uint16_t>();
   const auto schema = schemas_.find(cursor.Take<std::uint16_t>());
-  BagTopic topic;
+  RosTopic topic;
   topic.name = PlainTopicName(cursor.Text());
   if (schema != schemas_.end()) {
     topic.type = PlainTopicName(NormalTypeName(schema->second.name));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/io/bags/mcap_writer.h"
 
-#include "kestrel/io/bags/message_definitions.h"
 #include "kestrel/io/bags/qos_text.h"
+#include "kestrel/io/ros_messages/message_definitions.h"
 
 namespace kestrel {
 

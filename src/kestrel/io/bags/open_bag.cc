@@ -15,7 +15,7 @@
 #include "kestrel/io/bags/mcap_reader.h"
 #include "kestrel/io/bags/ros1_bag.h"
 #include "kestrel/io/bags/sqlite_bag.h"
-#include "kestrel/io/recording/euroc_recording.h"
+#include "kestrel/io/recording/euroc/euroc_recording.h"
 
 namespace kestrel {
 namespace {
@@ -76,12 +76,12 @@ class SplitBag : public BagReader {
   explicit SplitBag(BagFolder folder) : folder_(std::move(folder)) {
     for (const std::string& file : folder_.files) {
       const auto part = OpenBagFile(file, folder_.has_compressed_messages);
-      for (const BagTopic& topic : part->topics()) Add(topic);
+      for (const RosTopic& topic : part->topics()) Add(topic);
       if (!part->remark().empty()) remark_ = part->remark();
     }
   }
 
-  const std::vector<BagTopic>& topics() const override { return topics_; }
+  const std::vector<RosTopic>& topics() const override { return topics_; }
   std::string remark() const override { return remark_; }
   std::string damage() const override { return damage_; }
 
@@ -107,15 +107,15 @@ class SplitBag : public BagReader {
   }
 
  private:
-  static bool IsSame(const BagTopic& a, const BagTopic& b) {
+  static bool IsSame(const RosTopic& a, const RosTopic& b) {
     return a.name == b.name && a.type == b.type && a.wire_format == b.wire_format;
   }
-  std::size_t IndexOf(const BagTopic& topic) const {
+  std::size_t IndexOf(const RosTopic& topic) const {
     const auto known = std::find_if(topics_.begin(), topics_.end(),
-                                    [&](const BagTopic& other) { return IsSame(topic, other); });
+                                    [&](const RosTopic& other) { return IsSame(topic, other); });
     return static_cast<std::size_t>(known - topics_.begin());
   }
-  void Add(const BagTopic& topic) {
+  void Add(const RosTopic& topic) {
     const std::size_t index = IndexOf(topic);
     if (index == topics_.size()) {
       topics_.push_back(topic);
@@ -138,7 +138,7 @@ class SplitBag : public BagReader {
   }
 
   BagFolder folder_;
-  std::vector<BagTopic> topics_;
+  std::vector<RosTopic> topics_;
   std::string remark_;
   std::string damage_;  // the first damage that was met
   std::vector<std::size_t> selected_;

@@ -12,12 +12,12 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/codec/png_codec.h"
 #include "kestrel/io/bags/bag_writer.h"
-#include "kestrel/io/bags/camera_info.h"
-#include "kestrel/io/bags/frame_tree.h"
-#include "kestrel/io/bags/messages.h"
-#include "kestrel/io/bags/serialization.h"
-#include "kestrel/io/recording/euroc_writer.h"
-#include "kestrel/io/recording/recording_place.h"
+#include "kestrel/io/recording/euroc/euroc_writer.h"
+#include "kestrel/io/recording/euroc/recording_place.h"
+#include "kestrel/io/ros_messages/camera_info.h"
+#include "kestrel/io/ros_messages/frame_tree.h"
+#include "kestrel/io/ros_messages/messages.h"
+#include "kestrel/io/ros_messages/serialization.h"
 
 namespace kestrel {
 namespace {
@@ -99,11 +99,11 @@ class BagSink : public RecordingSink {
     OdometryMessage message;
     message.header = HeaderOf(pose.time, kWorldFrame, &pose_count_);
     message.child_frame_id = kBodyFrame;
-    message.pose = PoseMessageOf(pose.world_from_body);
+    message.pose.pose = PoseMessageOf(pose.world_from_body);
     if (pose.motion) {
       const Eigen::Quaterniond body_from_world = pose.world_from_body.rotation.conjugate();
-      message.twist = {Vector3Of(body_from_world * pose.motion->velocity_in_world),
-                       Vector3Of(pose.motion->rate_in_body)};
+      message.twist.twist = {Vector3Of(body_from_world * pose.motion->velocity_in_world),
+                             Vector3Of(pose.motion->rate_in_body)};
     }
     return message;
   }
@@ -114,7 +114,7 @@ class BagSink : public RecordingSink {
     TfMessage message;
     std::uint32_t count = 0;
     message.transforms.push_back({HeaderOf(time, kBodyFrame, &count), kCameraFrame,
-                                  PoseMessageOf(*head_.calibration->body_from_camera)});
+                                  TransformMessageOf(*head_.calibration->body_from_camera)});
     Write(*mount_, time, message);
   }
 

@@ -12,7 +12,7 @@
 #include "kestrel/core/codec/image_codec.h"
 #include "kestrel/io/bags/bag_source.h"
 #include "kestrel/io/bags/test_bags.h"
-#include "kestrel/io/recording/euroc_text.h"
+#include "kestrel/io/recording/euroc/euroc_text.h"
 #include "kestrel/io/recording/test_files.h"
 
 namespace kestrel {

@@ -10,8 +10,8 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/core/base/bytes.h"
 #include "kestrel/core/base/error.h"
-#include "kestrel/io/bags/byte_cursor.h"
 
 namespace kestrel {
 namespace {
@@ -238,7 +238,7 @@ ChunkedBag::Chunk Ros1Bag::ReadChunkHead(const Record& record) {
 void Ros1Bag::AddConnection(const Record& record, ByteSource* records) {
   const auto connection = record.fields().Get<std::uint32_t>("conn");
   const Fields data(records->View(record.data_offset, record.data_size), record.name);
-  BagTopic topic;
+  RosTopic topic;
   topic.name = PlainTopicName(record.fields().Text("topic"));
   topic.type = PlainTopicName(data.Text("type"));
   topic.wire_format = WireFormat::kRos1;

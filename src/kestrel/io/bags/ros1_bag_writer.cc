@@ -7,10 +7,10 @@
 
 #include <fmt/format.h>
 
-#include "kestrel/io/bags/byte_cursor.h"
+#include "kestrel/core/base/bytes.h"
 #include "kestrel/io/bags/compression.h"
-#include "kestrel/io/bags/message_definitions.h"
 #include "kestrel/io/bags/ros1_bag.h"
+#include "kestrel/io/ros_messages/message_definitions.h"
 
 namespace kestrel {
 namespace {

@@ -2,7 +2,7 @@
 #include "kestrel/io/bags/source_calibration.h"
 
 #include "kestrel/core/camera/calibration_reader.h"
-#include "kestrel/io/recording/image_sequence.h"
+#include "kestrel/io/recording/media/image_sequence.h"
 
 namespace kestrel {
 

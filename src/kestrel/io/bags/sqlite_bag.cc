@@ -121,7 +121,7 @@ void SqliteBag::ReadTopics() {
   const SqliteStatement topics =
       Prepare("SELECT id, name, type, serialization_format FROM topics ORDER BY id");
   while (Step(topics.get())) {
-    BagTopic topic;
+    RosTopic topic;
     topic.name = PlainTopicName(TextOf(topics.get(), 1));
     topic.type = PlainTopicName(NormalTypeName(TextOf(topics.get(), 2)));
     if (TextOf(topics.get(), 3) == "cdr") topic.wire_format = WireFormat::kCdr;

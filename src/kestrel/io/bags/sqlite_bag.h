@@ -23,7 +23,7 @@ class SqliteBag : public BagReader {
   // is broken.
   explicit SqliteBag(const std::string& path, bool has_compressed_messages = false);
 
-  const std::vector<BagTopic>& topics() const override { return topics_; }
+  const std::vector<RosTopic>& topics() const override { return topics_; }
   void Select(const std::vector<std::size_t>& topics) override;
   bool Next(BagMessage* message) override;
 
@@ -42,7 +42,7 @@ class SqliteBag : public BagReader {
   std::string path_;
   bool has_compressed_messages_;
   SqliteDatabase database_;
-  std::vector<BagTopic> topics_;
+  std::vector<RosTopic> topics_;
   std::vector<std::int64_t> ids_;  // the database's ids of the topics
   SqliteStatement messages_;
   std::string decompressed_;

@@ -7,8 +7,8 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/io/bags/growing_file.h"
-#include "kestrel/io/bags/message_definitions.h"
 #include "kestrel/io/bags/qos_text.h"
+#include "kestrel/io/ros_messages/message_definitions.h"
 
 namespace kestrel {
 namespace {

@@ -10,9 +10,9 @@
 #include <opencv2/core.hpp>
 
 #include "kestrel/io/bags/bag_writer.h"
-#include "kestrel/io/bags/camera_info.h"
-#include "kestrel/io/bags/messages.h"
-#include "kestrel/io/bags/serialization.h"
+#include "kestrel/io/ros_messages/camera_info.h"
+#include "kestrel/io/ros_messages/messages.h"
+#include "kestrel/io/ros_messages/serialization.h"
 
 namespace kestrel {
 

@@ -8,7 +8,7 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/yaml_reader.h"
-#include "kestrel/io/recording/image_file.h"
+#include "kestrel/io/recording/media/image_file.h"
 
 namespace kestrel {
 namespace {

@@ -4,10 +4,10 @@
 #include <filesystem>
 
 #include "kestrel/core/base/error.h"
-#include "kestrel/io/recording/euroc_recording.h"
-#include "kestrel/io/recording/file_kind.h"
-#include "kestrel/io/recording/image_sequence.h"
-#include "kestrel/io/recording/video_source.h"
+#include "kestrel/io/recording/euroc/euroc_recording.h"
+#include "kestrel/io/recording/media/file_kind.h"
+#include "kestrel/io/recording/media/image_sequence.h"
+#include "kestrel/io/recording/media/video_source.h"
 
 namespace kestrel {
 namespace {

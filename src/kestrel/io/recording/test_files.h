@@ -9,7 +9,7 @@
 
 #include "kestrel/core/base/test_folder.h"
 #include "kestrel/core/codec/image_codec.h"
-#include "kestrel/io/recording/video_file.h"
+#include "kestrel/io/recording/media/video_file.h"
 
 namespace kestrel {
 

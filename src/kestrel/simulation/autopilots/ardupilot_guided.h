@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "kestrel/comms/autopilot_rules/autopilot_parameters.h"
 #include "kestrel/core/base/time.h"
+#include "kestrel/simulation/autopilot_rules/autopilot_parameters.h"
 #include "kestrel/simulation/autopilots/guided_rules.h"
 #include "kestrel/simulation/autopilots/heading_control.h"
 #include "kestrel/simulation/autopilots/set_point_reading.h"

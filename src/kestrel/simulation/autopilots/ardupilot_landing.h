@@ -3,9 +3,9 @@
 
 #include <Eigen/Core>
 
-#include "kestrel/comms/autopilot_rules/ardupilot_target.h"
-#include "kestrel/comms/autopilot_rules/autopilot_parameters.h"
-#include "kestrel/comms/autopilot_rules/landing_rules.h"
+#include "kestrel/simulation/autopilot_rules/ardupilot_target.h"
+#include "kestrel/simulation/autopilot_rules/autopilot_parameters.h"
+#include "kestrel/simulation/autopilot_rules/landing_rules.h"
 #include "kestrel/simulation/autopilots/shaped_path.h"
 
 namespace kestrel {

@@ -10,10 +10,10 @@
 
 #include <Eigen/Core>
 
-#include "kestrel/comms/autopilot_rules/autopilot_parameters.h"
 #include "kestrel/comms/mavlink/messages.h"
 #include "kestrel/comms/mavlink/packet.h"
 #include "kestrel/core/poses/pose_history.h"
+#include "kestrel/simulation/autopilot_rules/autopilot_parameters.h"
 
 namespace kestrel {
 

@@ -9,13 +9,13 @@
 
 #include <Eigen/Core>
 
-#include "kestrel/comms/autopilot_rules/autopilot_parameters.h"
-#include "kestrel/comms/autopilot_rules/landing_rules.h"
-#include "kestrel/comms/autopilot_rules/px4_time_sync.h"
 #include "kestrel/comms/mavlink/autopilot_kind.h"
 #include "kestrel/core/base/random.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/poses/set_point.h"
+#include "kestrel/simulation/autopilot_rules/autopilot_parameters.h"
+#include "kestrel/simulation/autopilot_rules/landing_rules.h"
+#include "kestrel/simulation/autopilot_rules/px4_time_sync.h"
 #include "kestrel/simulation/autopilots/autopilot_messages.h"
 #include "kestrel/simulation/autopilots/autopilot_model_options.h"
 #include "kestrel/simulation/autopilots/guided_rules.h"

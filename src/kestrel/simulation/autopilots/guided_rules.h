@@ -3,9 +3,9 @@
 
 #include <optional>
 
-#include "kestrel/comms/autopilot_rules/landing_rules.h"
 #include "kestrel/comms/mavlink/autopilot_kind.h"
 #include "kestrel/comms/mavlink/messages.h"
+#include "kestrel/simulation/autopilot_rules/landing_rules.h"
 
 namespace kestrel {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "kestrel/comms/autopilot_rules/autopilot_parameters.h"
+#include "kestrel/simulation/autopilot_rules/autopilot_parameters.h"
 
 namespace kestrel {
 

@@ -3,10 +3,10 @@
 
 #include <Eigen/Core>
 
-#include "kestrel/comms/autopilot_rules/autopilot_parameters.h"
-#include "kestrel/comms/autopilot_rules/landing_rules.h"
-#include "kestrel/comms/autopilot_rules/px4_target.h"
-#include "kestrel/comms/autopilot_rules/px4_time_sync.h"
+#include "kestrel/simulation/autopilot_rules/autopilot_parameters.h"
+#include "kestrel/simulation/autopilot_rules/landing_rules.h"
+#include "kestrel/simulation/autopilot_rules/px4_target.h"
+#include "kestrel/simulation/autopilot_rules/px4_time_sync.h"
 
 namespace kestrel {
 

@@ -5,8 +5,8 @@
 
 #include <Eigen/Core>
 
-#include "kestrel/comms/autopilot_rules/autopilot_parameters.h"
 #include "kestrel/core/base/time.h"
+#include "kestrel/simulation/autopilot_rules/autopilot_parameters.h"
 #include "kestrel/simulation/autopilots/guided_rules.h"
 #include "kestrel/simulation/autopilots/heading_control.h"
 

@@ -6,9 +6,9 @@
 
 #include <Eigen/Core>
 
-#include "kestrel/comms/autopilot_rules/landing_rules.h"
 #include "kestrel/comms/mavlink/messages.h"
 #include "kestrel/core/poses/set_point.h"
+#include "kestrel/simulation/autopilot_rules/landing_rules.h"
 
 namespace kestrel {
 

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "kestrel/comms/autopilot_rules/landing_rules.h"
+#include "kestrel/simulation/autopilot_rules/landing_rules.h"
 
 namespace kestrel {
 

@@ -9,10 +9,10 @@
 #include <thread>
 #include <vector>
 
-#include "kestrel/comms/autopilot_rules/autopilot_parameters.h"
 #include "kestrel/comms/mavlink/connection.h"
 #include "kestrel/core/base/random.h"
 #include "kestrel/core/base/time.h"
+#include "kestrel/simulation/autopilot_rules/autopilot_parameters.h"
 #include "kestrel/simulation/autopilots/autopilot_messages.h"
 #include "kestrel/simulation/autopilots/autopilot_model.h"
 #include "kestrel/simulation/autopilots/link_faults.h"

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "kestrel/comms/autopilot_rules/landing_rules.h"
 #include "kestrel/core/base/options.h"
 #include "kestrel/core/base/violations.h"
+#include "kestrel/simulation/autopilot_rules/landing_rules.h"
 
 namespace kestrel {
 

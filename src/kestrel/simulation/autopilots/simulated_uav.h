@@ -7,13 +7,13 @@
 
 #include <Eigen/Geometry>
 
-#include "kestrel/comms/autopilot_rules/landing_rules.h"
 #include "kestrel/core/base/random.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/base/violations.h"
 #include "kestrel/core/geometry/rigid_transform.h"
 #include "kestrel/core/poses/pose_history.h"
 #include "kestrel/core/poses/set_point.h"
+#include "kestrel/simulation/autopilot_rules/landing_rules.h"
 #include "kestrel/simulation/autopilots/vehicle_world.h"
 #include "kestrel/simulation/scene/motion.h"
 #include "kestrel/simulation/vehicle/multicopter.h"

@@ -3,8 +3,8 @@
 
 #include <Eigen/Core>
 
-#include "kestrel/comms/autopilot_rules/autopilot_parameters.h"
-#include "kestrel/comms/autopilot_rules/landing_rules.h"
+#include "kestrel/simulation/autopilot_rules/autopilot_parameters.h"
+#include "kestrel/simulation/autopilot_rules/landing_rules.h"
 
 namespace kestrel {
 

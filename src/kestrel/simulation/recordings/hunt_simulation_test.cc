@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "kestrel/io/recording/csv_table.h"
+#include "kestrel/io/recording/tables/csv_table.h"
 #include "kestrel/io/recording/test_files.h"
 #include "kestrel/simulation/recordings/scenarios.h"
 #include "kestrel/simulation/recordings/test_plans.h"

@@ -10,8 +10,8 @@
 
 #include "kestrel/core/base/read_file.h"
 #include "kestrel/core/camera/calibration_reader.h"
-#include "kestrel/io/recording/csv_table.h"
-#include "kestrel/io/recording/euroc_recording.h"
+#include "kestrel/io/recording/euroc/euroc_recording.h"
+#include "kestrel/io/recording/tables/csv_table.h"
 #include "kestrel/io/recording/test_files.h"
 #include "kestrel/simulation/recordings/scenarios.h"
 #include "kestrel/simulation/recordings/test_plans.h"

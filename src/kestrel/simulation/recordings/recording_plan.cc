@@ -7,7 +7,7 @@
 #include <mutex>
 #include <thread>
 
-#include "kestrel/io/recording/recording_writer.h"
+#include "kestrel/io/recording/euroc/recording_writer.h"
 
 namespace kestrel {
 namespace {

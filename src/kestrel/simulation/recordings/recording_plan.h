@@ -12,7 +12,7 @@
 
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/calibration.h"
-#include "kestrel/io/recording/recording_file.h"
+#include "kestrel/io/recording/euroc/recording_file.h"
 
 namespace kestrel {
 

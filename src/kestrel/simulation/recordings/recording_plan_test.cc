@@ -11,7 +11,7 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/read_file.h"
 #include "kestrel/core/codec/image_codec.h"
-#include "kestrel/io/recording/euroc_recording.h"
+#include "kestrel/io/recording/euroc/euroc_recording.h"
 #include "kestrel/io/recording/test_files.h"
 #include "kestrel/simulation/vehicle/flight_time.h"
 

@@ -8,8 +8,8 @@
 
 #include "kestrel/core/base/hash.h"
 #include "kestrel/core/base/violations.h"
-#include "kestrel/io/recording/euroc_layout.h"
-#include "kestrel/io/recording/euroc_text.h"
+#include "kestrel/io/recording/euroc/euroc_layout.h"
+#include "kestrel/io/recording/euroc/euroc_text.h"
 #include "kestrel/simulation/recordings/truth_text.h"
 
 namespace kestrel {

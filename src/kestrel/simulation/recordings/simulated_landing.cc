@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "kestrel/io/recording/euroc_layout.h"
+#include "kestrel/io/recording/euroc/euroc_layout.h"
 #include "kestrel/simulation/labelled_images/landing_stills.h"
 #include "kestrel/simulation/recordings/truth_text.h"
 #include "kestrel/simulation/scene/solids.h"

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "kestrel/io/recording/euroc_text.h"
+#include "kestrel/io/recording/euroc/euroc_text.h"
 #include "kestrel/simulation/recordings/recording_plan.h"
 #include "kestrel/simulation/rendering/pattern_visibility.h"
 #include "kestrel/simulation/vehicle/flight_time.h"

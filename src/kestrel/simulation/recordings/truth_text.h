@@ -8,7 +8,7 @@
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/geometry/rigid_transform.h"
 #include "kestrel/core/poses/pose_history.h"
-#include "kestrel/io/recording/truth_rows.h"
+#include "kestrel/io/recording/euroc/truth_rows.h"
 #include "kestrel/simulation/rendering/flight_camera.h"
 #include "kestrel/simulation/scene/motion.h"
 #include "kestrel/simulation/scene/world.h"

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "kestrel/core/base/error.h"
-#include "kestrel/vision/landing/search/landing_search.h"
+#include "kestrel/vision/landing/landing_search.h"
 
 namespace kestrel {
 

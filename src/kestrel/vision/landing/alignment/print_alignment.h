@@ -8,7 +8,7 @@
 #include "kestrel/vision/landing/alignment/part_shares.h"
 #include "kestrel/vision/landing/alignment/print_edges.h"
 #include "kestrel/vision/landing/alignment/print_outline.h"
-#include "kestrel/vision/landing/search/image_region.h"
+#include "kestrel/vision/landing/image_region.h"
 #include "kestrel/vision/target/plane_warp.h"
 
 namespace kestrel {

@@ -9,7 +9,7 @@
 #include <opencv2/core.hpp>
 
 #include "kestrel/vision/landing/alignment/print_outline.h"
-#include "kestrel/vision/landing/search/image_region.h"
+#include "kestrel/vision/landing/image_region.h"
 #include "kestrel/vision/target/plane_warp.h"
 
 namespace kestrel {

@@ -12,7 +12,7 @@
 #include "kestrel/core/geometry/cone.h"
 #include "kestrel/core/image/border_tracing.h"
 #include "kestrel/vision/landing/candidates/dark_areas.h"
-#include "kestrel/vision/landing/search/image_region.h"
+#include "kestrel/vision/landing/image_region.h"
 
 namespace kestrel {
 

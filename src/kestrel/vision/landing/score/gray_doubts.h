@@ -3,8 +3,8 @@
 
 #include <Eigen/Core>
 
-#include "kestrel/vision/landing/alignment/small_pattern.h"
 #include "kestrel/vision/landing/score/print_doubts.h"
+#include "kestrel/vision/landing/small_pattern/small_pattern.h"
 
 namespace kestrel {
 

@@ -9,8 +9,8 @@
 #include <opencv2/core.hpp>
 
 #include "kestrel/vision/landing/landing_pattern.h"
+#include "kestrel/vision/landing/location/pattern_view.h"
 #include "kestrel/vision/landing/score/print_doubts.h"
-#include "kestrel/vision/landing/verification/pattern_view.h"
 
 namespace kestrel {
 

@@ -6,11 +6,11 @@
 
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/core/camera/ray_table.h"
-#include "kestrel/vision/landing/alignment/small_pattern.h"
-#include "kestrel/vision/landing/candidates/ring_probe.h"
 #include "kestrel/vision/landing/landing_pattern_detector.h"
 #include "kestrel/vision/landing/location/pattern_locator.h"
 #include "kestrel/vision/landing/score/ink_comparison.h"
+#include "kestrel/vision/landing/score/ring_probe.h"
+#include "kestrel/vision/landing/small_pattern/small_pattern.h"
 
 namespace kestrel {
 

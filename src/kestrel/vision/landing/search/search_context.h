@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "kestrel/vision/landing/location/detection_choice.h"
+#include "kestrel/vision/landing/score/detection_choice.h"
 #include "kestrel/vision/landing/search/landing_models.h"
 #include "kestrel/vision/landing/search/prior_knowledge.h"
 #include "kestrel/vision/landing/search/searched_image.h"

@@ -10,8 +10,8 @@
 #include "kestrel/core/image/black_top_hat.h"
 #include "kestrel/core/image/border_tracing.h"
 #include "kestrel/core/image/local_threshold.h"
+#include "kestrel/vision/landing/image_region.h"
 #include "kestrel/vision/landing/search/frame_noise.h"
-#include "kestrel/vision/landing/search/image_region.h"
 #include "kestrel/vision/landing/search/search_plan.h"
 #include "kestrel/vision/target/search_log.h"
 

@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 
 #include "kestrel/vision/landing/landing_pattern.h"
-#include "kestrel/vision/landing/verification/pattern_view.h"
+#include "kestrel/vision/landing/location/pattern_view.h"
 
 namespace kestrel {
 

@@ -11,7 +11,7 @@
 #include "kestrel/core/image/border_tracing.h"
 #include "kestrel/core/image/polyline.h"
 #include "kestrel/vision/landing/landing_pattern.h"
-#include "kestrel/vision/landing/verification/pattern_view.h"
+#include "kestrel/vision/landing/location/pattern_view.h"
 
 namespace kestrel {
 

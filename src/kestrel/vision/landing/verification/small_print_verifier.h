@@ -4,10 +4,10 @@
 #include <optional>
 #include <span>
 
-#include "kestrel/vision/landing/alignment/small_pattern.h"
 #include "kestrel/vision/landing/candidates/ring_candidates.h"
 #include "kestrel/vision/landing/candidates/ring_memory.h"
 #include "kestrel/vision/landing/search/search_context.h"
+#include "kestrel/vision/landing/small_pattern/small_pattern.h"
 
 namespace kestrel {
 

@@ -6,7 +6,7 @@
 
 #include <Eigen/LU>
 
-#include "kestrel/vision/objects/digits/otsu.h"
+#include "kestrel/vision/objects/shapes/otsu.h"
 
 namespace kestrel {
 namespace {

@@ -11,9 +11,9 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/vision/objects/digits/digit_classifier.h"
-#include "kestrel/vision/objects/digits/otsu.h"
 #include "kestrel/vision/objects/object_model.h"
 #include "kestrel/vision/objects/shapes/cuboid_face.h"
+#include "kestrel/vision/objects/shapes/otsu.h"
 
 namespace kestrel {
 namespace {

@@ -9,8 +9,8 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
-#include "kestrel/vision/objects/digits/otsu.h"
 #include "kestrel/vision/objects/shapes/color_edge.h"
+#include "kestrel/vision/objects/shapes/otsu.h"
 
 namespace kestrel {
 namespace {

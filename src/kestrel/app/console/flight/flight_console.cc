@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/app/console/flight/flight_console.h"
+
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "kestrel/app/console/console_page.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/thread_setup.h"
+
+namespace kestrel {
+namespace {
+
+// Frames that wait to be shown. A longer queue would make the live picture late.
+constexpr std::size_t kFrames = 2;
+// Times of frames that wait for the checks: those of some seconds.
+constexpr std::size_t kArrivals = 256;
+constexpr Duration kCheckInterval = std::chrono::seconds(2);
+constexpr Duration kAnswerInterval = std::chrono::milliseconds(50);
+// A browser that is lost to the network comes back within this time.
+constexpr Duration kReturn = std::chrono::seconds(20);
+constexpr Duration kLastWords = std::chrono::milliseconds(300);
+
+ConsoleFeed::Description DescriptionOf(const std::string& title, const FlightView& view,
+                                       bool has_colors) {
+  const bool is_hunt = std::holds_alternative<HuntView>(view);
+  ConsoleFeed::Description description{
+      .title = title,
+      .is_live = true,
+      .series = is_hunt ? HuntSeries() : LandingSeries(),
+      .layers = is_hunt ? HuntLayers() : LandingLayers(),
+      .views = is_hunt ? HuntImageViews(std::get<HuntView>(view)) : LandingImageViews(),
+      .offers = {ConsoleCommandKind::kRecord, ConsoleCommandKind::kSnapshot,
+                 ConsoleCommandKind::kSettings},
+      .has_colors = has_colors};
+  description.series.push_back({"latency", "ms", "Capture to result", {ValueSource::kFrames}});
+  description.series.push_back({"link", "1/s", "Packets", {ValueSource::kAutopilot}});
+  return description;
+}
+
+}  // namespace
+
+// Makes the content of the page; used by one thread.
+class FlightConsole::Page : public SinkWriter {
+ public:
+  Page(FlightConsole* console, FlightView view, FlightExamination examination)
+      : console_(*console),
+        feed_(console->feed_),
+        view_(std::move(view)),
+        examination_(std::move(examination)) {}
+
+  void Write(const Observation& observation, std::size_t /*waiting*/) override {
+    frame_.captured = observation.frame.time;
+    frame_.image = observation.frame.image;
+    const Duration latency = observation.latency.value_or(Duration::zero());
+    std::visit(
+        [&](const auto& seen) {
+          sources_.Look(frame_.captured, seen.world_from_camera.has_value());
+          Show(seen, latency);
+        },
+        observation.seen);
+    examination_.Look(frame_.image, Now());
+    {
+      const std::lock_guard lock(console_.mutex_);
+      console_.shown_ = {frame_.image, frame_.captured};
+    }
+    feed_.SetFrame(&frame_);
+  }
+
+  void Write(const FlightReport& report) override {
+    if (const auto health = health_.Update(report, Now())) feed_.Add(*health);
+    report_ = report;
+    feed_.Add(sources_.Update(report, Now()));
+    ShowStatus();
+    ShowVehicle();
+  }
+
+  void Write(const TeamReport& report) override {
+    if (const auto* const view = std::get_if<HuntView>(&view_)) feed_.Add(HuntTeam(*view, report));
+  }
+
+  void Rest(bool /*had_frame*/) override {
+    while (const auto frame = console_.arrivals_.TryPop()) examination_.AddFrame(*frame);
+    ShowChecks();
+  }
+
+ private:
+  void Show(const LandingObservation& observation, Duration latency) {
+    const LandingView& view = std::get<LandingView>(view_);
+    examination_.Look(observation);
+    frame_.shapes = LandingShapes(view, observation);
+    AddSample(LandingSample(observation), latency);
+    feed_.Add(LandingMap(view, observation));
+    vision_ = LandingStatus(observation);
+  }
+
+  void Show(const HuntObservation& observation, Duration latency) {
+    const HuntView& view = std::get<HuntView>(view_);
+    frame_.shapes = HuntShapes(view, observation);
+    AddSample(HuntSample(observation), latency);
+    feed_.Add(HuntMap(view, observation));
+    vision_ = HuntStatus(observation);
+  }
+
+  void AddSample(ViewSample sample, Duration latency) {
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    sample.values.push_back(1e3 * ToSeconds(latency));
+    sample.values.push_back(health_.link_rate_hz().value_or(kUnknown));
+    feed_.Add(std::move(sample));
+  }
+
+  void ShowStatus() {
+    const ViewStatus status = FlightStatus(report_, vision_);
+    if (status == told_) return;
+    told_ = status;
+    feed_.Add(status);
+  }
+
+  void ShowVehicle() {
+    const auto vehicle = VehicleOf(report_);
+    if (!vehicle || *vehicle == told_vehicle_) return;
+    told_vehicle_ = *vehicle;
+    feed_.Add(*vehicle);
+  }
+
+  void ShowChecks() {
+    const Time now = Now();
+    if (!feed_.IsWatched() || now - examined_ < kCheckInterval) return;
+    examined_ = now;
+    ConsoleDoctor doctor;
+    for (const Finding& finding : examination_.Check(report_)) {
+      doctor.checks.push_back(
+          {finding.check, ToString(finding.verdict), finding.measured, finding.advice});
+    }
+    feed_.Add(std::move(doctor));
+  }
+
+  FlightConsole& console_;
+  ConsoleFeed& feed_;
+  FlightView view_;
+  ConsoleFrame frame_;
+  FlightExamination examination_;
+  Time examined_{};
+  FlightHealth health_;
+  SourceWatch sources_;
+  FlightReport report_;  // the newest
+  ViewStatus vision_;    // status from the newest frame
+  ViewStatus told_;      // the last status that the page got
+  ConsoleVehicle told_vehicle_;
+};
+
+FlightConsole::FlightConsole(const ConsoleOptions& options, const std::string& title,
+                             const FlightView& view, FlightExamination examination,
+                             ChannelFeed* channels, std::optional<FlightColors> colors)
+    : feed_(DescriptionOf(title, view, colors.has_value())),
+      arrivals_(kArrivals),
+      server_(ServeConsole(options, &feed_, WebAssets(), channels)),
+      pictures_({.thread_name = "console frames",
+                 .frames = kFrames,
+                 .tell =
+                     [this](const std::string& error) {
+                       Say(EventLevel::kError, "this page shows no more frames: " + error);
+                     }},
+                std::make_unique<Page>(this, view, std::move(examination))) {
+  if (colors) TeachColors(*colors, view);
+}
+
+// The page begins with the model that the flight uses.
+void FlightConsole::TeachColors(const FlightColors& colors, const FlightView& view) {
+  kept_.emplace(colors.frames);
+  const auto keep = [this] {
+    const Image newest = Newest();
+    return kept_->Keep(newest.image, newest.captured);
+  };
+  colors_.emplace(
+      ColorSource{.recording = std::filesystem::absolute(colors.frames).lexically_normal().string(),
+                  .frame_count = 0,
+                  .read = [this](std::size_t frame) { return kept_->Read(frame); },
+                  .model = std::get<HuntView>(view).model,
+                  .folder = colors.folder,
+                  .keep = keep,
+                  .warn = colors.warn},
+      &feed_);
+}
+
+// A page that is open gets the end of the flight before the server goes.
+void FlightConsole::Finish() {
+  if (is_over_.exchange(true)) return;
+  if (answering_thread_.joinable()) answering_thread_.join();
+  pictures_.Finish();
+  if (feed_.IsWatched()) std::this_thread::sleep_for(kLastWords);
+}
+
+void FlightConsole::Stay(const std::function<bool()>& is_stopped) {
+  Time seen = feed_.IsWatched() ? Now() : Time{};
+  while (Now() - seen < kReturn && !is_stopped()) {
+    std::this_thread::sleep_for(kAnswerInterval);
+    if (feed_.IsWatched()) seen = Now();
+  }
+}
+
+void FlightConsole::Take(const Observation& observation) {
+  if (!feed_.IsWatched()) return;
+  const Time captured = observation.frame.time;
+  const Duration latency = observation.latency.value_or(Duration::zero());
+  arrivals_.Push({captured, captured + latency - DetectTime(observation)});
+  pictures_.Take(observation);
+}
+
+void FlightConsole::Answer(FlightRequests requests) {
+  answering_thread_ = std::thread([this, requests = std::move(requests)] {
+    SetUpThisThread("console asks", {});
+    feed_.Add(requests.settings({}));
+    while (!is_over_) {
+      while (const auto command = feed_.TakeCommand()) Answer(requests, *command);
+      std::this_thread::sleep_for(kAnswerInterval);
+    }
+  });
+}
+
+void FlightConsole::Answer(const FlightRequests& requests, const ConsoleCommand& command) {
+  try {
+    if (command.kind == ConsoleCommandKind::kRecord) {
+      Say(EventLevel::kInfo, requests.record(command.value != 0));
+    } else if (command.kind == ConsoleCommandKind::kSnapshot) {
+      KeepSnapshot(requests);
+    } else if (command.kind == ConsoleCommandKind::kSettings) {
+      feed_.Add(requests.settings(command.settings));
+    }
+  } catch (const InputError& error) {
+    Say(EventLevel::kError, error.what());
+  }
+}
+
+void FlightConsole::KeepSnapshot(const FlightRequests& requests) {
+  const Image newest = Newest();
+  if (newest.image.empty()) {
+    return Say(EventLevel::kWarning, "no snapshot: there is no image yet");
+  }
+  Say(EventLevel::kInfo, requests.keep_snapshot(newest.image, newest.captured));
+}
+
+FlightConsole::Image FlightConsole::Newest() {
+  const std::lock_guard lock(mutex_);
+  return shown_;
+}
+
+}  // namespace kestrel

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/io/recording/euroc/euroc_recording.h"
+
+#include <filesystem>
+#include <utility>
+
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/read_file.h"
+#include "kestrel/io/recording/euroc/recording_place.h"
+#include "kestrel/io/recording/tables/csv_columns.h"
+#include "kestrel/io/recording/tables/csv_table.h"
+
+namespace kestrel {
+namespace {
+
+namespace fs = std::filesystem;
+
+}  // namespace
+
+std::vector<ImageRow> ParseImageRows(std::string_view text, const std::string& file) {
+  const CsvTable table(text, file);
+  const std::vector<Time> times = ParseTimes(table, "timestamp [ns]");
+  const std::size_t filename = table.Column("filename");
+  std::vector<ImageRow> rows;
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    rows.push_back({times[row], std::string(table.Text(row, filename))});
+  }
+  return rows;
+}
+
+std::vector<PoseSample> ParsePoseRows(std::string_view text, const std::string& file,
+                                      const std::string& frames) {
+  const CsvTable table(text, file);
+  const std::vector<Time> times = ParseTimes(table, "timestamp [ns]");
+  const PoseColumns columns(table, frames);
+  std::vector<PoseSample> samples;
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    samples.push_back({times[row], columns.Parse(row)});
+  }
+  return samples;
+}
+
+std::optional<std::string> FindEurocRoot(const std::string& folder) {
+  for (const fs::path& root : {fs::path(folder), fs::path(folder) / "mav0"}) {
+    std::error_code ignored;
+    if (fs::is_directory(root / "cam0", ignored)) return root.string();
+  }
+  const fs::path camera = PlaceOfRecording(folder);
+  std::error_code ignored;
+  if (camera.filename() == "cam0" && fs::exists(camera / "data.csv", ignored)) {
+    return camera.parent_path().string();
+  }
+  return std::nullopt;
+}
+
+ImageSequence OpenEurocRecording(const std::string& folder) {
+  const std::optional<std::string> root = FindEurocRoot(folder);
+  if (!root) throw InputError(folder + ": no recording, expected a folder cam0 or mav0/cam0 in it");
+  const fs::path camera = fs::path(*root) / "cam0";
+  const std::string list = (camera / "data.csv").string();
+  std::vector<ImageSequence::Item> items;
+  for (const ImageRow& row : ParseImageRows(ReadFile(list), list)) {
+    const fs::path path = camera / "data" / row.filename;
+    items.push_back({path.lexically_relative(folder).string(), path.string(), row.time});
+  }
+  if (items.empty()) throw InputError(list + ": no rows, expected one for every image");
+
+  const fs::path calibration = camera / "sensor.yaml";
+  const std::string navigation = (fs::path(*root) / "nav0" / "data.csv").string();
+  std::vector<PoseSample> poses;
+  if (fs::exists(navigation)) poses = ParsePoseRows(ReadFile(navigation), navigation);
+  return ImageSequence(std::move(items), fs::exists(calibration) ? calibration.string() : "",
+                       std::move(poses));
+}
+
+}  // namespace kestrel

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kestrel/io/recording/media/image_sequence.h"
+
+namespace kestrel {
+
+// One row of cam0/data.csv.
+struct ImageRow {
+  Time time;
+  std::string filename;  // below cam0/data
+};
+
+// Parse the texts of cam0/data.csv and nav0/data.csv; 'file' is their name for messages. Columns
+// are found by their names, further columns are ignored. Throw InputError with the line for numbers
+// that are not finite, times that do not increase, and quaternions that do not have unit length (to
+// 1 %; smaller differences are rounding and are normalised). 'frames': the two frames in the names
+// of the pose's columns, "WB" in nav0, "RS" in EuRoC's ground truth.
+std::vector<ImageRow> ParseImageRows(std::string_view text, const std::string& file);
+std::vector<PoseSample> ParsePoseRows(std::string_view text, const std::string& file,
+                                      const std::string& frames = "WB");
+
+// Returns the folder of cam0: 'folder' itself or its mav0; nothing when it is not a recording.
+std::optional<std::string> FindEurocRoot(const std::string& folder);
+
+// Opens a recording in the EuRoC / ASL layout: cam0 (data.csv, data/, sensor.yaml) and, if there,
+// nav0/data.csv. Throws InputError when 'folder' is not a recording or its files are not valid.
+ImageSequence OpenEurocRecording(const std::string& folder);
+
+}  // namespace kestrel

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/io/recording/euroc/euroc_text.h"
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace kestrel {
+const char* DistortionName(DistortionModel model) {
+  switch (model) {
+    case DistortionModel::kEquidistant:
+      return "equidistant";
+    case DistortionModel::kRadialTangential:
+      return "radial-tangential";
+    default:
+      return "none";
+  }
+}
+
+std::string EurocTransformText(const RigidTransform& transform) {
+  Eigen::Matrix<double, 4, 4, Eigen::RowMajor> matrix = Eigen::Matrix4d::Identity();
+  matrix.topLeftCorner<3, 3>() = transform.rotation.toRotationMatrix();
+  matrix.topRightCorner<3, 1>() = transform.translation;
+  const double* first = matrix.data();
+  return fmt::format("  cols: 4\n  rows: 4\n  data: [{}]\n", fmt::join(first, first + 16, ", "));
+}
+
+std::string EurocCameraText(const CameraCalibration& calibration, double rate_hz) {
+  const CameraIntrinsics& camera = calibration.intrinsics;
+  std::string text = fmt::format(
+      "sensor_type: camera\n"
+      "rate_hz: {}\n"
+      "resolution: [{}, {}]\n"
+      "camera_model: pinhole\n"
+      "intrinsics: [{}, {}, {}, {}]\n"
+      "distortion_model: {}\n"
+      "distortion_coefficients: [{}]\n",
+      rate_hz, camera.width_px, camera.height_px, camera.fx_px, camera.fy_px, camera.cx_px,
+      camera.cy_px, DistortionName(camera.distortion_model), fmt::join(camera.distortion, ", "));
+  if (calibration.body_from_camera) {
+    text += "T_BS:\n" + EurocTransformText(*calibration.body_from_camera);
+  }
+  return text;
+}
+
+std::string EurocCalibrationText(const CameraCalibration& calibration, double rate_hz) {
+  std::string text = EurocCameraText(calibration, rate_hz);
+  if (calibration.clock_offset) {
+    text += fmt::format("timeshift_cam_imu: {}\n", ToSeconds(*calibration.clock_offset));
+  }
+  return text;
+}
+
+std::string EurocPoseSensorText(double rate_hz) {
+  return fmt::format("sensor_type: pose\nrate_hz: {}\n", rate_hz);
+}
+
+std::string EurocPoseColumns(const std::string& frames) {
+  return fmt::format(
+      "#timestamp [ns],p_{0}_{1}_x [m],p_{0}_{1}_y [m],p_{0}_{1}_z [m],"
+      "q_{0}_w [],q_{0}_x [],q_{0}_y [],q_{0}_z []",
+      frames, frames.front());
+}
+
+std::string EurocPoseCells(Time time, const RigidTransform& pose) {
+  const Eigen::Vector3d& p = pose.translation;
+  const Eigen::Quaterniond& q = pose.rotation;
+  return fmt::format("{},{:.6f},{:.6f},{:.6f},{:.9f},{:.9f},{:.9f},{:.9f}", ToNanoseconds(time),
+                     p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z());
+}
+
+std::string EurocPoseText(const std::vector<PoseSample>& poses) {
+  std::string text = EurocPoseColumns("WB") + "\n";
+  for (const PoseSample& pose : poses) {
+    text += EurocPoseCells(pose.time, pose.world_from_body) + "\n";
+  }
+  return text;
+}
+
+}  // namespace kestrel

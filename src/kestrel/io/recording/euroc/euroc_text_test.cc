@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/io/recording/euroc/euroc_text.h"
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "kestrel/core/camera/calibration_reader.h"
+#include "kestrel/io/recording/euroc/euroc_recording.h"
+
+namespace kestrel {
+namespace {
+
+TEST(EurocTextTest, CalibrationIsReadBackAsItWasWritten) {
+  CameraCalibration written;
+  written.intrinsics = {.width_px = 752,
+                        .height_px = 480,
+                        .fx_px = 261.1,
+                        .fy_px = 1.0 / 3,
+                        .cx_px = 376.25,
+                        .cy_px = 240,
+                        .distortion_model = DistortionModel::kEquidistant,
+                        .distortion = {-0.0448, 0.0686053, -0.072277, 0.027011955}};
+  written.intrinsics.fy_px = 260.0 + 1.0 / 3;
+  written.body_from_camera = {
+      Eigen::Quaterniond(Eigen::AngleAxisd(2, Eigen::Vector3d(1, 2, 3).normalized())),
+      {0.1, -0.2, 0.3}};
+  const CameraCalibration read = ParseCalibration(EurocCameraText(written, 30), "sensor.yaml");
+  EXPECT_EQ(read.intrinsics.fy_px, written.intrinsics.fy_px);
+  EXPECT_EQ(read.intrinsics.width_px, 752);
+  EXPECT_EQ(read.intrinsics.distortion, written.intrinsics.distortion);
+  EXPECT_EQ(read.intrinsics.distortion_model, DistortionModel::kEquidistant);
+  ASSERT_TRUE(read.body_from_camera);
+  EXPECT_LT(read.body_from_camera->rotation.angularDistance(written.body_from_camera->rotation),
+            1e-12);
+  EXPECT_EQ(read.body_from_camera->translation, written.body_from_camera->translation);
+}
+
+TEST(EurocTextTest, PosesAreReadBack) {
+  const std::vector<PoseSample> written = {
+      {TimeFromNanoseconds(5), {Eigen::Quaterniond(0.6, 0, 0.8, 0), {1, -2, 3.5}}},
+      {TimeFromNanoseconds(9), {Eigen::Quaterniond(0, 0, 0, 1), {0, 0, -1}}}};
+  const auto read = ParsePoseRows(EurocPoseText(written), "data.csv");
+  ASSERT_EQ(read.size(), 2u);
+  EXPECT_EQ(read[0].time, written[0].time);
+  EXPECT_EQ(read[0].world_from_body.translation, written[0].world_from_body.translation);
+  EXPECT_NEAR(read[1].world_from_body.rotation.z(), 1, 1e-9);
+}
+
+}  // namespace
+}  // namespace kestrel

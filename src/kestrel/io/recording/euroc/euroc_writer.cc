@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/io/recording/euroc/euroc_writer.h"
+
+#include <cstddef>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/write_file.h"
+#include "kestrel/io/recording/euroc/euroc_layout.h"
+#include "kestrel/io/recording/euroc/euroc_text.h"
+
+namespace kestrel {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kRoot[] = "mav0";
+
+// The file's path in a recording and its first row.
+RecordedFiles::File FileOf(EurocTable table) {
+  const fs::path root = kRoot;
+  switch (table) {
+    case EurocTable::kImages:
+      return {root / euroc::kImages, "#timestamp [ns],filename\n"};
+    case EurocTable::kExposures:
+      return {root / euroc::kExposures, "#timestamp [ns],exposure [s]\n"};
+    case EurocTable::kDroppedImages:
+      return {root / euroc::kDroppedImages, "#timestamp [ns],reason\n"};
+    case EurocTable::kPoses:
+      return {root / euroc::kPoses, EurocPoseColumns("WB") + "\n"};
+    case EurocTable::kTruePoses:
+      return {root / euroc::kTruePoses, TrueStateHeader()};
+    case EurocTable::kTruePatterns:
+      return {root / euroc::kTruePatterns, LandingTruthHeader()};
+    case EurocTable::kPackets:
+      return {"mavlink.tlog", ""};
+  }
+  return {};
+}
+
+// The files of all tables, in their order; one without rows is never made.
+std::vector<RecordedFiles::File> FilesIn(const fs::path& folder) {
+  std::vector<RecordedFiles::File> files;
+  for (const EurocTable table : kEurocTables) {
+    files.push_back(FileOf(table));
+    files.back().path = folder / files.back().path;
+  }
+  return files;
+}
+
+// Returns the folder with the folders of the tables in it.
+fs::path WithFolders(const fs::path& folder, std::span<const EurocTable> tables) {
+  std::error_code error;
+  for (const EurocTable table : tables) {
+    const bool is_images = table == EurocTable::kImages;
+    const fs::path parent = PathOf(table).parent_path();
+    if (!error)
+      fs::create_directories(folder / (is_images ? kRoot / fs::path(euroc::kImageFolder) : parent),
+                             error);
+  }
+  if (!error) return folder;
+  throw InputError(fmt::format("{}: cannot be written: {}", folder.string(), error.message()));
+}
+
+}  // namespace
+
+fs::path RecordedImagePath(Time time, std::string_view extension) {
+  return fs::path(kRoot) / euroc::kImageFolder /
+         fmt::format("{}.{}", ToNanoseconds(time), extension);
+}
+
+fs::path PathOf(EurocTable table) { return FileOf(table).path; }
+
+EurocWriter::EurocWriter(const fs::path& folder, std::span<const EurocTable> tables)
+    : folder_(WithFolders(folder, tables)), files_(folder_, FilesIn(folder_)) {}
+
+EurocWriter::~EurocWriter() { Commit(); }
+
+void EurocWriter::WriteCamera(const CameraCalibration& calibration, double rate_hz) const {
+  WriteFile(folder_ / kRoot / euroc::kCamera, EurocCalibrationText(calibration, rate_hz));
+}
+
+void EurocWriter::WritePoseSensor(double rate_hz) const {
+  WriteFile(folder_ / kRoot / euroc::kPoseSensor, EurocPoseSensorText(rate_hz));
+}
+
+void EurocWriter::WriteImage(Time time, std::string_view extension, std::string_view bytes) const {
+  ReplaceFile(folder_ / RecordedImagePath(time, extension), bytes);
+}
+
+void EurocWriter::ListImage(Time time, std::string_view extension) {
+  Add(EurocTable::kImages, fmt::format("{0},{0}.{1}\n", ToNanoseconds(time), extension));
+}
+
+void EurocWriter::AddExposure(Time from, double exposure_s) {
+  Add(EurocTable::kExposures, fmt::format("{},{:.7f}\n", ToNanoseconds(from), exposure_s));
+}
+
+void EurocWriter::AddDroppedImage(Time time, std::string_view reason) {
+  Add(EurocTable::kDroppedImages, fmt::format("{},{}\n", ToNanoseconds(time), reason));
+}
+
+void EurocWriter::AddPose(const PoseSample& pose) {
+  Add(EurocTable::kPoses, EurocPoseCells(pose.time, pose.world_from_body) + "\n");
+}
+
+void EurocWriter::AddTruePose(const PoseSample& pose) {
+  Add(EurocTable::kTruePoses, TrueStateRow(pose.time, pose.world_from_body,
+                                           pose.motion.value_or(BodyMotion()).velocity_in_world));
+}
+
+void EurocWriter::AddTruePattern(const TruePattern& pattern) {
+  Add(EurocTable::kTruePatterns, LandingTruthRow(pattern));
+}
+
+// A .tlog is a sequence of times (us of UTC, big endian) and packets.
+void EurocWriter::AddPacket(std::int64_t utc_us, std::span<const std::uint8_t> bytes) {
+  constexpr int kTimeBytes = 8;
+  std::string row;
+  for (int shift = 8 * (kTimeBytes - 1); shift >= 0; shift -= 8) {
+    row += static_cast<char>(static_cast<std::uint64_t>(utc_us) >> shift);
+  }
+  row.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  Add(EurocTable::kPackets, row);
+}
+
+void EurocWriter::CommitOrThrow() {
+  const std::string failure = Commit();
+  if (!failure.empty()) throw InputError(failure);
+}
+
+void EurocWriter::CommitMany() {
+  constexpr std::size_t kMany = std::size_t{32} << 10;
+  if (files_.waiting_bytes() >= kMany) CommitOrThrow();
+}
+
+void EurocWriter::Add(EurocTable table, std::string_view rows) {
+  files_.Add(static_cast<std::size_t>(table), rows);
+}
+
+}  // namespace kestrel
