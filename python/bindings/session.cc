@@ -265,7 +265,8 @@ class Session {
                 choices_.altitude_m);
     ObservationSinks sinks(SinkErrors::kThrow);
     if (!choices_.output.empty()) {
-      sinks.Add(std::make_unique<HuntFiles>(Output(opened), &run.pipeline(), opened.has_world(),
+      const bool has_map = opened.has_world() && !options_.hunt.still;
+      sinks.Add(std::make_unique<HuntFiles>(Output(opened), &run.pipeline(), has_map,
                                             std::vector<double>()));
     }
     return RunToEnd(opened, {nullptr, choices_.model}, &run, &sinks);

@@ -28,7 +28,7 @@ std::optional<RigidTransform> InverseOf(const std::optional<RigidTransform>& tra
 
 LandingVision::LandingVision(const CameraCalibration& calibration,
                              const LandingPipelineOptions& options, const OutputFolder* output,
-                             const std::optional<ExposureDrive>& exposure)
+                             bool has_track, const std::optional<ExposureDrive>& exposure)
     : pipeline_(calibration, options),
       camera_from_body_(InverseOf(calibration.body_from_camera)),
       clock_offset_(calibration.clock_offset.value_or(Duration::zero())),
@@ -36,8 +36,9 @@ LandingVision::LandingVision(const CameraCalibration& calibration,
       exposure_(exposure) {
   if (output == nullptr) return;
   detections_ = output->OpenText(kDetections);
-  track_ = output->OpenText(kTrack);
   WriteAtOnce(LandingCsvHeader(), kDetections, &*detections_);
+  if (!has_track) return;
+  track_ = output->OpenText(kTrack);
   WriteAtOnce(TrackCsvHeader(), kTrack, &*track_);
 }
 
@@ -122,7 +123,8 @@ bool LandingVision::WriteResults() {
       WriteAtOnce(LandingCsvRow(result->frame_name, result->observation), kDetections,
                   &*detections_);
       has_track_begun_ = has_track_begun_ || result->observation.fate;
-      if (has_track_begun_) WriteAtOnce(TrackCsvRow(result->observation), kTrack, &*track_);
+      if (track_ && has_track_begun_)
+        WriteAtOnce(TrackCsvRow(result->observation), kTrack, &*track_);
     }
     return true;
   } catch (const InputError&) {

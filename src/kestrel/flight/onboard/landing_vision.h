@@ -18,11 +18,11 @@ namespace kestrel {
 // The landing pipeline in flight; writes landing_detections.csv and landing_track.csv.
 class LandingVision : public FlightVision {
  public:
-  // 'output': folder of the tables; null: none are written. 'exposure': keeps the pattern's white
-  // right. Throws InputError when calibration or options are not valid, or the files cannot be
-  // written.
+  // 'output': folder of the tables; null: none are written. 'has_track': the target can be tracked.
+  // 'exposure': keeps the pattern's white right. Throws InputError when calibration or options are
+  // not valid, or the files cannot be written.
   LandingVision(const CameraCalibration& calibration, const LandingPipelineOptions& options,
-                const OutputFolder* output,
+                const OutputFolder* output, bool has_track,
                 const std::optional<ExposureDrive>& exposure = std::nullopt);
 
   void AddPose(const PoseSample& pose) override { pipeline_.AddPose(pose); }

@@ -112,6 +112,7 @@ class LiveSession::Impl {
   void BetweenFrames(const std::function<void()>& action) { program_->BetweenFrames(action); }
 
  private:
+  bool HasWorld() const;
   void OpenVision();
   double SightRange() const;
   void StayWithinSight();
@@ -165,7 +166,7 @@ LiveSession::Impl::~Impl() { recording_.Close(); }
 FlightEnd LiveSession::Impl::Run(const std::function<bool()>& is_stopped) {
   FlightEnd end = program_->Run(is_stopped);
   recording_.Close();
-  if (hunt_ != nullptr && output_) hunt_->WriteMap(*output_);
+  if (hunt_ != nullptr && output_ && HasWorld() && !options_.hunt.still) hunt_->WriteMap(*output_);
   if (output_) WriteFile(end_file_.string(), FlightEndCsv(end));
   return end;
 }
@@ -191,6 +192,11 @@ void LiveSession::Impl::Change(const LiveSessionOptions& changed) {
   });
 }
 
+// Results have places in the world: there is a mount, and somebody has poses.
+bool LiveSession::Impl::HasWorld() const {
+  return parts_.calibration.body_from_camera && (parts_.has_poses || !parts_.autopilot.empty());
+}
+
 void LiveSession::Impl::OpenVision() {
   if (!parts_.output.empty()) {
     output_.emplace(parts_.output, parts_.replace);
@@ -207,7 +213,8 @@ void LiveSession::Impl::OpenVision() {
     vision_ = std::move(hunt);
   } else {
     auto landing =
-        std::make_unique<LandingVision>(parts_.calibration, options_.landing, output(), Exposure());
+        std::make_unique<LandingVision>(parts_.calibration, options_.landing, output(),
+                                        HasWorld() && !options_.landing.still, Exposure());
     landing_ = landing.get();
     vision_ = std::move(landing);
   }
