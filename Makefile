@@ -73,13 +73,11 @@ accuracy: build  ## errors against truth; simulated flights (landings: SCENARIOS
 	scripts/hunt_accuracy $(BIN)
 	@for program in $(BIN)/bench/*accuracy; do echo "== $$program"; $$program || exit; done
 
-figures: configure-tests  ## all figures of README and docs, or FIGURES, measured and written
-	targets=$$(scripts/figures --targets $(FIGURES)) && cmake --build --preset release --target $$targets
-	scripts/figures --build $(BIN) $(FIGURES)
+figures: build  ## docs/figures.md measured again, all of it or by the programs FIGURES; and README's table from it
+	scripts/figures $(FIGURES)
 
-check-figures: configure-tests  ## what README and docs quote: form, commands, and what is quick to measure
-	targets=$$(scripts/figures --check --targets) && cmake --build --preset release --target $$targets
-	scripts/figures --build $(BIN) --check
+check-figures: build  ## README's table, and what is quick to measure of docs/figures.md
+	scripts/figures --check
 
 format:
 	scripts/check-format --fix
