@@ -19,7 +19,7 @@ export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
 export CCACHE_BASEDIR ?= $(CURDIR)
 export CCACHE_SLOPPINESS ?= locale
 
-.PHONY: demo console test dds python test-python python-module wheel interop browser bench accuracy figures check-figures format check asan tsan fuzz install command tests build configure configure-tests \
+.PHONY: demo console test dds python test-python python-module wheel interop browser bench accuracy figures check-figures options format check asan tsan fuzz install command tests build configure configure-tests \
   package repository package-test
 
 demo: command  ## a simulated landing, or with DATA=<folder> [CAMERA=<file>] your own images
@@ -78,6 +78,10 @@ figures: build  ## docs/figures.md measured again, all of it or by the programs 
 
 check-figures: build  ## README's table, and what is quick to measure of docs/figures.md
 	scripts/figures --check
+
+options: command  ## docs/options.md as the command prints it
+	{ sed '/^```yaml$$/q' docs/options.md && $(BIN)/src/kestrel/app/cli/kestrel config && echo '```'; } >$(BIN)/options.md
+	mv $(BIN)/options.md docs/options.md
 
 format:
 	scripts/check-format --fix
