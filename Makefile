@@ -19,7 +19,7 @@ export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
 export CCACHE_BASEDIR ?= $(CURDIR)
 export CCACHE_SLOPPINESS ?= locale
 
-.PHONY: demo console test dds python test-python python-module wheel interop browser bench accuracy figures check-figures format check asan tsan fuzz install command tests build configure configure-tests \
+.PHONY: demo console test dds python test-python python-module wheel interop browser bench accuracy figures check-figures options format check asan tsan fuzz install command tests build configure configure-tests \
   package repository package-test
 
 demo: command  ## a simulated landing, or with DATA=<folder> [CAMERA=<file>] your own images
@@ -73,13 +73,15 @@ accuracy: build  ## errors against truth; simulated flights (landings: SCENARIOS
 	scripts/hunt_accuracy $(BIN)
 	@for program in $(BIN)/bench/*accuracy; do echo "== $$program"; $$program || exit; done
 
-figures: configure-tests  ## all figures of README and docs, or FIGURES, measured and written
-	targets=$$(scripts/figures --targets $(FIGURES)) && cmake --build --preset release --target $$targets
-	scripts/figures --build $(BIN) $(FIGURES)
+figures: build  ## docs/figures.md measured again, all of it or by the programs FIGURES; and README's table from it
+	scripts/figures $(FIGURES)
 
-check-figures: configure-tests  ## what README and docs quote: form, commands, and what is quick to measure
-	targets=$$(scripts/figures --check --targets) && cmake --build --preset release --target $$targets
-	scripts/figures --build $(BIN) --check
+check-figures: build  ## README's table, and what is quick to measure of docs/figures.md
+	scripts/figures --check
+
+options: command  ## docs/options.md as the command prints it
+	{ sed '/^```yaml$$/q' docs/options.md && $(BIN)/src/kestrel/app/cli/kestrel config && echo '```'; } >$(BIN)/options.md
+	mv $(BIN)/options.md docs/options.md
 
 format:
 	scripts/check-format --fix

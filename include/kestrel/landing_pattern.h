@@ -9,6 +9,6 @@
 //                              .arm_width_m = 0.06,
 //                              .arm_half_length_m = 0.23,
 //                              .board_size_m = 0.9};
-//   for (const std::string& violation : small.Validate()) std::cerr << violation << "\n";
+//   for (const std::string& violation : ViolationsOf(small)) std::cerr << violation << "\n";
 
 #include "kestrel/vision/landing/landing_pattern.h"  // IWYU pragma: export

@@ -17,10 +17,9 @@ struct ConfigurationFile {
   LandingPipelineOptions landing;
   HuntPipelineOptions hunt;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor.Group("landing", self.landing);
-    visitor.Group("hunt", self.hunt);
+  static void Visit(auto& self, auto&& visit) {
+    visit.Group("landing", self.landing);
+    visit.Group("hunt", self.hunt);
   }
 };
 

@@ -77,7 +77,7 @@ void BindTeam(py::module_& module) {
            }),
            py::arg("name"),
            "name: of this UAV, 1 to 32 letters, digits, '_', '-' and '.'.\nKeyword arguments: "
-           "options by the names of `kestrel config` under team, as tell_period_s=1.")
+           "options by the names of `kestrel config` under team, as rate_bytes_per_s=5000.")
       .def("tell", &TeamMap::Tell, py::arg("objects"), py::arg("time_ns"),
            "Sets this UAV's own map, a list of MappedObject, at its time; the next tick sends it.")
       .def(

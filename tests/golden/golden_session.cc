@@ -13,9 +13,9 @@
 #include <thread>
 #include <utility>
 
-#include "kestrel/app/console/console_json.h"
-#include "kestrel/app/console/hunt_replay.h"
-#include "kestrel/app/console/landing_replay.h"
+#include "kestrel/app/console/messages/console_json.h"
+#include "kestrel/app/console/replay/hunt_replay.h"
+#include "kestrel/app/console/replay/landing_replay.h"
 #include "kestrel/app/foxglove/mcap_sink.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/flight/onboard/live_session.h"

@@ -105,7 +105,7 @@ class Flight {
     autopilot_ = MakeFlyAutopilot(arguments.autopilot, options_.fly, arguments.guide, &source_);
     session_.emplace(Parts(), SessionOptions(options_, source_, autopilot_));
     if (team_) {
-      session_->hunt()->ShareMap(DurationFromSeconds(options_.team.team.tell_period_s));
+      session_->hunt()->ShareMap(DurationFromSeconds(TeamOptions::kTellPeriod_s));
     }
   }
 

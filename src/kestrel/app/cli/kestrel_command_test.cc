@@ -149,6 +149,17 @@ TEST_F(KestrelCommandTest, ConfigReadsBackToItself) {
   EXPECT_THAT(again.out, HasSubstr("min_ring_px: 9.5 "));
 }
 
+TEST_F(KestrelCommandTest, ConfigPrintsOptionsOfSimulatorsApart) {
+  const std::string users = Succeed("config").out;
+  EXPECT_THAT(users, HasSubstr("min_ring_px:"));
+  EXPECT_THAT(users, Not(HasSubstr("sim_")));
+  EXPECT_LE(std::ranges::count(users, '#'), 200);
+  EXPECT_THAT(Succeed("config --set fly.sim_seed=7").out, HasSubstr("sim_seed: 7 "));
+  const std::string simulators = Succeed("config --simulation").out;
+  EXPECT_THAT(simulators, HasSubstr("sim_camera:"));
+  EXPECT_THAT(simulators, Not(HasSubstr("min_ring_px:")));
+}
+
 TEST_F(KestrelCommandTest, LandsOnARecording) {
   const std::string output = folder_ / "out";
   const Outcome outcome =

@@ -2,20 +2,8 @@
 #include "kestrel/app/options/kestrel_options.h"
 
 #include "kestrel/core/base/options.h"
-#include "kestrel/core/base/violations.h"
 
 namespace kestrel {
-
-std::vector<std::string> KestrelOptions::Validate() const {
-  std::vector<std::string> violations;
-  AddViolations("landing", landing.Validate(), &violations);
-  AddViolations("hunt", hunt.Validate(), &violations);
-  AddViolations("fly", fly.Validate(), &violations);
-  AddViolations("console", console.Validate(), &violations);
-  AddViolations("team", team.Validate(), &violations);
-  AddViolations("dds", dds.Validate(), &violations);
-  return violations;
-}
 
 KestrelOptions ReadKestrelOptions(const std::string& config_file,
                                   const std::vector<std::string>& settings) {

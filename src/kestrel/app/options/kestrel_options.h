@@ -22,16 +22,14 @@ struct KestrelOptions {
   TeamLinkOptions team;
   DdsOptions dds;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor.Group("landing", self.landing);
-    visitor.Group("hunt", self.hunt);
-    visitor.Group("fly", self.fly);
-    visitor.Group("console", self.console);
-    visitor.Group("team", self.team);
-    visitor.Group("dds", self.dds);
+  static void Visit(auto& self, auto&& visit) {
+    visit.Group("landing", self.landing);
+    visit.Group("hunt", self.hunt);
+    visit.Group("fly", self.fly);
+    visit.Group("console", self.console);
+    visit.Group("team", self.team);
+    visit.Group("dds", self.dds);
   }
-  std::vector<std::string> Validate() const;
 };
 
 // Returns the defaults, changed first by the file (if not empty) and then by the settings

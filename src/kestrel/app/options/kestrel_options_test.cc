@@ -9,7 +9,7 @@
 namespace kestrel {
 namespace {
 
-TEST(KestrelOptions, DefaultsAreValid) { EXPECT_TRUE(KestrelOptions().Validate().empty()); }
+TEST(KestrelOptions, DefaultsAreValid) { EXPECT_TRUE(ViolationsOf(KestrelOptions()).empty()); }
 
 TEST(KestrelOptions, SettingsChangeTheDefaults) {
   const KestrelOptions options = ReadKestrelOptions(

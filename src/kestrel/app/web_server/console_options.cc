@@ -13,7 +13,6 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/parse_number.h"
-#include "kestrel/core/base/violations.h"
 
 namespace kestrel {
 namespace {
@@ -71,12 +70,6 @@ std::vector<std::string> ConsoleOptions::Validate() const {
         "viewer_origins has '{}', expected origins as https://app.foxglove.dev, without a path",
         origin));
   }
-  RequireIn(port, 0, 65535, "port", &violations);
-  RequireIn(max_connections, 1, 1000, "max_connections", &violations);
-  RequireIn(max_image_rate_hz, 0.1, 200, "max_image_rate_hz", &violations);
-  RequireIn(jpeg_quality, 1, 100, "jpeg_quality", &violations);
-  RequireIn(message_queue, 1, 100000, "message_queue", &violations);
-  RequireIn(idle_timeout_s, 1, 3600, "idle_timeout_s", &violations);
   return violations;
 }
 

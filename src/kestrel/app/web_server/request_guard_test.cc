@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/base/options.h"
 
 namespace kestrel {
 namespace {
@@ -100,20 +101,20 @@ TEST(RequestGuardTest, ReadsItsCookieAmongOthers) {
 
 TEST(ConsoleOptionsTest, NamesWhatIsWrongButNeverTheToken) {
   ConsoleOptions options = OptionsAt("nowhere", "geheim");
-  options.port = 70000;
-  EXPECT_THAT(options.Validate(),
+  EXPECT_THAT(ViolationsOf(options),
               testing::ElementsAre("address is 'nowhere', expected an IP address",
-                                   "token is not 16 to 128 of A-Z a-z 0-9 - _",
-                                   "port is 70000, expected 0 to 65535"));
-  EXPECT_THAT(OptionsAt("::1").Validate(), testing::IsEmpty());
-  EXPECT_THAT(OptionsAt("10.0.0.5", "0123456789abcdef").Validate(), testing::IsEmpty());
+                                   "token is not 16 to 128 of A-Z a-z 0-9 - _"));
+  options.port = 70000;
+  EXPECT_THAT(ViolationsOf(options), testing::ElementsAre("port is 70000, expected 0 to 65535"));
+  EXPECT_THAT(ViolationsOf(OptionsAt("::1")), testing::IsEmpty());
+  EXPECT_THAT(ViolationsOf(OptionsAt("10.0.0.5", "0123456789abcdef")), testing::IsEmpty());
 }
 
 TEST(ConsoleOptionsTest, AddressOpenToOthersGetsAToken) {
   EXPECT_EQ(WithToken(OptionsAt("127.0.0.1")).token, "");
   const ConsoleOptions open = WithToken(OptionsAt("0.0.0.0"));
   EXPECT_EQ(open.token.size(), 32u);
-  EXPECT_THAT(open.Validate(), testing::IsEmpty());
+  EXPECT_THAT(ViolationsOf(open), testing::IsEmpty());
   EXPECT_NE(WithToken(OptionsAt("0.0.0.0")).token, open.token);
   EXPECT_EQ(WithToken(OptionsAt("0.0.0.0", "0123456789abcdef")).token, "0123456789abcdef");
 }
@@ -130,13 +131,13 @@ TEST(RequestGuardTest, OwnNameIsAHost) {
 TEST(ConsoleOptionsTest, OriginsOfViewersAreNeitherPathsNorAnything) {
   ConsoleOptions options = OptionsAt("127.0.0.1", kToken);
   options.viewer_origins = "https://app.foxglove.dev, http://localhost:8081, file://";
-  EXPECT_THAT(options.Validate(), testing::IsEmpty());
+  EXPECT_THAT(ViolationsOf(options), testing::IsEmpty());
   EXPECT_EQ(options.ViewerOrigins()[1], "http://localhost:8081");
   options.token.clear();
   for (const char* origin : {"file://", "null", "*", "https://*", "app.foxglove.dev", "https://",
                              "https://app.foxglove.dev/", "://x"}) {
     options.viewer_origins = origin;
-    EXPECT_EQ(options.Validate().size(), 1u) << origin;
+    EXPECT_EQ(ViolationsOf(options).size(), 1u) << origin;
   }
 }
 

@@ -12,6 +12,7 @@
 #include <ceres/rotation.h>
 
 #include "kestrel/core/base/held_parameters.h"
+#include "kestrel/core/base/options.h"
 #include "kestrel/core/base/robust_statistics.h"
 
 namespace kestrel {
@@ -162,7 +163,7 @@ class LineFit {
     print.pattern.arm_width_m = state_[kArmWidth];
     print.pattern.arm_half_length_m = state_[kArmHalfLength];
     constexpr double kMaxScatter_px = 0.5, kMaxSpread_px = 3 * kSpreadSigma_px;
-    const bool is_consistent = print.pattern.Validate().empty() &&
+    const bool is_consistent = ViolationsOf(print.pattern).empty() &&
                                Scatter() <= kMaxScatter_px * start_.pixel_m &&
                                std::abs(state_[kSpread]) <= kMaxSpread_px * start_.pixel_m;
     return {Measured(print, with_ends), print, is_consistent};

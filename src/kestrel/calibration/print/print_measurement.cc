@@ -8,6 +8,7 @@
 
 #include "kestrel/calibration/print/print_fit.h"
 #include "kestrel/calibration/print/print_lines.h"
+#include "kestrel/core/base/options.h"
 
 namespace kestrel {
 namespace {
@@ -55,7 +56,7 @@ std::vector<LandingPattern> LikelyPatterns(const LandingPattern& pattern) {
         other.ring_width_m *= ring;
         other.arm_width_m *= arm;
         other.arm_half_length_m *= length;
-        if (other.Validate().empty()) patterns.push_back(other);
+        if (ViolationsOf(other).empty()) patterns.push_back(other);
       }
     }
   }
@@ -85,7 +86,7 @@ class PrintSearch {
                            options.pattern.outer_diameter_m / ring_px};
     // Repeated with the measured pattern, whose lines cross the outlines better.
     std::optional<PrintFit> fit = Fit(found, lens);
-    if (!fit || !fit->print.pattern.Validate().empty()) return std::nullopt;
+    if (!fit || !ViolationsOf(fit->print.pattern).empty()) return std::nullopt;
     return Fit(fit->print, lens);
   }
 

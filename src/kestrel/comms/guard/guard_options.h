@@ -2,7 +2,8 @@
 #pragma once
 
 #include <string>
-#include <vector>
+
+#include "kestrel/core/base/limits.h"
 
 namespace kestrel {
 
@@ -10,20 +11,16 @@ namespace kestrel {
 // UAV when the program that flies is gone: docs/guard.md.
 struct GuardOptions {
   bool enabled = true;
-  // Without a sign of life for so long the program is taken for dead.
   double silence_s = 0.2;
-  // The guard's program; empty: kestrel-guard beside this program, or in PATH.
   std::string program;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("enabled", self.enabled, "", "a guard holds the line while guidance may fly");
-    visitor("silence_s", self.silence_s, "s",
-            "time without a sign of life after which the guard stops the UAV");
-    visitor("program", self.program, "",
-            "the guard's program; empty: kestrel-guard beside this one, or in PATH");
+  static void Visit(auto& self, auto&& visit) {
+    visit("enabled", self.enabled, "a guard holds the line while guidance may fly");
+    visit("silence_s", self.silence_s, Range{0.1, 1},
+          "time without a sign of life after which the guard stops the UAV");
+    visit("program", self.program,
+          "the guard's program; empty: kestrel-guard beside this one, or in PATH");
   }
-  std::vector<std::string> Validate() const;
 };
 
 }  // namespace kestrel

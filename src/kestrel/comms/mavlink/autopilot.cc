@@ -9,10 +9,19 @@
 
 #include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/core/base/options.h"
-#include "kestrel/core/base/violations.h"
 
 namespace kestrel {
 namespace {
+
+// Rates that are requested beside those below.
+constexpr double kLandedRate_hz = 5;
+constexpr double kRangeRate_hz = 20;
+constexpr double kStatusRate_hz = 2;
+constexpr double kTruePoseRate_hz = 100;
+// After so long without a heartbeat the autopilot is away.
+constexpr double kAwayAfter_s = 3;
+// An older position does not tell where the vehicle is now.
+constexpr double kPositionAge_s = 0.5;
 
 using std::chrono::seconds;
 
@@ -40,29 +49,12 @@ bool IsInFailsafe(const mavlink::Heartbeat& heartbeat) {
 
 }  // namespace
 
-std::vector<std::string> AutopilotOptions::Validate() const {
-  constexpr int kMaxId = 255;
-  constexpr double kMaxRate_hz = 500;
-  std::vector<std::string> violations;
-  RequireIn(system_id, 0, kMaxId, "system_id", &violations);
-  RequireIn(attitude_rate_hz, 0, kMaxRate_hz, "attitude_rate_hz", &violations);
-  RequireIn(position_rate_hz, 0, kMaxRate_hz, "position_rate_hz", &violations);
-  RequireIn(landed_rate_hz, 0, kMaxRate_hz, "landed_rate_hz", &violations);
-  RequireIn(range_rate_hz, 0, kMaxRate_hz, "range_rate_hz", &violations);
-  RequireIn(status_rate_hz, 0, kMaxRate_hz, "status_rate_hz", &violations);
-  RequireIn(mode_rate_hz, 0, kMaxRate_hz, "mode_rate_hz", &violations);
-  RequireIn(true_pose_rate_hz, 0, kMaxRate_hz, "true_pose_rate_hz", &violations);
-  RequirePositive(away_after_s, "away_after_s", &violations);
-  RequirePositive(position_age_s, "position_age_s", &violations);
-  return violations;
-}
-
 Autopilot::Autopilot(const AutopilotOptions& options, Connection* connection,
                      AutopilotListener listener)
     : options_(options),
       connection_(connection),
       listener_(std::move(listener)),
-      poses_(options.position_age_s) {
+      poses_(kPositionAge_s) {
   RequireValid(options);
 }
 
@@ -72,7 +64,7 @@ bool Autopilot::is_in_failsafe() const { return IsInFailsafe(heartbeat_); }
 
 std::optional<bool> Autopilot::is_position_good(Time now) const {
   const auto& estimator = status_.estimator();
-  if (!estimator || ToSeconds(now - estimator->received) > options_.away_after_s) {
+  if (!estimator || ToSeconds(now - estimator->received) > kAwayAfter_s) {
     return std::nullopt;
   }
   return estimator->is_good;
@@ -367,7 +359,7 @@ void Autopilot::Tick(Time now) {
 }
 
 void Autopilot::CheckPresence(Time now) {
-  if (!is_here_ || ToSeconds(now - heard_) < options_.away_after_s) return;
+  if (!is_here_ || ToSeconds(now - heard_) < kAwayAfter_s) return;
   is_here_ = false;
   Tell(AutopilotEventKind::kAway,
        fmt::format("no heartbeat of the autopilot for {:.1f} s", ToSeconds(now - heard_)));
@@ -392,19 +384,19 @@ void Autopilot::WantStreams() {
   streams_.AskAgain();
   streams_.Want(mavlink::AttitudeQuaternion::kId, options_.attitude_rate_hz);
   streams_.Want(mavlink::LocalPositionNed::kId, options_.position_rate_hz);
-  streams_.Want(mavlink::ExtendedSysState::kId, options_.landed_rate_hz);
+  streams_.Want(mavlink::ExtendedSysState::kId, kLandedRate_hz);
   // Not every vehicle has a range sensor.
-  streams_.WantIfThere(mavlink::DistanceSensor::kId, options_.range_rate_hz);
+  streams_.WantIfThere(mavlink::DistanceSensor::kId, kRangeRate_hz);
   const bool is_px4 = kind_ == AutopilotKind::kPx4;
   streams_.WantIfThere(is_px4 ? mavlink::CurrentMode::kId : mavlink::Heartbeat::kId,
                        options_.mode_rate_hz);
   streams_.WantIfThere(is_px4 ? mavlink::EstimatorStatus::kId : mavlink::EkfStatusReport::kId,
-                       options_.status_rate_hz);
-  streams_.WantIfThere(mavlink::SysStatus::kId, options_.status_rate_hz);
-  streams_.WantIfThere(mavlink::GpsRawInt::kId, options_.status_rate_hz);
+                       kStatusRate_hz);
+  streams_.WantIfThere(mavlink::SysStatus::kId, kStatusRate_hz);
+  streams_.WantIfThere(mavlink::GpsRawInt::kId, kStatusRate_hz);
   if (options_.wants_true_pose) {
     streams_.Want(is_px4 ? mavlink::HilStateQuaternion::kId : mavlink::SimState::kId,
-                  options_.true_pose_rate_hz);
+                  kTruePoseRate_hz);
   }
   WantTimesync();
 }

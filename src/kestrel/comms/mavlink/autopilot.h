@@ -7,7 +7,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "kestrel/comms/mavlink/autopilot_kind.h"
 #include "kestrel/comms/mavlink/autopilot_poses.h"
@@ -20,58 +19,33 @@
 #include "kestrel/comms/mavlink/parameter_reader.h"
 #include "kestrel/comms/mavlink/parameter_writer.h"
 #include "kestrel/comms/mavlink/stream_requests.h"
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/poses/pose_history.h"
 
 namespace kestrel {
 
 struct AutopilotOptions {
-  // System of the autopilot; 0: the first one that is heard.
   int system_id = 0;
-  // Rates that are requested from the autopilot; 0: its own default.
   double attitude_rate_hz = 100;
   double position_rate_hz = 50;
-  double landed_rate_hz = 5;
-  double range_rate_hz = 20;
-  double status_rate_hz = 2;
   // Set-points depend on the mode, which must then come more often than once a second with the
   // heartbeat: by more heartbeats, and by CURRENT_MODE, which PX4 sends as soon as it changes.
   double mode_rate_hz = 0;
-  // Requests the true pose, which only simulated vehicles know, at this rate.
-  bool wants_true_pose = false;
-  double true_pose_rate_hz = 100;
-  // After so long without a heartbeat the autopilot is away.
-  double away_after_s = 3;
-  // An older position does not tell where the vehicle is now.
-  double position_age_s = 0.5;
-  // Also sends heartbeats of a ground station: PX4 sends its texts only to ground stations. PX4
-  // then believes that a ground station is there even if there is none.
+  bool wants_true_pose = false;  // which only simulated vehicles know
   bool poses_as_ground_station = false;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("system_id", self.system_id, "",
-            "MAVLink system of the autopilot; 0: the first that is heard");
-    visitor("attitude_rate_hz", self.attitude_rate_hz, "Hz",
-            "requested rate of attitudes; 0: not requested");
-    visitor("position_rate_hz", self.position_rate_hz, "Hz", "requested rate of positions");
-    visitor("landed_rate_hz", self.landed_rate_hz, "Hz", "requested rate of the landed state");
-    visitor("range_rate_hz", self.range_rate_hz, "Hz", "requested rate of distance sensors");
-    visitor("status_rate_hz", self.status_rate_hz, "Hz",
-            "requested rate of the battery's state and of the estimate's health");
-    visitor("mode_rate_hz", self.mode_rate_hz, "Hz",
-            "requested rate of the mode; 0: once a second, by heartbeats");
-    visitor("wants_true_pose", self.wants_true_pose, "",
-            "the true pose of a simulated vehicle is requested");
-    visitor("true_pose_rate_hz", self.true_pose_rate_hz, "Hz", "requested rate of the true pose");
-    visitor("away_after_s", self.away_after_s, "s",
-            "time without a heartbeat after which the autopilot is away");
-    visitor("position_age_s", self.position_age_s, "s",
-            "largest age of a position that is used in a pose");
-    visitor("poses_as_ground_station", self.poses_as_ground_station, "",
-            "heartbeats of a ground station are sent, too, so that PX4 sends its texts");
+  static void Visit(auto& self, auto&& visit) {
+    visit("system_id", self.system_id, Range{0, 255},
+          "MAVLink system of the autopilot; 0: the first that is heard");
+    visit("attitude_rate_hz", self.attitude_rate_hz, Range{0, 500},
+          "requested rate of attitudes; 0: not requested");
+    visit("position_rate_hz", self.position_rate_hz, Range{0, 500}, "requested rate of positions");
+    visit("poses_as_ground_station", self.poses_as_ground_station,
+          "heartbeats of a ground station are sent, too, so that PX4 sends its texts");
+    visit.Gone({"landed_rate_hz", "range_rate_hz", "status_rate_hz", "mode_rate_hz",
+                "wants_true_pose", "true_pose_rate_hz", "away_after_s", "position_age_s"});
   }
-  std::vector<std::string> Validate() const;
 };
 
 enum class AutopilotEventKind {

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "kestrel/core/base/options.h"
-#include "kestrel/core/base/violations.h"
 
 namespace kestrel {
 namespace {
@@ -13,14 +12,6 @@ constexpr std::size_t kLargestDatagram = 65536;
 constexpr std::uint8_t kFirstSystem = 1;
 
 }  // namespace
-
-std::vector<std::string> ConnectionOptions::Validate() const {
-  std::vector<std::string> violations;
-  constexpr int kMaxId = 255;
-  RequireIn(system_id, 0, kMaxId, "system_id", &violations);
-  RequireIn(component_id, 1, kMaxId, "component_id", &violations);
-  return violations;
-}
 
 Connection::Connection(const std::string& url, const ConnectionOptions& options, Tap tap,
                        std::unique_ptr<Transport> transport)

@@ -19,28 +19,24 @@
 #include "kestrel/comms/mavlink/signing.h"
 #include "kestrel/comms/mavlink/timestamp_file.h"
 #include "kestrel/comms/mavlink/transport.h"
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/time.h"
 
 namespace kestrel {
 
 struct ConnectionOptions {
-  // Ids of this program. System 0: the autopilot's own, and 1 until it is heard.
   int system_id = 0;
   int component_id = 191;
-  // File with the key for signing packets; packets without a signature by it are refused. Empty: no
-  // signing. The last timestamp used is kept in a file of this name with ".timestamp".
   std::string signing_key;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("system_id", self.system_id, "",
-            "MAVLink system of this program, up to 255; 0: the autopilot's");
-    visitor("component_id", self.component_id, "",
-            "MAVLink component of this program, 1 to 255; 191 is an on-board computer");
-    visitor("signing_key", self.signing_key, "",
-            "file with the key of signed packets (mode 0600); empty: not signed");
+  static void Visit(auto& self, auto&& visit) {
+    visit("system_id", self.system_id, Range{0, 255},
+          "MAVLink system of this program; 0: the autopilot's");
+    visit("component_id", self.component_id, Range{1, 255},
+          "MAVLink component of this program; 191 is an on-board computer");
+    visit("signing_key", self.signing_key,
+          "file with the key of signed packets (mode 0600); empty: not signed");
   }
-  std::vector<std::string> Validate() const;
 };
 
 // A line to an autopilot that carries messages: transport, parser, writer and signing. It

@@ -23,8 +23,7 @@ struct Heartbeat {
   std::uint8_t system_status = 0;
   std::uint8_t mavlink_version = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("type", self.type, "");
     visitor("autopilot", self.autopilot, "");
     visitor("base_mode", self.base_mode, "");
@@ -54,8 +53,7 @@ struct SysStatus {
   std::uint32_t onboard_control_sensors_enabled_extended = 0;
   std::uint32_t onboard_control_sensors_health_extended = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("onboard_control_sensors_present", self.onboard_control_sensors_present, "");
     visitor("onboard_control_sensors_enabled", self.onboard_control_sensors_enabled, "");
     visitor("onboard_control_sensors_health", self.onboard_control_sensors_health, "");
@@ -85,8 +83,7 @@ struct SystemTime {
   std::uint64_t time_unix_usec = 0;
   std::uint32_t time_boot_ms = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("time_unix_usec", self.time_unix_usec, "us");
     visitor("time_boot_ms", self.time_boot_ms, "ms");
   }
@@ -99,8 +96,7 @@ struct SetMode {
   std::uint8_t base_mode = 0;
   std::uint32_t custom_mode = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("target_system", self.target_system, "");
     visitor("base_mode", self.base_mode, "");
     visitor("custom_mode", self.custom_mode, "");
@@ -115,8 +111,7 @@ struct ParamRequestRead {
   std::array<char, 16> param_id{};
   std::int16_t param_index = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("target_system", self.target_system, "");
     visitor("target_component", self.target_component, "");
     visitor("param_id", self.param_id, "");
@@ -130,8 +125,7 @@ struct ParamRequestList {
   std::uint8_t target_system = 0;
   std::uint8_t target_component = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("target_system", self.target_system, "");
     visitor("target_component", self.target_component, "");
   }
@@ -147,8 +141,7 @@ struct ParamValue {
   std::uint16_t param_count = 0;
   std::uint16_t param_index = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("param_id", self.param_id, "");
     visitor("param_value", self.param_value, "");
     visitor("param_type", self.param_type, "");
@@ -166,8 +159,7 @@ struct ParamSet {
   float param_value = 0;
   std::uint8_t param_type = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("target_system", self.target_system, "");
     visitor("target_component", self.target_component, "");
     visitor("param_id", self.param_id, "");
@@ -196,8 +188,7 @@ struct GpsRawInt {
   std::uint32_t hdg_acc = 0;
   std::uint16_t yaw = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("time_usec", self.time_usec, "us");
     visitor("fix_type", self.fix_type, "");
     visitor("lat", self.lat, "degE7");
@@ -229,8 +220,7 @@ struct Attitude {
   float pitchspeed = 0;
   float yawspeed = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("time_boot_ms", self.time_boot_ms, "ms");
     visitor("roll", self.roll, "rad");
     visitor("pitch", self.pitch, "rad");
@@ -254,8 +244,7 @@ struct AttitudeQuaternion {
   float yawspeed = 0;
   std::array<float, 4> repr_offset_q{};
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("time_boot_ms", self.time_boot_ms, "ms");
     visitor("q1", self.q1, "");
     visitor("q2", self.q2, "");
@@ -280,8 +269,7 @@ struct LocalPositionNed {
   float vy = 0;
   float vz = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("time_boot_ms", self.time_boot_ms, "ms");
     visitor("x", self.x, "m");
     visitor("y", self.y, "m");
@@ -305,8 +293,7 @@ struct GlobalPositionInt {
   std::int16_t vz = 0;
   std::uint16_t hdg = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("time_boot_ms", self.time_boot_ms, "ms");
     visitor("lat", self.lat, "degE7");
     visitor("lon", self.lon, "degE7");
@@ -327,8 +314,7 @@ struct GpsGlobalOrigin {
   std::int32_t altitude = 0;
   std::uint64_t time_usec = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("latitude", self.latitude, "degE7");
     visitor("longitude", self.longitude, "degE7");
     visitor("altitude", self.altitude, "mm");
@@ -362,8 +348,7 @@ struct RcChannels {
   std::uint16_t chan18_raw = 0;
   std::uint8_t rssi = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("time_boot_ms", self.time_boot_ms, "ms");
     visitor("chancount", self.chancount, "");
     visitor("chan1_raw", self.chan1_raw, "us");
@@ -397,8 +382,7 @@ struct RequestDataStream {
   std::uint16_t req_message_rate = 0;
   std::uint8_t start_stop = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("target_system", self.target_system, "");
     visitor("target_component", self.target_component, "");
     visitor("req_stream_id", self.req_stream_id, "");
@@ -422,8 +406,7 @@ struct CommandLong {
   float param6 = 0;
   float param7 = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("target_system", self.target_system, "");
     visitor("target_component", self.target_component, "");
     visitor("command", self.command, "");
@@ -448,8 +431,7 @@ struct CommandAck {
   std::uint8_t target_system = 0;
   std::uint8_t target_component = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("command", self.command, "");
     visitor("result", self.result, "");
     visitor.Extensions();
@@ -474,8 +456,7 @@ struct SetAttitudeTarget {
   float thrust = 0;
   std::array<float, 3> thrust_body{};
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("time_boot_ms", self.time_boot_ms, "ms");
     visitor("target_system", self.target_system, "");
     visitor("target_component", self.target_component, "");
@@ -510,8 +491,7 @@ struct SetPositionTargetLocalNed {
   float yaw = 0;
   float yaw_rate = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("time_boot_ms", self.time_boot_ms, "ms");
     visitor("target_system", self.target_system, "");
     visitor("target_component", self.target_component, "");
@@ -560,8 +540,7 @@ struct SimState {
   std::int32_t lat_int = 0;
   std::int32_t lon_int = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("q1", self.q1, "");
     visitor("q2", self.q2, "");
     visitor("q3", self.q3, "");
@@ -599,8 +578,7 @@ struct Timesync {
   std::uint8_t target_system = 0;
   std::uint8_t target_component = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("tc1", self.tc1, "ns");
     visitor("ts1", self.ts1, "ns");
     visitor.Extensions();
@@ -629,8 +607,7 @@ struct HilStateQuaternion {
   std::int16_t yacc = 0;
   std::int16_t zacc = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("time_usec", self.time_usec, "us");
     visitor("attitude_quaternion", self.attitude_quaternion, "");
     visitor("rollspeed", self.rollspeed, "rad/s");
@@ -666,8 +643,7 @@ struct DistanceSensor {
   std::array<float, 4> quaternion{};
   std::uint8_t signal_quality = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("time_boot_ms", self.time_boot_ms, "ms");
     visitor("min_distance", self.min_distance, "cm");
     visitor("max_distance", self.max_distance, "cm");
@@ -699,8 +675,7 @@ struct FollowTarget {
   std::array<float, 3> position_cov{};
   std::uint64_t custom_state = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("timestamp", self.timestamp, "ms");
     visitor("est_capabilities", self.est_capabilities, "");
     visitor("lat", self.lat, "degE7");
@@ -731,8 +706,7 @@ struct AutopilotVersion {
   std::uint64_t uid = 0;
   std::array<std::uint8_t, 18> uid2{};
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("capabilities", self.capabilities, "");
     visitor("flight_sw_version", self.flight_sw_version, "");
     visitor("middleware_sw_version", self.middleware_sw_version, "");
@@ -767,8 +741,7 @@ struct LandingTarget {
   std::uint8_t type = 0;
   std::uint8_t position_valid = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("time_usec", self.time_usec, "us");
     visitor("target_num", self.target_num, "");
     visitor("frame", self.frame, "");
@@ -798,8 +771,7 @@ struct EkfStatusReport {
   float terrain_alt_variance = 0;
   float airspeed_variance = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("flags", self.flags, "");
     visitor("velocity_variance", self.velocity_variance, "");
     visitor("pos_horiz_variance", self.pos_horiz_variance, "");
@@ -825,8 +797,7 @@ struct EstimatorStatus {
   float pos_horiz_accuracy = 0;
   float pos_vert_accuracy = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("time_usec", self.time_usec, "us");
     visitor("flags", self.flags, "");
     visitor("vel_ratio", self.vel_ratio, "");
@@ -855,8 +826,7 @@ struct HomePosition {
   float approach_z = 0;
   std::uint64_t time_usec = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("latitude", self.latitude, "degE7");
     visitor("longitude", self.longitude, "degE7");
     visitor("altitude", self.altitude, "mm");
@@ -878,8 +848,7 @@ struct MessageInterval {
   std::uint16_t message_id = 0;
   std::int32_t interval_us = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("message_id", self.message_id, "");
     visitor("interval_us", self.interval_us, "us");
   }
@@ -891,8 +860,7 @@ struct ExtendedSysState {
   std::uint8_t vtol_state = 0;
   std::uint8_t landed_state = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("vtol_state", self.vtol_state, "");
     visitor("landed_state", self.landed_state, "");
   }
@@ -906,8 +874,7 @@ struct Statustext {
   std::uint16_t id = 0;
   std::uint8_t chunk_seq = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("severity", self.severity, "");
     visitor("text", self.text, "");
     visitor.Extensions();
@@ -923,8 +890,7 @@ struct CurrentMode {
   std::uint32_t custom_mode = 0;
   std::uint32_t intended_custom_mode = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("standard_mode", self.standard_mode, "");
     visitor("custom_mode", self.custom_mode, "");
     visitor("intended_custom_mode", self.intended_custom_mode, "");
@@ -947,8 +913,7 @@ struct TargetRelative {
   std::array<float, 4> q_sensor{};
   std::uint8_t type = 0;
 
-  template <class Self, class Visitor>
-  static constexpr void Visit(Self& self, Visitor&& visitor) {
+  static constexpr void Visit(auto& self, auto&& visitor) {
     visitor("timestamp", self.timestamp, "us");
     visitor("id", self.id, "");
     visitor("frame", self.frame, "");

@@ -10,7 +10,6 @@
 #include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/comms/mavlink/ned.h"
 #include "kestrel/core/base/error.h"
-#include "kestrel/core/base/violations.h"
 
 namespace kestrel {
 namespace {
@@ -92,13 +91,6 @@ LinkProfile ParseLinkProfile(const std::string& name) {
 
 LinkProfile ProfileFor(AutopilotKind kind) {
   return kind == AutopilotKind::kPx4 ? LinkProfile::kPx4 : LinkProfile::kArduPilot;
-}
-
-std::vector<std::string> TargetMessageOptions::Validate() const {
-  constexpr double kMaxOnWire_m = 655;
-  std::vector<std::string> violations;
-  RequireIn(max_distance_m, 1, kMaxOnWire_m, "max_distance_m", &violations);
-  return violations;
 }
 
 mavlink::LandingTarget LandingTargetForArduPilot(const TargetReport& report,

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include <Eigen/Core>
 
@@ -12,6 +11,7 @@
 #include "kestrel/comms/mavlink/connection.h"
 #include "kestrel/comms/mavlink/global_position.h"
 #include "kestrel/comms/mavlink/messages.h"
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/geometry/rigid_transform.h"
 
@@ -70,16 +70,14 @@ struct TargetMessageOptions {
   double max_distance_m = 40;
   bool sends_follow_target = false;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("sends_distance", self.sends_distance, "",
-            "DISTANCE_SENSOR is sent, too: the height above the target, as a rangefinder's");
-    visitor("max_distance_m", self.max_distance_m, "m",
-            "largest height that DISTANCE_SENSOR reports");
-    visitor("sends_follow_target", self.sends_follow_target, "",
-            "FOLLOW_TARGET is sent, too, once the autopilot has reported its origin");
+  static void Visit(auto& self, auto&& visit) {
+    visit("sends_distance", self.sends_distance,
+          "DISTANCE_SENSOR is sent, too: the height above the target, as a rangefinder's");
+    visit("max_distance_m", self.max_distance_m, Range{1, 655},
+          "largest height that DISTANCE_SENSOR reports");
+    visit("sends_follow_target", self.sends_follow_target,
+          "FOLLOW_TARGET is sent, too, once the autopilot has reported its origin");
   }
-  std::vector<std::string> Validate() const;
 };
 
 // Sends the profile's message for the report, and those of the options. False when the target's

@@ -164,7 +164,7 @@ void TeamFusion::FuseChildren(std::size_t node) {
     return Moved(part.objects, part.common_from_world);
   };
   nodes_[node].objects = objects_of(2 * node);
-  nodes_[node].from_right = FuseObjects(objects_of(2 * node + 1), options_, &nodes_[node].objects);
+  nodes_[node].from_right = FuseObjects(objects_of(2 * node + 1), &nodes_[node].objects);
   nodes_[node].is_changed = true;
 }
 
@@ -175,7 +175,7 @@ void TeamFusion::FuseAdrift() {
   for (auto& [uav, part] : parts_) {
     if (part.is_placed) continue;
     std::vector<MappedObject> fused = standing_;
-    part.indices = FuseObjects(Moved(part.objects, part.common_from_world), options_, &fused);
+    part.indices = FuseObjects(Moved(part.objects, part.common_from_world), &fused);
     standing_.insert(standing_.end(), fused.begin() + std::ssize(standing_), fused.end());
   }
 }

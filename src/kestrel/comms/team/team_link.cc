@@ -17,7 +17,6 @@
 
 #include "kestrel/comms/mavlink/signing.h"
 #include "kestrel/core/base/error.h"
-#include "kestrel/core/base/violations.h"
 #include "kestrel/io/recording/tables/object_map_files.h"
 
 namespace kestrel {
@@ -61,7 +60,7 @@ std::string CheckedTeam(const std::string& team) {
 }  // namespace
 
 std::vector<std::string> TeamLinkOptions::Validate() const {
-  std::vector<std::string> violations = team.Validate();
+  std::vector<std::string> violations;
   if (!uav.empty() && !IsUavName(uav)) {
     violations.push_back(fmt::format("uav is '{}', {}", uav, kUavNames));
   }
@@ -79,7 +78,7 @@ TeamLink::TeamLink(const std::string& team, int domain, const TeamLinkOptions& o
       say_(std::move(say)) {}
 
 bool TeamLink::IsTimeToTell() const {
-  return !told_ || Now() - *told_ >= DurationFromSeconds(options_.team.tell_period_s);
+  return !told_ || Now() - *told_ >= DurationFromSeconds(TeamOptions::kTellPeriod_s);
 }
 
 void TeamLink::Tell(std::vector<MappedObject> objects) {
@@ -102,7 +101,7 @@ void TeamLink::Exchange() {
 
 // Called as often as the claim is sent to others.
 void TeamLink::ChooseAgain() {
-  next_claim_ = Now() + DurationFromSeconds(options_.team.digest_period_s);
+  next_claim_ = Now() + DurationFromSeconds(TeamOptions::kDigestPeriod_s);
   const TeamView view = View();
   const auto chosen = ChooseObject(view, *position_, model_, Now(), &member_);
   std::optional<ObjectRef> claimed;

@@ -23,20 +23,19 @@ namespace kestrel {
 
 // Options of a UAV in a team.
 struct TeamLinkOptions {
-  std::string uav;     // name of the UAV; empty: that of the computer
-  std::string key;     // file with the key that the team shares; empty: messages are not signed
-  bool claim = false;  // claim an object and go for it
+  std::string uav;
+  std::string key;
+  bool claim = false;
   TeamOptions team;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("uav", self.uav, "", "name of this UAV in its team; empty: the computer's name");
-    visitor("key", self.key, "",
-            "file with the team's key (32 bytes or 64 hexadecimal digits): messages are signed, "
-            "and unsigned ones refused; empty: none");
-    visitor("claim", self.claim, "",
-            "the UAV claims the unclaimed object with the most value for its distance");
-    TeamOptions::Visit(self.team, visitor);
+  static void Visit(auto& self, auto&& visit) {
+    visit("uav", self.uav, "name of this UAV in its team; empty: the computer's name");
+    visit("key", self.key,
+          "file with the team's key (32 bytes or 64 hexadecimal digits): messages are signed, "
+          "and unsigned ones refused; empty: none");
+    visit("claim", self.claim,
+          "the UAV claims the unclaimed object with the most value for its distance");
+    visit.Group(self.team);
   }
   std::vector<std::string> Validate() const;
 };

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/base/options.h"
 
 namespace kestrel {
 namespace {
@@ -49,11 +50,7 @@ bool Contradicts(const PartMessage& message, const TeamMap::Part& part) {
 }  // namespace
 
 TeamMember::TeamMember(const UavKey& self, const TeamOptions& options, std::optional<TeamKey> key)
-    : self_(self), options_(options), key_(key), allowance_(options.rate_bytes_per_s) {
-  const std::vector<std::string> violations = options.Validate();
-  if (!violations.empty()) {
-    throw InputError(fmt::format("team options: {}", fmt::join(violations, "; ")));
-  }
+    : self_(self), options_(Checked(options)), key_(key), allowance_(options.rate_bytes_per_s) {
   if (!IsUavName(self.name)) {
     throw InputError(fmt::format(
         "'{}' is no name of a UAV: expected 1 to 32 letters, digits, '_', '-' and '.'", self.name));
@@ -171,7 +168,7 @@ void TeamMember::Answer(const UavKey& sender, const DigestLine& line, Time local
   const std::set<std::int64_t> missing(line.missing.begin(), line.missing.end());
   // A UAV that still lacks it after so many digests does not hear the one that sent it.
   constexpr int kPatience = 8;
-  const Duration resend = DurationFromSeconds(line.tries > kPatience ? 0 : options_.resend_s);
+  const Duration resend = DurationFromSeconds(line.tries > kPatience ? 0 : TeamOptions::kResend_s);
   bool is_on_air = false;
   for (const auto& [id, entry] : part.objects) {
     if (!part.Has(id) || (entry.version <= line.version && !missing.contains(id))) continue;
@@ -244,8 +241,8 @@ void TeamMember::Tick(Time local, const Send& send) {
   const auto is_due = [&](const std::optional<Time>& last, double period_s) {
     return !last || local - *last >= DurationFromSeconds(period_s);
   };
-  if (untold_ && is_due(told_, options_.tell_period_s)) TellOwn(local);
-  if (allowance_ > 0 && (has_news_ || is_due(last_digest_, options_.digest_period_s))) {
+  if (untold_ && is_due(told_, TeamOptions::kTellPeriod_s)) TellOwn(local);
+  if (allowance_ > 0 && (has_news_ || is_due(last_digest_, TeamOptions::kDigestPeriod_s))) {
     SendDigest(local, send);
   }
   while (allowance_ > 0 && !queue_.empty()) SendQueued(local, send);

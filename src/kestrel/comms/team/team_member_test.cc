@@ -203,7 +203,7 @@ TEST(TeamMember, WithAKeyOnlyTheTeamIsHeard) {
 
 TEST(TeamMember, NamesAndOptionsAreChecked) {
   EXPECT_THROW(TeamMember({"two words", 1}, {}), InputError);
-  EXPECT_THROW(TeamMember({"a", 1}, {.tell_period_s = -1}), InputError);
+  EXPECT_THROW(TeamMember({"a", 1}, {.rate_bytes_per_s = -1}), InputError);
 }
 
 TEST(TeamMember, IsDoneWhenAllThatLiveAre) {

@@ -85,7 +85,7 @@ TeamView ViewTeam(const TeamMember& member, Time local, TeamFusion* fusion) {
     const ObjectMapOptions& options = fusion->options();
     const Duration shift = ShiftOf(part, local, now);
     std::vector<std::size_t> indices =
-        FuseObjects(MovingObjects(part, shift, now, options.motion(), alignment), options, &moving);
+        FuseObjects(MovingObjects(part, shift, now, options.motion(), alignment), &moving);
     for (std::size_t& index : indices) index += fusion->standing().size();
     Index(uav, part, shift, fusion->IndicesOf(uav), indices, &view);
   }

@@ -20,6 +20,12 @@ namespace {
 
 constexpr int kMeaningColumn = 36;
 
+// Ends of names and the units of their values; the first one that fits.
+constexpr std::pair<std::string_view, std::string_view> kUnits[] = {
+    {"_mps2", "m/s^2"}, {"_mps", "m/s"}, {"_dps", "deg/s"}, {"_radps", "rad/s"},
+    {"_deg", "deg"},    {"_hz", "Hz"},   {"_px", "px"},     {"_ms", "ms"},
+    {"_mb", "MB"},      {"_ppm", "ppm"}, {"_m", "m"},       {"_s", "s"}};
+
 std::optional<bool> ParseBool(const std::string& text) {
   if (text == "true") return true;
   if (text == "false") return false;
@@ -48,9 +54,8 @@ struct TypeName {
 };
 
 std::string Expected(const OptionField& field) {
-  return fmt::format(
-      "expected {}{}", std::visit(TypeName(), field.value),
-      field.unit.empty() || field.unit == "1" ? "" : fmt::format(" ({})", field.unit));
+  return fmt::format("expected {}{}", std::visit(TypeName(), field.value),
+                     field.unit.empty() ? "" : fmt::format(" ({})", field.unit));
 }
 
 void AssignText(const std::string& text, const std::string& where, const OptionField& field) {
@@ -110,8 +115,21 @@ std::string Where(const std::string& file, const YAML::Node& node) {
   return fmt::format("{}:{}", file, node.Mark().line + 1);
 }
 
+bool IsGone(const std::string& key, const OptionFields& fields) {
+  return std::any_of(fields.gone.begin(), fields.gone.end(), [&](const std::string& gone) {
+    return key == gone || key.starts_with(gone + ".");
+  });
+}
+
+[[noreturn]] void ThrowGone(const std::string& where, const std::vector<std::string>& keys) {
+  throw InputError(
+      fmt::format("{}: {}: no option any more, remove it (docs/versions.md has what holds instead)",
+                  where, fmt::join(keys, ", ")));
+}
+
+// Adds the keys that former versions had to 'gone'.
 void ReadGroup(const YAML::Node& group, const std::string& prefix, const std::string& file,
-               const OptionFields& fields) {
+               const OptionFields& fields, std::vector<std::string>* gone) {
   std::set<std::string> seen;
   for (const auto& entry : group) {
     const YAML::Node& name = entry.first;
@@ -126,10 +144,12 @@ void ReadGroup(const YAML::Node& group, const std::string& prefix, const std::st
         throw InputError(fmt::format("{}: {}: {}", where, key, Expected(*field)));
       }
       AssignText(value.Scalar(), where, *field);
+    } else if (IsGone(key, fields)) {
+      gone->push_back(key);
     } else if (!IsGroup(key, fields)) {
       ThrowUnknownKey(key, where, fields);
     } else if (value.IsMap()) {
-      ReadGroup(value, key + ".", file, fields);
+      ReadGroup(value, key + ".", file, fields, gone);
     } else if (!value.IsNull()) {
       throw InputError(fmt::format("{}: {}: expected a group of options", where, key));
     }
@@ -153,6 +173,21 @@ std::vector<std::string> SplitKey(const std::string& key) {
 
 }  // namespace
 
+OptionField MakeOptionField(const std::string& key, const OptionValue& value, const Limits& limits,
+                            std::string_view text) {
+  OptionField field{key, value, limits, "", text};
+  if (text.starts_with('[')) {
+    const std::size_t end = text.find("] ");
+    field.unit = text.substr(1, end - 1);
+    field.meaning = text.substr(end + 2);
+    return field;
+  }
+  const auto* const unit = std::find_if(std::begin(kUnits), std::end(kUnits),
+                                        [&](const auto& one) { return key.ends_with(one.first); });
+  if (unit != std::end(kUnits)) field.unit = unit->second;
+  return field;
+}
+
 void ReadOptionFile(const std::string& path, const OptionFields& fields) {
   ReadOptionFields(ReadFile(path), path, fields);
 }
@@ -162,7 +197,9 @@ void ReadOptionFields(const std::string& yaml, const std::string& file,
   const YAML::Node root = LoadYaml(yaml, file);
   if (root.IsNull()) return;
   if (!root.IsMap()) throw InputError(file + ": expected 'name: value' lines (YAML)");
-  ReadGroup(root, "", file, fields);
+  std::vector<std::string> gone;
+  ReadGroup(root, "", file, fields, &gone);
+  if (!gone.empty()) ThrowGone(file, gone);
 }
 
 void SetOptionField(const std::string& assignment, const OptionFields& fields) {
@@ -176,6 +213,7 @@ void SetOptionField(const std::string& assignment, const OptionFields& fields) {
     throw InputError(
         fmt::format("'{}': {} is a group of options, expected one of them", assignment, key));
   }
+  if (!field && IsGone(key, fields)) ThrowGone("'" + assignment + "'", {key});
   if (!field) ThrowUnknownKey(key, "'" + assignment + "'", fields);
   AssignText(assignment.substr(equals + 1), "'" + assignment + "'", *field);
 }
@@ -193,8 +231,10 @@ std::string PrintOptionFields(const OptionFields& fields) {
     }
     const std::string line = fmt::format("{:{}}{}: {}", "", 2 * names.size(), name,
                                          std::visit(ValuePrinter(), field.value));
-    text += fmt::format("{:<{}}  # {}{}\n", line, kMeaningColumn,
-                        field.unit.empty() ? "" : fmt::format("[{}] ", field.unit), field.meaning);
+    const std::string limits = ToString(field.limits);
+    text += fmt::format("{:<{}}  # {}{}{}\n", line, kMeaningColumn,
+                        field.unit.empty() ? "" : fmt::format("[{}] ", field.unit), field.meaning,
+                        limits.empty() ? "" : fmt::format(" ({})", limits));
     open = std::move(names);
   }
   return text;

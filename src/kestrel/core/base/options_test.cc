@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/core/base/options.h"
 
+#include <limits>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +11,7 @@
 namespace kestrel {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -16,10 +19,10 @@ struct LensOptions {
   double focal_px = 261.25;
   int rings = 3;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("focal_px", self.focal_px, "px", "focal length");
-    visitor("rings", self.rings, "1", "how many rings");
+  static void Visit(auto& self, auto&& visit) {
+    visit("focal_px", self.focal_px, "focal length");
+    visit("rings", self.rings, AtLeast(1), "[rings] how many there are");
+    visit.Gone({"half_angle_deg", "coating"});
   }
 };
 
@@ -30,18 +33,16 @@ struct DeviceOptions {
   LensOptions spare;
   double range_m = 1.0 / 3.0;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("verbose", self.verbose, "", "say more");
-    visitor("color", self.color, "", "red or blue");
-    visitor.Group("lens", self.lens);
-    visitor.Group("spare", self.spare);
-    visitor("range_m", self.range_m, "m", "how far to look");
+  static void Visit(auto& self, auto&& visit) {
+    visit("verbose", self.verbose, "say more");
+    visit("color", self.color, OneOf{{"red", "blue"}}, "colour of the case");
+    visit.Group("lens", self.lens);
+    visit.Group("spare", self.spare);
+    visit("range_m", self.range_m, Range{0, 30, false}, "how far to look");
   }
   std::vector<std::string> Validate() const {
     std::vector<std::string> violations;
-    if (range_m <= 0) violations.push_back("range_m must be positive");
-    if (lens.rings < 1) violations.push_back("lens.rings must be at least 1");
+    if (lens.rings > spare.rings) violations.push_back("lens has more rings than spare");
     return violations;
   }
 };
@@ -86,7 +87,7 @@ TEST(Options, WrongTypeNamesFileLineKeyAndWhatWasExpected) {
   EXPECT_EQ(ReadError("\nrange_m: far\n"),
             "c.yaml:2: range_m is 'far', expected a finite number (m)");
   EXPECT_EQ(ReadError("lens:\n  rings: 2.5\n"),
-            "c.yaml:2: lens.rings is '2.5', expected a whole number");
+            "c.yaml:2: lens.rings is '2.5', expected a whole number (rings)");
   EXPECT_EQ(ReadError("verbose: 1\n"), "c.yaml:1: verbose is '1', expected true or false");
   EXPECT_THAT(ReadError("range_m: [1, 2]\n"), HasSubstr("range_m: expected a finite number"));
   EXPECT_THAT(ReadError("lens: 3\n"), HasSubstr("expected a group"));
@@ -130,7 +131,10 @@ TEST(Options, PrintedTextReadsBackToTheSameValues) {
   options.spare.focal_px = 1e-300;
   options.lens.rings = -4;
   const std::string text = PrintOptions(options);
-  EXPECT_THAT(text, HasSubstr("# [px] focal length"));
+  EXPECT_THAT(text, HasSubstr("# [px] focal length\n"));
+  EXPECT_THAT(text, HasSubstr("# [rings] how many there are (1 or more)\n"));
+  EXPECT_THAT(text, HasSubstr("# colour of the case (red or blue)\n"));
+  EXPECT_THAT(text, HasSubstr("# [m] how far to look (more than 0 to 30)\n"));
   const DeviceOptions again = Read(text);
   EXPECT_EQ(again.verbose, options.verbose);
   EXPECT_EQ(again.range_m, options.range_m);
@@ -141,14 +145,41 @@ TEST(Options, PrintedTextReadsBackToTheSameValues) {
 TEST(Options, AllViolationsAreReportedTogether) {
   DeviceOptions options;
   EXPECT_NO_THROW(RequireValid(options));
+  options.color = "green";
   options.range_m = -1;
   options.lens.rings = 0;
   try {
     RequireValid(options);
     FAIL() << "expected an InputError";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "range_m must be positive; lens.rings must be at least 1");
+    EXPECT_STREQ(error.what(),
+                 "color is 'green', expected red or blue; lens.rings is 0, expected 1 or more; "
+                 "range_m is -1, expected more than 0 to 30");
   }
+}
+
+TEST(Options, FieldsAreComparedWhenEachIsWithinItsLimits) {
+  DeviceOptions options;
+  options.lens.rings = 4;
+  EXPECT_THAT(ViolationsOf(options), ElementsAre("lens has more rings than spare"));
+  options.spare.rings = 0;
+  EXPECT_THAT(ViolationsOf(options), ElementsAre("spare.rings is 0, expected 1 or more"));
+}
+
+TEST(Options, NotANumberIsBeyondAllLimits) {
+  DeviceOptions options;
+  options.lens.focal_px = std::numeric_limits<double>::quiet_NaN();
+  options.range_m = std::numeric_limits<double>::infinity();
+  EXPECT_THAT(ViolationsOf(options), ElementsAre("lens.focal_px is nan, expected a finite number",
+                                                 "range_m is inf, expected more than 0 to 30"));
+}
+
+TEST(Options, KeysOfFormerVersionsAreNamedTogether) {
+  EXPECT_EQ(ReadError("lens:\n  half_angle_deg: 90\n  rings: 4\nspare:\n  coating:\n    blue: 1\n"),
+            "c.yaml: lens.half_angle_deg, spare.coating: no option any more, remove it "
+            "(docs/versions.md has what holds instead)");
+  DeviceOptions options;
+  EXPECT_THROW(SetOption("lens.half_angle_deg=90", &options), InputError);
 }
 
 TEST(Options, FileThatIsNotThereIsNamed) {

@@ -42,16 +42,9 @@ std::string Prioritise(const std::string& name, int priority) {
 }  // namespace
 
 std::vector<std::string> ThreadOptions::Validate() const {
-  constexpr int kMaxPriority = 99;
-  std::vector<std::string> violations;
-  if (cpu < -1 || cpu >= CpuCount()) {
-    violations.push_back(fmt::format("cpu is {}, expected -1 or 0 to {}, which this computer has",
-                                     cpu, CpuCount() - 1));
-  }
-  if (priority < 0 || priority > kMaxPriority) {
-    violations.push_back(fmt::format("priority is {}, expected 0 to {}", priority, kMaxPriority));
-  }
-  return violations;
+  if (cpu < CpuCount()) return {};
+  return {fmt::format("cpu is {}, expected -1 or 0 to {}, which this computer has", cpu,
+                      CpuCount() - 1)};
 }
 
 std::string SetUpThisThread(const std::string& name, const ThreadOptions& options) {

@@ -4,19 +4,21 @@
 #include <string>
 #include <vector>
 
+#include "kestrel/core/base/limits.h"
+
 namespace kestrel {
 
 // Processor and priority of a thread.
 struct ThreadOptions {
-  int cpu = -1;      // processor to which the thread is pinned, from 0; -1: any
-  int priority = 0;  // 1 to 99: SCHED_FIFO, before all normal threads; 0: a normal thread
+  int cpu = -1;
+  int priority = 0;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("cpu", self.cpu, "", "processor on which the thread stays; -1: any");
-    visitor("priority", self.priority, "1", "priority of SCHED_FIFO, 1 to 99; 0: a normal thread");
+  static void Visit(auto& self, auto&& visit) {
+    visit("cpu", self.cpu, AtLeast(-1), "processor on which the thread stays; -1: any");
+    visit("priority", self.priority, Range{0, 99},
+          "priority of SCHED_FIFO, before all normal threads; 0: a normal thread");
   }
-  // Also reports a processor that this computer does not have.
+  // Reports a processor that this computer does not have.
   std::vector<std::string> Validate() const;
 };
 

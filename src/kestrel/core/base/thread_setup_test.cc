@@ -9,6 +9,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kestrel/core/base/options.h"
+
 namespace kestrel {
 namespace {
 
@@ -47,9 +49,9 @@ TEST(ThreadSetup, APriorityIsSetOrRefusedInOneLine) {
 }
 
 TEST(ThreadSetup, NamesWhatIsNotThere) {
-  EXPECT_THAT(ThreadOptions{}.Validate(), IsEmpty());
-  EXPECT_THAT((ThreadOptions{.cpu = 100'000}.Validate()), SizeIs(1));
-  EXPECT_THAT((ThreadOptions{.cpu = -2, .priority = 100}.Validate()), SizeIs(2));
+  EXPECT_THAT(ViolationsOf(ThreadOptions()), IsEmpty());
+  EXPECT_THAT(ViolationsOf(ThreadOptions{.cpu = 100'000}), SizeIs(1));
+  EXPECT_THAT(ViolationsOf(ThreadOptions{.cpu = -2, .priority = 100}), SizeIs(2));
 }
 
 }  // namespace

@@ -6,12 +6,16 @@
 #include <cstdint>
 #include <numeric>
 
-#include <fmt/format.h>
-
 #include "kestrel/core/base/options.h"
 
 namespace kestrel {
 namespace {
+
+// Share of the pixels that may be brighter: of an image, so that a glint or the sun does not
+// darken everything else, and of the pattern's area, much of which is white.
+constexpr double kImageShare = 0.01;
+constexpr double kAreaShare = 0.1;
+constexpr double kLargestStep = 8;  // factor of one change
 
 constexpr int kSaturatedGray = 254;
 constexpr int kMeterSamples = 5000;  // enough for a share of a hundredth
@@ -48,24 +52,10 @@ int BrightGray(const std::array<int, 256>& histogram, int count) {
 
 std::vector<std::string> ExposureOptions::Validate() const {
   std::vector<std::string> violations;
-  const auto require = [&](bool holds, const std::string& rule) {
-    if (!holds) violations.push_back(rule);
-  };
-  require(low_gray > 0 && low_gray < high_gray && high_gray < kSaturatedGray,
-          fmt::format("low_gray and high_gray are {} and {}, expected 0 < low < high < {}",
-                      low_gray, high_gray, kSaturatedGray));
-  require(image_share >= 0 && image_share < 1, "image_share must be in [0, 1)");
-  require(area_share >= 0 && area_share < 1, "area_share must be in [0, 1)");
-  require(gamma >= 0.1 && gamma <= 3, "gamma must be 0.1 to 3");
-  require(black_gray >= 0 && black_gray < 100, "black_gray must be 0 to 100");
-  require(delay_frames >= 0 && delay_frames <= 100, "delay_frames must be 0 to 100");
-  require(min_exposure_s > 0 && min_exposure_s <= max_exposure_s && std::isfinite(max_exposure_s),
-          fmt::format("min_exposure_s and max_exposure_s are {} and {}, expected 0 < min <= max",
-                      min_exposure_s, max_exposure_s));
-  require(largest_step > 1 && std::isfinite(largest_step), "largest_step must be above 1");
-  if (violations.empty()) {
-    require(BeforeGamma(low_gray, gamma) > black_gray, "black_gray must be darker than low_gray");
-  }
+  Require(high_gray, MoreThan(low_gray), "high_gray", &violations);
+  Require(max_exposure_s, AtLeast(min_exposure_s), "max_exposure_s", &violations);
+  Require(BeforeGamma(low_gray, gamma), MoreThan(black_gray), "low_gray, before gamma,",
+          &violations);
   return violations;
 }
 
@@ -83,7 +73,7 @@ double ExposureController::Update(const cv::Mat& image, const cv::Rect& area) {
   const cv::Rect seen = area & cv::Rect({}, image.size());
   const bool whole = seen.empty();
   const int samples = CountGrays(whole ? image : image(seen), &histogram_);
-  const double share = whole ? options_.image_share : options_.area_share;
+  const double share = whole ? kImageShare : kAreaShare;
   const int gray = BrightGray(histogram_, std::max(1, static_cast<int>(share * samples)));
   const double exposure_s = std::clamp(exposure_s_ * StepFor(gray, samples),
                                        options_.min_exposure_s, options_.max_exposure_s);
@@ -104,13 +94,12 @@ double ExposureController::StepFor(int bright_gray, int samples) const {
   if (bright_gray >= kSaturatedGray) {
     const double share = std::accumulate(histogram_.begin() + kSaturatedGray, histogram_.end(), 0) /
                          static_cast<double>(samples);
-    const double least = std::min(kLeastStep, options_.largest_step);
-    return 1 / (least + share * (options_.largest_step - least));
+    return 1 / (kLeastStep + share * (kLargestStep - kLeastStep));
   }
   if (bright_gray >= options_.low_gray && bright_gray <= options_.high_gray) return 1;
   const double wanted = Linear(0.5 * (options_.low_gray + options_.high_gray));
-  const double seen = std::max(Linear(bright_gray), wanted / options_.largest_step);
-  return std::max(wanted / seen, 1 / options_.largest_step);
+  const double seen = std::max(Linear(bright_gray), wanted / kLargestStep);
+  return std::max(wanted / seen, 1 / kLargestStep);
 }
 
 }  // namespace kestrel

@@ -7,45 +7,30 @@
 
 #include <opencv2/core.hpp>
 
+#include "kestrel/core/base/limits.h"
+
 namespace kestrel {
 
 struct ExposureOptions {
-  // Gray values between which the brightest part of the image is kept (paper, section 2.1). Within
-  // them the exposure stays; outside of them it aims at the middle.
   double low_gray = 200;
   double high_gray = 240;
-  // Share of the pixels that may be brighter, 0 to 1: of an image, so that a glint or the sun does
-  // not darken everything else, and of the pattern's area, much of which is white.
-  double image_share = 0.01;
-  double area_share = 0.1;
-  // The camera's curve: gray = 255 (linear / 255)^gamma. 'black_gray' is the linear value without
-  // light.
   double gamma = 1;
-  double black_gray = 4;
-  // Number of images after a change that may still have an older exposure. Too high a number only
-  // slows the control; too low a number makes it oscillate.
+  double black_gray = 4;  // linear value without light
   int delay_frames = 2;
-  // Limits of the camera; the upper one also limits motion blur.
   double min_exposure_s = 2e-5;
   double max_exposure_s = 0.01;
-  // Largest factor of one change, above 1.
-  double largest_step = 8;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("low_gray", self.low_gray, "",
-            "lower limit of the gray value of the image's brightest part");
-    visitor("high_gray", self.high_gray, "",
-            "upper limit of the gray value of the image's brightest part");
-    visitor("image_share", self.image_share, "1", "share of an image that may be brighter");
-    visitor("area_share", self.area_share, "1", "share of the pattern's area that may be brighter");
-    visitor("gamma", self.gamma, "1", "exponent of the camera's curve; 1 is linear");
-    visitor("black_gray", self.black_gray, "", "gray value without light, before gamma");
-    visitor("delay_frames", self.delay_frames, "1",
-            "number of images after a change that may still have the old exposure");
-    visitor("min_exposure_s", self.min_exposure_s, "s", "shortest exposure");
-    visitor("max_exposure_s", self.max_exposure_s, "s", "longest exposure");
-    visitor("largest_step", self.largest_step, "1", "largest factor of one change");
+  static void Visit(auto& self, auto&& visit) {
+    visit("low_gray", self.low_gray, MoreThan(0),
+          "lower limit of the gray value of the image's brightest part");
+    visit("high_gray", self.high_gray, Range{0, 254, true, false},
+          "upper limit of the gray value of the image's brightest part");
+    visit("gamma", self.gamma, Range{0.1, 3}, "exponent of the camera's curve; 1 is linear");
+    visit("delay_frames", self.delay_frames, Range{0, 100},
+          "number of images after a change that may still have the old exposure");
+    visit("min_exposure_s", self.min_exposure_s, MoreThan(0), "shortest exposure");
+    visit("max_exposure_s", self.max_exposure_s, "longest exposure");
+    visit.Gone({"image_share", "area_share", "black_gray", "largest_step"});
   }
   std::vector<std::string> Validate() const;
 };

@@ -131,13 +131,13 @@ TEST(ExposureControllerTest, AnAreaMayLieOutsideOfTheImage) {
 TEST(ExposureControllerTest, FaultyOptionsAreNamed) {
   ExposureOptions options;
   options.low_gray = 250;
-  options.largest_step = 1;
+  options.min_exposure_s = 1;
   try {
     const ExposureController controller(options, 0.001);
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("low_gray and high_gray are 250 and 240"));
-    EXPECT_THAT(error.what(), HasSubstr("largest_step"));
+    EXPECT_THAT(error.what(), HasSubstr("high_gray is 240, expected more than 250"));
+    EXPECT_THAT(error.what(), HasSubstr("max_exposure_s is 0.01, expected 1 or more"));
   }
 }
 

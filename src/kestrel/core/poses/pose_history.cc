@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kestrel/core/base/violations.h"
-
 namespace kestrel {
 namespace {
 
@@ -37,15 +35,6 @@ Eigen::Vector3d WithoutShock(const Eigen::Vector3d& rate) {
 }
 
 }  // namespace
-
-std::vector<std::string> UnmodelledMotion::Validate() const {
-  std::vector<std::string> violations;
-  RequireNotNegative(acceleration_mps2, "acceleration_mps2", &violations);
-  RequireNotNegative(angular_acceleration_radps2, "angular_acceleration_radps2", &violations);
-  RequireNotNegative(velocity_sigma_mps, "velocity_sigma_mps", &violations);
-  RequireNotNegative(rate_sigma_radps, "rate_sigma_radps", &violations);
-  return violations;
-}
 
 const char* ToString(PoseLookup lookup) {
   switch (lookup) {

@@ -34,19 +34,6 @@ struct UnmodelledMotion {
   double angular_acceleration_radps2 = 5;  // higher for small, agile ones
   double velocity_sigma_mps = 0.1;         // of the reported velocity
   double rate_sigma_radps = 0.02;          // of the reported angular velocity
-
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("acceleration_mps2", self.acceleration_mps2, "m/s^2",
-            "acceleration that no sample reports, standard deviation per axis");
-    visitor("angular_acceleration_radps2", self.angular_acceleration_radps2, "rad/s^2",
-            "angular acceleration that no sample reports, standard deviation per axis");
-    visitor("velocity_sigma_mps", self.velocity_sigma_mps, "m/s",
-            "error of the navigation's velocity, standard deviation per axis");
-    visitor("rate_sigma_radps", self.rate_sigma_radps, "rad/s",
-            "error of the navigation's angular velocity, standard deviation per axis");
-  }
-  std::vector<std::string> Validate() const;
 };
 
 // Standard deviations per axis that a pose has in addition to those of a sample.

@@ -4,18 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kestrel/core/base/violations.h"
-
 namespace kestrel {
-
-std::vector<std::string> ContactOptions::Validate() const {
-  std::vector<std::string> violations;
-  RequireIn(height_m, 0.02, 2, "height_m", &violations);
-  RequireIn(reach_m, 0.05, 5, "reach_m", &violations);
-  RequireIn(speed_mps, 0.01, 1, "speed_mps", &violations);
-  RequireIn(time_s, 0.1, 10, "time_s", &violations);
-  return violations;
-}
 
 bool ContactDetector::Update(Time now, const Eigen::Vector3d& feet, const Eigen::Vector3d& velocity,
                              const std::optional<Deck>& deck) {

@@ -3,7 +3,6 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include <Eigen/Core>
 
@@ -13,22 +12,12 @@ namespace kestrel {
 
 // Contact: the feet are near the deck and at rest against it, as when the legs stand on it.
 struct ContactOptions {
-  // speed_mps is below the sink rate of an autopilot near the ground, and more than an estimate is
-  // wrong after the shock of touch-down (0.12 m/s was seen); time_s is longer than the bottom of a
-  // bounce.
   double height_m = 0.25;  // largest height of the feet above the deck, by the track
   double reach_m = 0.6;    // largest horizontal distance of the feet from the deck's middle
+  // Largest closing speed: below the sink rate of an autopilot near the ground, and more than an
+  // estimate is wrong after the shock of touch-down (0.12 m/s was seen).
   double speed_mps = 0.25;
-  double time_s = 0.5;
-
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("height_m", self.height_m, "m", "largest height of the feet above the deck in contact");
-    visitor("reach_m", self.reach_m, "m", "largest distance of the feet from its middle");
-    visitor("speed_mps", self.speed_mps, "m/s", "largest closing speed");
-    visitor("time_s", self.time_s, "s", "shortest duration of these conditions");
-  }
-  std::vector<std::string> Validate() const;
+  double time_s = 0.5;  // shortest duration of these conditions: longer than the bottom of a bounce
 };
 
 // Decides whether the UAV stands on the deck. After contact the camera sees nothing any more:

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kestrel/core/base/violations.h"
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/poses/gravity.h"
 
 namespace kestrel {
@@ -23,9 +23,9 @@ constexpr double kMaxDemand = kGravity;
 
 std::vector<std::string> VelocityControl::Validate() const {
   std::vector<std::string> violations;
-  RequireIn(p, 0, 20, "p", &violations);
-  RequireIn(i, 0, 20, "i", &violations);
-  RequireIn(d, 0, 0.9, "d", &violations);
+  Require(p, Range{0, 20}, "p", &violations);
+  Require(i, Range{0, 20}, "i", &violations);
+  Require(d, Range{0, 0.9}, "d", &violations);
   return violations;
 }
 

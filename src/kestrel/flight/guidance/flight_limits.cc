@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/options.h"
-#include "kestrel/core/base/violations.h"
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/core/poses/gravity.h"
 
@@ -41,13 +41,7 @@ void RequireWithin(double own, const std::optional<double>& autopilot, const cha
 
 std::vector<std::string> FlightLimitsOptions::Validate() const {
   std::vector<std::string> violations;
-  RequireIn(geofence_radius_m, 1, 10000, "geofence_radius_m", &violations);
-  RequireIn(ceiling_m, 1, 1000, "ceiling_m", &violations);
-  RequireIn(floor_m, 0, ceiling_m, "floor_m", &violations);
-  RequireIn(max_speed_mps, 0.5, 50, "max_speed_mps", &violations);
-  RequireIn(max_climb_mps, 0.2, 20, "max_climb_mps", &violations);
-  RequireIn(max_sink_mps, 0.2, 20, "max_sink_mps", &violations);
-  RequireIn(max_tilt_deg, 1, 80, "max_tilt_deg", &violations);
+  Require(floor_m, Range{0, ceiling_m}, "floor_m", &violations);
   return violations;
 }
 

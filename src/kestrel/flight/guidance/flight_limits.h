@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/poses/set_point.h"
 
 namespace kestrel {
@@ -14,26 +15,24 @@ namespace kestrel {
 // Volume in which guidance may fly, and its speeds. The defaults are within the default limits of
 // ArduCopter and PX4.
 struct FlightLimitsOptions {
-  double geofence_radius_m = 100;  // horizontal, around the home position
-  double ceiling_m = 30;           // above the world's z = 0
-  double floor_m = 3;              // above the world's z = 0, of the body while it follows no
-                                   // target
-  double max_speed_mps = 10;       // horizontal
+  double geofence_radius_m = 100;
+  double ceiling_m = 30;
+  double floor_m = 3;
+  double max_speed_mps = 10;
   double max_climb_mps = 2.5;
   double max_sink_mps = 1.5;
-  double max_tilt_deg = 30;  // limits the acceleration that is commanded
+  double max_tilt_deg = 30;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("geofence_radius_m", self.geofence_radius_m, "m",
-            "largest horizontal distance from home");
-    visitor("ceiling_m", self.ceiling_m, "m", "largest height above the world's z = 0");
-    visitor("floor_m", self.floor_m, "m", "smallest height without a followed target");
-    visitor("max_speed_mps", self.max_speed_mps, "m/s", "largest horizontal speed");
-    visitor("max_climb_mps", self.max_climb_mps, "m/s", "fastest climb");
-    visitor("max_sink_mps", self.max_sink_mps, "m/s", "fastest descent");
-    visitor("max_tilt_deg", self.max_tilt_deg, "deg",
-            "largest tilt that a commanded acceleration may require");
+  static void Visit(auto& self, auto&& visit) {
+    visit("geofence_radius_m", self.geofence_radius_m, Range{1, 10000},
+          "distance from home, at most");
+    visit("ceiling_m", self.ceiling_m, Range{1, 1000}, "largest height above the world's z = 0");
+    visit("floor_m", self.floor_m, "smallest height without a followed target");
+    visit("max_speed_mps", self.max_speed_mps, Range{0.5, 50}, "largest horizontal speed");
+    visit("max_climb_mps", self.max_climb_mps, Range{0.2, 20}, "fastest climb");
+    visit("max_sink_mps", self.max_sink_mps, Range{0.2, 20}, "fastest descent");
+    visit("max_tilt_deg", self.max_tilt_deg, Range{1, 80},
+          "largest tilt that a commanded acceleration may require");
   }
   std::vector<std::string> Validate() const;
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/options.h"
-#include "kestrel/core/base/violations.h"
 #include "kestrel/core/poses/gravity.h"
 
 namespace kestrel {
@@ -63,8 +63,6 @@ bool IsAtLimit(const Eigen::Vector2d& slack, const Eigen::Vector2d& gain) {
 
 std::vector<std::string> FlightModelOptions::Validate() const {
   std::vector<std::string> violations;
-  RequireIn(delay_s, 0, 0.4, "delay_s", &violations);
-  RequireIn(memory_s, 1, 100, "memory_s", &violations);
   AddViolations("control", control.Validate(), &violations);
   return violations;
 }

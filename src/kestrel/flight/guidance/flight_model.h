@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/poses/set_point.h"
 #include "kestrel/flight/guidance/disturbance_observer.h"
@@ -17,17 +18,16 @@
 namespace kestrel {
 
 struct FlightModelOptions {
-  bool is_used = true;  // false: the assumed values are kept
-  // The delay that is assumed until the flight has shown a better one.
-  double delay_s = 0.12;  // of attitude and thrust after the autopilot's command
-  double memory_s = 20;   // older measurements are forgotten
+  bool is_used = true;
+  double delay_s = 0.12;
+  double memory_s = 20;
   VelocityControl control;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("is_used", self.is_used, "", "use the response that is measured in flight");
-    visitor("delay_s", self.delay_s, "s", "delay of attitude and thrust until it is measured");
-    visitor("memory_s", self.memory_s, "s", "age after which measurements are forgotten");
+  static void Visit(auto& self, auto&& visit) {
+    visit("is_used", self.is_used, "use the response that is measured in flight");
+    visit("delay_s", self.delay_s, Range{0, 0.4},
+          "delay of attitude and thrust until it is measured");
+    visit("memory_s", self.memory_s, Range{1, 100}, "age after which measurements are forgotten");
   }
   std::vector<std::string> Validate() const;
 };

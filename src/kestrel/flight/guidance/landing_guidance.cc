@@ -199,7 +199,7 @@ GuidanceOutput LandingGuidance::Blind(const GuidanceInput& input) {
   on.acceleration.setZero();
   on.yaw_rate.reset();
   if (phase_ != GuidancePhase::kLanded) on = stale_.Level(on);
-  if (IsLongerThan(options_.hold_pose_s, poses_lost_, input.now)) {
+  if (IsLongerThan(GuidanceOptions::kHoldPose_s, poses_lost_, input.now)) {
     reason_ = "the poses have stopped";
     if (phase_ != GuidancePhase::kLanded) {
       on.velocity.setZero();
@@ -220,7 +220,7 @@ GuidanceRequest LandingGuidance::RequestBlind(const GuidanceInput& input) const 
 }
 
 GuidanceOutput LandingGuidance::Fly(const GuidanceInput& input) {
-  if (IsLongerThan(options_.hold_pose_s, poses_lost_, input.now) && IsLow()) {
+  if (IsLongerThan(GuidanceOptions::kHoldPose_s, poses_lost_, input.now) && IsLow()) {
     GoAround("the poses had stopped");
   }
   poses_lost_.reset();
@@ -298,9 +298,9 @@ bool LandingGuidance::Obeys(const GuidanceInput& input) {
   const double size = error.norm();
   const double nearer = (velocity - velocity_trend_).dot(error) / kTrend_s;
   const double least = std::min(kLeastObedience * size, kLeastAcceleration);
-  const bool disobeys = size > options_.disobey_mps && nearer < least;
+  const bool disobeys = size > GuidanceOptions::kDisobey_mps && nearer < least;
   Remember(disobeys, input.now, &disobeys_since_);
-  return !IsLongerThan(options_.disobey_s, disobeys_since_, input.now);
+  return !IsLongerThan(GuidanceOptions::kDisobey_s, disobeys_since_, input.now);
 }
 
 // Compares the demand of target and wind with the limits, whether or not guidance flies. A UAV that
@@ -340,7 +340,7 @@ LandingGuidance::Situation LandingGuidance::Look(const GuidanceInput& input) con
   now.is_known = input.target->position_sigma_m() <= options_.max_sigma_m;
   const double climb_sigma = std::sqrt(std::max(target.covariance(5, 5), 0.0));
   now.is_credible =
-      std::abs(target.velocity().z()) <= options_.max_target_climb_mps + 2 * climb_sigma;
+      std::abs(target.velocity().z()) <= GuidanceOptions::kMaxTargetClimb_mps + 2 * climb_sigma;
   return now;
 }
 
@@ -410,7 +410,7 @@ void LandingGuidance::ChooseDescent(const GuidanceInput& input, const Situation&
   if (phase_ != GuidancePhase::kCommit) return;
   // A UAV that does not sink any more stands on the deck, where the camera may see nothing.
   const bool sinks = now.velocity.z() - input.target->motion.velocity().z() < -kResting_mps;
-  if (sinks && !(input.target_age_s <= options_.commit_sight_s)) {
+  if (sinks && !(input.target_age_s <= GuidanceOptions::kCommitSight_s)) {
     return GoAround("near the deck, and the target was not in sight for too long");
   }
   if (now.is_in_sight && now.off_m > kCommitCones * cone_m) GoAround("beside the deck");
@@ -474,7 +474,8 @@ SetPoint LandingGuidance::Pursue(const GuidanceInput& input, const Situation& no
 }
 
 double LandingGuidance::ClimbRate(const GuidanceInput& input, const Situation& now) {
-  const double sink = std::max(options_.sink_gain * now.height_m, options_.touchdown_sink_mps);
+  const double sink =
+      std::max(GuidanceOptions::kSinkGain * now.height_m, options_.touchdown_sink_mps);
   if (phase_ == GuidancePhase::kCommit) {
     // Ever faster: the autopilot then does not mistake the stop by the deck for its own braking.
     return -sink - kCommitAcceleration * ToSeconds(input.now - entered_);
@@ -487,7 +488,7 @@ double LandingGuidance::ClimbRate(const GuidanceInput& input, const Situation& n
   const double top_m = options_.search_altitude_m - input.target->motion.position().z();
   const bool is_unknown = input.target->position_sigma_m() > 2 * options_.max_sigma_m;
   const double wanted_m =
-      is_unknown ? top_m : std::max(options_.follow_height_m, options_.glide * now.off_m);
+      is_unknown ? top_m : std::max(options_.follow_height_m, GuidanceOptions::kGlide * now.off_m);
   return kHeightGain * (std::min(wanted_m, top_m) - now.height_m);
 }
 
@@ -513,7 +514,7 @@ void LandingGuidance::GoAround(const char* reason) {
 }
 
 double LandingGuidance::Cone(double height_m) const {
-  return options_.cone_m + options_.cone_slope * std::max(height_m, 0.0);
+  return options_.cone_m + GuidanceOptions::kConeSlope * std::max(height_m, 0.0);
 }
 
 bool LandingGuidance::IsLow() const {

@@ -10,6 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kestrel/core/base/options.h"
 #include "kestrel/flight/guidance/test_flight_phases.h"
 
 namespace kestrel {
@@ -365,25 +366,25 @@ TEST(GuidanceOptionsTest, SearchAndApproachStayWhereThePadIsSeen) {
   const GuidanceOptions near = options.WithinSight(1.6);
   EXPECT_EQ(near.search_altitude_m, options.limits.floor_m);
   EXPECT_NEAR(near.follow_height_m, 0.8 * 1.6 - options.leg_m, 1e-12);
-  EXPECT_THAT(options.WithinSight(1e-3).Validate(), IsEmpty());
+  EXPECT_THAT(ViolationsOf(options.WithinSight(1e-3)), IsEmpty());
   GuidanceOptions without_floor;
   without_floor.limits.floor_m = 0;
-  EXPECT_THAT(without_floor.WithinSight(1e-3).Validate(), IsEmpty());
+  EXPECT_THAT(ViolationsOf(without_floor.WithinSight(1e-3)), IsEmpty());
 }
 
 TEST(GuidanceOptionsTest, FaultyOptionsAreNamed) {
   GuidanceOptions options;
   options.leg_m = 3;
   options.limits.max_tilt_deg = 90;
-  options.contact.time_s = 0;
   options.model.memory_s = 0;
+  EXPECT_THAT(ViolationsOf(options),
+              testing::ElementsAre("leg_m is 3, expected 0 to 2",
+                                   "limits.max_tilt_deg is 90, expected 1 to 80",
+                                   "model.memory_s is 0, expected 1 to 100"));
+  options = {};
   options.search_altitude_m = 40;
-  const std::vector<std::string> violations = options.Validate();
-  EXPECT_THAT(violations, testing::ElementsAre(testing::HasSubstr("leg_m is 3"),
-                                               testing::HasSubstr("contact.time_s"),
-                                               testing::HasSubstr("limits.max_tilt_deg is 90"),
-                                               testing::HasSubstr("model.memory_s"),
-                                               testing::HasSubstr("search_altitude_m")));
+  EXPECT_THAT(ViolationsOf(options),
+              testing::ElementsAre("search_altitude_m is 40, expected 3 to 30"));
 }
 
 }  // namespace

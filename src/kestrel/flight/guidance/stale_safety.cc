@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kestrel/core/base/violations.h"
-
 namespace kestrel {
 namespace {
 
@@ -15,16 +13,6 @@ constexpr double kRestPart = 0.4;
 constexpr double kMargin_m = 0.15;
 
 }  // namespace
-
-std::vector<std::string> StaleOptions::Validate() const {
-  std::vector<std::string> violations;
-  RequireIn(timeout_s, 0, 60, "timeout_s", &violations);
-  RequireIn(vertical_braking, 0.1, 20, "vertical_braking", &violations);
-  RequireIn(vertical_jerk, 0.1, 1000, "vertical_jerk", &violations);
-  RequireIn(position_gain, 0, 5, "position_gain", &violations);
-  RequireIn(height_gain, 0, 5, "height_gain", &violations);
-  return violations;
-}
 
 double StaleSafety::MaxSink(double height_m, double link_delay_s) const {
   const double room_m = std::max(std::min((1 - kRestPart) * height_m, height_m - kMargin_m), 0.0);

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include <Eigen/Core>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/poses/set_point.h"
 
 namespace kestrel {
@@ -13,23 +13,20 @@ namespace kestrel {
 // Behaviour of the autopilot with a set-point after which no other comes. `fly` reads it from the
 // autopilot's parameters.
 struct StaleOptions {
-  double timeout_s = 0.3;       // the last set-point is flown on for so long
-  double vertical_braking = 1;  // m/s^2, after that
-  double vertical_jerk = 5;     // m/s^3
-  // Gains of a position control that takes places as set-points, 1/s; 0: velocities are sent.
-  double position_gain = 0;  // horizontal
+  double timeout_s = 0.3;
+  double vertical_braking = 1;
+  double vertical_jerk = 5;
+  double position_gain = 0;
   double height_gain = 0;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("timeout_s", self.timeout_s, "s", "time for which the last set-point is flown on");
-    visitor("vertical_braking", self.vertical_braking, "m/s^2", "deceleration after that");
-    visitor("vertical_jerk", self.vertical_jerk, "m/s^3", "jerk of that deceleration");
-    visitor("position_gain", self.position_gain, "1/s",
-            "the autopilot's speed per metre to a place; 0: velocities are sent");
-    visitor("height_gain", self.height_gain, "1/s", "the same for the height");
+  static void Visit(auto& self, auto&& visit) {
+    visit("timeout_s", self.timeout_s, Range{0, 60}, "time that the last set-point is flown on");
+    visit("vertical_braking", self.vertical_braking, Range{0.1, 20}, "[m/s^2] deceleration then");
+    visit("vertical_jerk", self.vertical_jerk, Range{0.1, 1000}, "[m/s^3] its jerk");
+    visit("position_gain", self.position_gain, Range{0, 5},
+          "[1/s] the autopilot's speed per metre to a place; 0: velocities are sent");
+    visit("height_gain", self.height_gain, Range{0, 5}, "[1/s] the same for the height");
   }
-  std::vector<std::string> Validate() const;
 
   bool sends_places() const { return position_gain > 0 && height_gain > 0; }
 };

@@ -113,7 +113,7 @@ Vector3d TargetPursuit::Smoothed(const TargetEstimate& target) {
   const Vector3d velocity = target.motion.velocity();
   if (!smoothed_) smoothed_ = {target.time, velocity};
   const double seconds = ToSeconds(target.time - smoothed_->time);
-  const double part = 1 - std::exp(-seconds / options_.smoothing_s);
+  const double part = 1 - std::exp(-seconds / GuidanceOptions::kSmoothing_s);
   const Vector3d turned = smoothed_->in_world + seconds * AccelerationAhead(target.motion, 0);
   smoothed_ = {target.time, turned + part * (velocity - turned)};
   return smoothed_->in_world;
@@ -124,7 +124,7 @@ void TargetPursuit::Integrate(const TargetEstimate& target, const Vector2d& offs
   integrated_ = target.time;
   integral_ = Eigen::Rotation2Dd(target.motion.turn_rate() * seconds) * integral_;
   if (offset.norm() > kIntegrateWithin_m) return;
-  integral_ += options_.integral_gain * seconds * offset;
+  integral_ += GuidanceOptions::kIntegralGain * seconds * offset;
   const double length = integral_.norm();
   if (length > kMaxIntegral_mps) integral_ *= kMaxIntegral_mps / length;
 }

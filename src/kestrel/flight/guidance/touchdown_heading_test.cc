@@ -94,11 +94,11 @@ TEST(TouchdownHeadingTest, AHeadingThatIsNotKnownIsNotTurnedTo) {
 }
 
 TEST(TouchdownHeadingTest, OptionsAreDegreesOrAny) {
-  EXPECT_THAT(To("any").Validate(), IsEmpty());
-  EXPECT_THAT(To("-90").Validate(), IsEmpty());
+  EXPECT_THAT(ViolationsOf(To("any")), IsEmpty());
+  EXPECT_THAT(ViolationsOf(To("-90")), IsEmpty());
   EXPECT_NEAR(*To("-90").HeadingOverPad(), -kPi / 2, 1e-12);
-  EXPECT_THAT(To("north").Validate(), ElementsAre(HasSubstr("touchdown_heading is 'north'")));
-  EXPECT_THAT(To("400").Validate(), ElementsAre(HasSubstr("expected degrees from -360 to 360")));
+  EXPECT_THAT(ViolationsOf(To("north")), ElementsAre(HasSubstr("touchdown_heading is 'north'")));
+  EXPECT_THAT(ViolationsOf(To("400")), ElementsAre(HasSubstr("expected degrees from -360 to 360")));
 }
 
 // Turns a pad of TestFlight, whose UAV has always the heading 0.

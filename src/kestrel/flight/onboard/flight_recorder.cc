@@ -11,7 +11,6 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/options.h"
-#include "kestrel/core/base/violations.h"
 #include "kestrel/core/codec/png_codec.h"
 #include "kestrel/io/recording/euroc/recording_place.h"
 
@@ -53,20 +52,6 @@ Duration UtcOffset() {
 }
 
 }  // namespace
-
-std::vector<std::string> FlightRecorderOptions::Validate() const {
-  std::vector<std::string> violations;
-  if (compression != "png" && compression != "jpg") {
-    violations.push_back(fmt::format("compression is '{}', expected png or jpg", compression));
-  }
-  RequireIn(png_level, 0, 9, "png_level", &violations);
-  RequireIn(jpg_quality, 1, 100, "jpg_quality", &violations);
-  RequireIn(queue_frames, 1, 1000, "queue_frames", &violations);
-  RequireNotNegative(free_space_mb, "free_space_mb", &violations);
-  RequireIn(commit_period_s, 0.01, 60, "commit_period_s", &violations);
-  AddViolations("thread", thread.Validate(), &violations);
-  return violations;
-}
 
 FlightRecorder::FlightRecorder(const fs::path& folder, bool replace,
                                const CameraCalibration& calibration, double rate_hz,
@@ -139,7 +124,7 @@ RecorderCounters FlightRecorder::counters() const {
 
 void FlightRecorder::RunWriter() {
   constexpr Duration kIdle = std::chrono::milliseconds(50);
-  const std::string refused = SetUpThisThread("recorder", options_.thread);
+  const std::string refused = SetUpThisThread("recorder", {});
   if (!refused.empty()) Say(refused);
   for (;;) {
     const bool was_closing = is_closing_;

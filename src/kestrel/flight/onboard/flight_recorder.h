@@ -15,10 +15,10 @@
 #include <string>
 #include <thread>
 #include <variant>
-#include <vector>
 
 #include "kestrel/core/base/bounded_queue.h"
 #include "kestrel/core/base/folder_lock.h"
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/thread_setup.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/calibration.h"
@@ -32,32 +32,24 @@
 namespace kestrel {
 
 struct FlightRecorderOptions {
-  // "png" keeps every gray value; "jpg" needs a fifth of its size and work, and moves edges by
-  // hundredths of a pixel.
   std::string compression = "png";
-  int png_level = 1;  // 0 (uncompressed, fast) to 9 (smallest, slow)
+  int png_level = 1;
   int jpg_quality = 95;
   int queue_frames = 32;  // that may wait for the disk; further frames are dropped
-  // Below this room on the disk no images are written, until there is a tenth more.
   double free_space_mb = 200;
-  // Period of syncing to the disk: a loss of power loses at most the data of this time.
-  double commit_period_s = 1;
-  ThreadOptions thread = {};
+  double commit_period_s = 1;  // after which what is written outlives a loss of power
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("compression", self.compression, "", "format of the images: png or jpg");
-    visitor("png_level", self.png_level, "1",
-            "compression of PNG: 0, none and fast, to 9, smallest and slow");
-    visitor("jpg_quality", self.jpg_quality, "1", "quality of JPEG, 1 to 100");
-    visitor("queue_frames", self.queue_frames, "1", "number of frames that may wait for the disk");
-    visitor("free_space_mb", self.free_space_mb, "MB", "free space on the disk that images leave");
-    visitor(
-        "commit_period_s", self.commit_period_s, "s",
-        "interval at which files are committed to the disk: the most that a power failure loses");
-    visitor.Group("thread", self.thread);
+  static void Visit(auto& self, auto&& visit) {
+    visit("compression", self.compression, OneOf{{"png", "jpg"}},
+          "format of the images; jpg needs a fifth of the size and work, and moves edges by "
+          "hundredths of a pixel");
+    visit("png_level", self.png_level, Range{0, 9},
+          "compression of PNG; 0: none and fast, 9: smallest and slow");
+    visit("jpg_quality", self.jpg_quality, Range{1, 100}, "quality of JPEG");
+    visit("free_space_mb", self.free_space_mb, AtLeast(0),
+          "free space on the disk below which no images are written");
+    visit.Gone({"queue_frames", "commit_period_s", "thread"});
   }
-  std::vector<std::string> Validate() const;
 };
 
 // Writes a flight as a recording in the EuRoC layout (docs/recording.md) that `kestrel land`,

@@ -10,7 +10,6 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/options.h"
-#include "kestrel/core/base/violations.h"
 #include "kestrel/flight/onboard/exposure_drive.h"
 #include "kestrel/flight/onboard/gstreamer_pipeline.h"
 #include "kestrel/flight/onboard/image_pool.h"
@@ -21,6 +20,7 @@ namespace kestrel {
 namespace {
 
 constexpr std::size_t kPooledImages = 64;  // that vision and the recorder's queue hold at a time
+constexpr Duration kMaxReopen = std::chrono::seconds(8);  // longest interval between attempts
 
 // Returns the caps to request from a device.
 std::string DeviceCaps(const CameraIntrinsics& calibration, const GstreamerCameraOptions& options) {
@@ -30,17 +30,6 @@ std::string DeviceCaps(const CameraIntrinsics& calibration, const GstreamerCamer
 }
 
 }  // namespace
-
-std::vector<std::string> GstreamerCameraOptions::Validate() const {
-  std::vector<std::string> violations;
-  RequireIn(readout_s, -1, 1, "readout_s", &violations);
-  RequireIn(exposure_s, 0, 1, "exposure_s", &violations);
-  RequirePositive(exposure_unit_s, "exposure_unit_s", &violations);
-  RequireIn(stall_s, 0.1, 3600, "stall_s", &violations);
-  RequireIn(reopen_s, 0.01, 3600, "reopen_s", &violations);
-  RequireIn(max_reopen_s, reopen_s, 3600, "max_reopen_s", &violations);
-  return violations;
-}
 
 GstreamerCamera::GstreamerCamera(const std::string& camera, const CameraIntrinsics& calibration,
                                  PixelFormat format, const GstreamerCameraOptions& options)
@@ -120,7 +109,7 @@ bool GstreamerCamera::Reopen() {
 
 void GstreamerCamera::Fail(const std::string& reason) {
   next_attempt_ = Now() + back_off_;
-  back_off_ = std::min(2 * back_off_, DurationFromSeconds(options_.max_reopen_s));
+  back_off_ = std::min(2 * back_off_, kMaxReopen);
   std::unique_ptr<GstreamerPipeline> gone;  // stops without the lock held
   const std::lock_guard lock(mutex_);
   gone = std::exchange(pipeline_, nullptr);

@@ -6,8 +6,8 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <vector>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/flight/onboard/exposure_actuator.h"
 #include "kestrel/flight/session/live_source.h"
@@ -18,43 +18,29 @@ class GstreamerPipeline;
 class ImagePool;
 
 struct GstreamerCameraOptions {
-  // Time from the middle of the exposure to the driver's time of the frame, without half of the
-  // exposure itself: the result of `kestrel calibrate clock`, or the sensor's read-out time where
-  // the driver stamps the end of it.
   double readout_s = 0;
-  // Length of the exposure, half of which is before the driver's time; 0 where the driver stamps
-  // the middle. While exposure control runs, its value is used instead.
   double exposure_s = 0;
-  // Element and property that set the exposure, as "source.exposure"; empty: V4L2 for a device.
   std::string exposure_property = {};
-  double exposure_unit_s = 1e-6;  // unit of that property
-  // Caps requested from a device; empty: raw images of the calibration's size. "image/jpeg,
-  // width=752,height=480,framerate=50/1" requests compressed ones.
+  double exposure_unit_s = 1e-6;
   std::string device_caps = {};
-  // After so long without a frame the camera counts as gone.
   double stall_s = 2;
-  // Time between attempts to reopen it: the first, and the largest after doubling.
-  double reopen_s = 0.5;
-  double max_reopen_s = 8;
+  double reopen_s = 0.5;  // first interval between attempts to open a lost camera; it doubles
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("readout_s", self.readout_s, "s",
-            "time from the end of the exposure to the driver's time stamp");
-    visitor("exposure_s", self.exposure_s, "s",
-            "length of the exposure, as long as it is not controlled");
-    visitor("exposure_property", self.exposure_property, "",
-            "GStreamer's element.property that sets the exposure; empty: the control of V4L2");
-    visitor("exposure_unit_s", self.exposure_unit_s, "s", "unit of exposure_property");
-    visitor("device_caps", self.device_caps, "",
-            "caps that are requested of /dev/videoN; empty: raw images of the calibration's size");
-    visitor("stall_s", self.stall_s, "s", "time without a frame after which the camera is lost");
-    visitor("reopen_s", self.reopen_s, "s",
-            "first interval between attempts to open a lost camera");
-    visitor("max_reopen_s", self.max_reopen_s, "s",
-            "longest interval between attempts to open a lost camera");
+  static void Visit(auto& self, auto&& visit) {
+    visit("readout_s", self.readout_s, Range{-1, 1},
+          "time from the end of the exposure to the driver's time stamp");
+    visit(
+        "exposure_s", self.exposure_s, Range{0, 1},
+        "length of the exposure, as long as it is not controlled; 0: the driver stamps its middle");
+    visit("exposure_property", self.exposure_property,
+          "GStreamer's element.property that sets the exposure; empty: the control of V4L2");
+    visit("exposure_unit_s", self.exposure_unit_s, MoreThan(0), "unit of exposure_property");
+    visit("device_caps", self.device_caps,
+          "caps that are requested of /dev/videoN; empty: raw images of the calibration's size");
+    visit("stall_s", self.stall_s, Range{0.1, 3600},
+          "time without a frame after which the camera is lost");
+    visit.Gone({"reopen_s", "max_reopen_s"});
   }
-  std::vector<std::string> Validate() const;
 };
 
 // A camera through GStreamer: a device (/dev/video0), an RTSP address, or any pipeline. Only the

@@ -147,8 +147,8 @@ GuidanceInput GuidedFlight::Input(Time now, const TrackSnapshot& track,
                                   const PoseHistory& poses) const {
   GuidanceInput input;
   input.now = now;
-  const auto pose =
-      poses.Predict(now, DurationFromSeconds(options_.target.max_pose_age_s), UnmodelledMotion());
+  const auto pose = poses.Predict(now, DurationFromSeconds(TargetReporterOptions::kMaxPoseAge_s),
+                                  UnmodelledMotion());
   if (pose) input.uav = StateOf(*pose, poses.Acceleration());
   input.target = Target(now, track);
   if (track.sighting) {

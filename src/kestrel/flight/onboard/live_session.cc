@@ -51,23 +51,21 @@ class RecordedActuator : public ExposureActuator {
 struct FlyFields {
   LiveSessionOptions& options;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    FlightOptions::Visit(self.options.flight, visitor);
-    visitor.Group("link", self.options.link);
-    visitor.Group("autopilot", self.options.autopilot);
-    visitor.Group("recorder", self.options.recorder);
+  static void Visit(auto& self, auto&& visit) {
+    visit.Group(self.options.flight);
+    visit.Group("link", self.options.link);
+    visit.Group("autopilot", self.options.autopilot);
+    visit.Group("recorder", self.options.recorder);
   }
 };
 struct SessionFields {
   LiveSessionOptions options;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
+  static void Visit(auto& self, auto&& visit) {
     FlyFields fly{self.options};
-    visitor.Group("landing", self.options.landing);
-    visitor.Group("hunt", self.options.hunt);
-    visitor.Group("fly", fly);
+    visit.Group("landing", self.options.landing);
+    visit.Group("hunt", self.options.hunt);
+    visit.Group("fly", fly);
   }
 };
 

@@ -4,18 +4,8 @@
 #include <cmath>
 
 #include "kestrel/core/base/options.h"
-#include "kestrel/core/base/violations.h"
 
 namespace kestrel {
-
-std::vector<std::string> TargetReporterOptions::Validate() const {
-  std::vector<std::string> violations;
-  RequirePositive(max_sigma_m, "max_sigma_m", &violations);
-  RequireIn(max_pose_age_s, 0.01, 5, "max_pose_age_s", &violations);
-  AddViolations("contact", contact.Validate(), &violations);
-  RequirePositive(contact_below_m, "contact_below_m", &violations);
-  return violations;
-}
 
 TargetReporter::TargetReporter(const TargetReporterOptions& options,
                                const TargetTrackerOptions& tracker)
@@ -25,7 +15,8 @@ std::optional<TargetReport> TargetReporter::Report(Time now, Duration until_use,
                                                    const TrackSnapshot& track,
                                                    const PoseHistory& poses) {
   const Time time_of_use = now + until_use;
-  const auto pose = poses.Predict(time_of_use, DurationFromSeconds(options_.max_pose_age_s), {});
+  const auto pose =
+      poses.Predict(time_of_use, DurationFromSeconds(TargetReporterOptions::kMaxPoseAge_s), {});
   if (!pose) return std::nullopt;
   TargetReport report;
   report.time = time_of_use;
@@ -70,7 +61,7 @@ bool TargetReporter::PredictTarget(const TrackSnapshot& track, TargetReport* rep
 TargetReport TargetReporter::Below(TargetReport report,
                                    const Eigen::Vector3d& body_velocity) const {
   report.position_in_world = report.world_from_body.translation;
-  report.position_in_world.z() -= options_.contact_below_m;
+  report.position_in_world.z() -= TargetReporterOptions::kContactBelow_m;
   report.velocity_in_world = body_velocity;
   report.covariance = std::pow(0.1, 2) * Eigen::Matrix3d::Identity();
   return report;

@@ -3,11 +3,11 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include <Eigen/Core>
 
 #include "kestrel/comms/mavlink/target_profile.h"
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/geometry/rigid_transform.h"
 #include "kestrel/core/poses/pose_history.h"
@@ -39,23 +39,20 @@ struct TrackSnapshot {
 };
 
 struct TargetReporterOptions {
-  double max_sigma_m = 0.5;
-  double max_pose_age_s = 0.3;
-  // Contact of the body, whose origin is above the deck by the length of the legs.
-  ContactOptions contact = {.height_m = 0.6, .reach_m = 0.6, .speed_mps = 0.1};
-  double contact_below_m = 0.2;
+  // Longest time from the last pose to the time of a report.
+  static constexpr double kMaxPoseAge_s = 0.3;
+  // Depth below the deck at which a target in contact is reported.
+  static constexpr double kContactBelow_m = 0.2;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("max_sigma_m", self.max_sigma_m, "m",
-            "largest standard deviation per axis of a target that is sent");
-    visitor("max_pose_age_s", self.max_pose_age_s, "s",
-            "age of the newest pose after which nothing is sent");
-    visitor.Group("contact", self.contact);
-    visitor("contact_below_m", self.contact_below_m, "m",
-            "distance below the body that is sent as the target's after contact");
+  double max_sigma_m = 0.5;
+  // When the UAV stands on the deck by these limits, the target is reported below it.
+  ContactOptions contact = {.height_m = 0.6, .reach_m = 0.6, .speed_mps = 0.1};
+
+  static void Visit(auto& self, auto&& visit) {
+    visit("max_sigma_m", self.max_sigma_m, MoreThan(0),
+          "largest standard deviation per axis of a target that is sent");
+    visit.Gone({"max_pose_age_s", "contact", "contact_below_m"});
   }
-  std::vector<std::string> Validate() const;
 };
 
 // Computes the report to the autopilot from the track, at any instant: the target predicted to the

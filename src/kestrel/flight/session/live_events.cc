@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "kestrel/core/base/options.h"
-#include "kestrel/core/base/violations.h"
 
 namespace kestrel {
 namespace {
@@ -22,12 +21,6 @@ Duration PoseWaitOf(const LiveEventsOptions& options) {
 }
 
 }  // namespace
-
-std::vector<std::string> LiveEventsOptions::Validate() const {
-  std::vector<std::string> violations;
-  RequireIn(pose_wait_s, 0, 1, "pose_wait_s", &violations);
-  return violations;
-}
 
 LiveEvents::LiveEvents(const LiveEventsOptions& options, Duration lead)
     : pose_wait_(PoseWaitOf(options)), lead_(lead), poses_(kWaitingPoses) {

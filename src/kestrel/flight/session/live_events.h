@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/poses/pose_history.h"
 #include "kestrel/flight/session/live_source.h"
@@ -16,17 +17,12 @@
 namespace kestrel {
 
 struct LiveEventsOptions {
-  // Longest time that a frame waits for the pose after it, beyond the time at which the pose should
-  // come: poses that are late on the link are waited for. 0: a frame never waits, and its pose is
-  // predicted.
   double pose_wait_s = 0.03;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("pose_wait_s", self.pose_wait_s, "s",
-            "longest wait of a frame for the pose after its time, beyond the poses' usual delay");
+  static void Visit(auto& self, auto&& visit) {
+    visit("pose_wait_s", self.pose_wait_s, Range{0, 1},
+          "longest wait of a frame for the pose after its time, beyond the poses' usual delay");
   }
-  std::vector<std::string> Validate() const;
 };
 
 // The stream of a flight: several threads put in frames and poses, one thread processes them.

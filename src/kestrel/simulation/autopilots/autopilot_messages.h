@@ -12,6 +12,7 @@
 
 #include "kestrel/comms/mavlink/messages.h"
 #include "kestrel/comms/mavlink/packet.h"
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/poses/pose_history.h"
 #include "kestrel/simulation/autopilot_rules/autopilot_parameters.h"
 
@@ -42,12 +43,10 @@ struct GlobalOrigin {
   double longitude_deg = 8.545594;
   double altitude_m = 488;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("latitude_deg", self.latitude_deg, "deg", "latitude of the local frame's origin");
-    visitor("longitude_deg", self.longitude_deg, "deg", "longitude of the local frame's origin");
-    visitor("altitude_m", self.altitude_m, "m",
-            "altitude of the local frame's origin above the sea");
+  static void Visit(auto& self, auto&& visit) {
+    visit("latitude_deg", self.latitude_deg, Range{-80, 80}, "latitude of the origin");
+    visit("longitude_deg", self.longitude_deg, Range{-180, 180}, "longitude of the origin");
+    visit("altitude_m", self.altitude_m, Range{-500, 9000}, "height of the origin above the sea");
   }
 };
 

@@ -5,10 +5,6 @@
 #include <optional>
 #include <utility>
 
-#include <fmt/format.h>
-
-#include "kestrel/core/base/violations.h"
-
 namespace kestrel {
 namespace {
 
@@ -28,18 +24,6 @@ std::optional<CameraFault> FaultOf(const std::string& kind) {
 }
 
 }  // namespace
-
-std::vector<std::string> CameraFaultOptions::Validate() const {
-  constexpr double kLongest_s = 10000;
-  std::vector<std::string> violations;
-  if (!FaultOf(kind)) {
-    violations.push_back(fmt::format(
-        "kind is '{}', expected none, frozen, black, bright, slow, stopped or beside", kind));
-  }
-  RequireIn(after_s, 0, kLongest_s, "after_s", &violations);
-  RequireIn(for_s, 0, kLongest_s, "for_s", &violations);
-  return violations;
-}
 
 CameraFault CameraFaultOptions::At(double since_start_s) const {
   if (since_start_s < after_s || since_start_s >= after_s + for_s) return CameraFault::kNone;

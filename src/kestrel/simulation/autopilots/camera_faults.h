@@ -2,7 +2,8 @@
 #pragma once
 
 #include <string>
-#include <vector>
+
+#include "kestrel/core/base/limits.h"
 
 namespace kestrel {
 
@@ -18,18 +19,17 @@ enum class CameraFault {
 
 // A temporary fault of a simulated camera.
 struct CameraFaultOptions {
-  std::string kind = "none";  // none, frozen, black, bright, slow, stopped or beside
-  double after_s = 10;        // from the camera's start
+  std::string kind = "none";
+  double after_s = 10;
   double for_s = 2;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("kind", self.kind, "",
-            "kind of fault: none, frozen, black, bright, slow, stopped or beside");
-    visitor("after_s", self.after_s, "s", "time from the start to the fault");
-    visitor("for_s", self.for_s, "s", "duration of the fault");
+  static void Visit(auto& self, auto&& visit) {
+    visit("kind", self.kind,
+          OneOf{{"none", "frozen", "black", "bright", "slow", "stopped", "beside"}},
+          "kind of fault");
+    visit("after_s", self.after_s, Range{0, 10000}, "time from the start to the fault");
+    visit("for_s", self.for_s, Range{0, 10000}, "duration of the fault");
   }
-  std::vector<std::string> Validate() const;
 
   // Returns the fault at a time since the start.
   CameraFault At(double since_start_s) const;

@@ -7,44 +7,30 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/random.h"
 #include "kestrel/core/base/time.h"
-#include "kestrel/core/base/violations.h"
 
 namespace kestrel {
 
 // Faults of a link for the messages in both directions.
 struct LinkFaultOptions {
-  double delay_s = 0;   // of each message
-  double jitter_s = 0;  // the delay varies by up to this to both sides; messages stay in order
-  double loss = 0;      // part of the messages that are lost
-  // Silence in both directions: begins 'down_after_s' after the start (negative: never), lasts
-  // 'down_for_s', and is repeated with a period (0: once).
+  double delay_s = 0;
+  double jitter_s = 0;
+  double loss = 0;
   double down_after_s = -1;
   double down_for_s = 2;
   double down_every_s = 0;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("delay_s", self.delay_s, "s", "delay of each message, one way");
-    visitor("jitter_s", self.jitter_s, "s", "variation of the delay to both sides");
-    visitor("loss", self.loss, "1", "part of the messages that is lost");
-    visitor("down_after_s", self.down_after_s, "s",
-            "time from the start to a silence in both directions; negative: never");
-    visitor("down_for_s", self.down_for_s, "s", "duration of the silence");
-    visitor("down_every_s", self.down_every_s, "s", "period of the silence; 0: once");
-  }
-  std::vector<std::string> Validate() const {
-    std::vector<std::string> violations;
-    RequireIn(delay_s, 0, 10, "delay_s", &violations);
-    RequireIn(jitter_s, 0, 10, "jitter_s", &violations);
-    RequireIn(loss, 0, 1, "loss", &violations);
-    RequireIn(down_after_s, -1, 10000, "down_after_s", &violations);
-    RequireIn(down_for_s, 0, 10000, "down_for_s", &violations);
-    RequireIn(down_every_s, 0, 10000, "down_every_s", &violations);
-    return violations;
+  static void Visit(auto& self, auto&& visit) {
+    visit("delay_s", self.delay_s, Range{0, 10}, "delay of each message, one way");
+    visit("jitter_s", self.jitter_s, Range{0, 10}, "variation of the delay to both sides");
+    visit("loss", self.loss, Range{0, 1}, "part of the messages that is lost");
+    visit("down_after_s", self.down_after_s, Range{-1, 10000},
+          "time from the start to a silence in both directions; negative: never");
+    visit("down_for_s", self.down_for_s, Range{0, 10000}, "duration of the silence");
+    visit("down_every_s", self.down_every_s, Range{0, 10000}, "period of the silence; 0: once");
   }
   bool IsDown(double since_start_s) const {
     double since_s = since_start_s - down_after_s;

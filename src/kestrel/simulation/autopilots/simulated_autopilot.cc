@@ -5,13 +5,10 @@
 #include <chrono>
 #include <variant>
 
-#include <fmt/format.h>
-
 #include "kestrel/comms/mavlink/link_url.h"
 #include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/comms/mavlink/transport.h"
 #include "kestrel/core/base/options.h"
-#include "kestrel/core/base/violations.h"
 
 namespace kestrel {
 namespace {
@@ -31,15 +28,6 @@ ConnectionOptions ConnectionOf(const SimulatedAutopilotOptions& options) {
 }
 
 }  // namespace
-
-std::vector<std::string> SimulatedAutopilotOptions::Validate() const {
-  std::vector<std::string> violations = model.Validate();
-  if (firmware != "ardupilot" && firmware != kPx4Name) {
-    violations.push_back(fmt::format("firmware is '{}', expected ardupilot or px4", firmware));
-  }
-  AddViolations("link", link.Validate(), &violations);
-  return violations;
-}
 
 SimulatedAutopilot::SimulatedAutopilot(const SimulatedAutopilotOptions& options,
                                        const std::string& url, VehicleWorld* world,

@@ -7,9 +7,9 @@
 #include <mutex>
 #include <string>
 #include <thread>
-#include <vector>
 
 #include "kestrel/comms/mavlink/connection.h"
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/random.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/simulation/autopilot_rules/autopilot_parameters.h"
@@ -21,19 +21,17 @@
 namespace kestrel {
 
 struct SimulatedAutopilotOptions {
-  std::string firmware = "ardupilot";  // ardupilot or px4
+  std::string firmware = "ardupilot";
   AutopilotModelOptions model;
   LinkFaultOptions link;
-  std::string signing_key;  // as in ConnectionOptions
+  std::string signing_key;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("firmware", self.firmware, "", "simulated firmware: ardupilot or px4");
-    visitor("signing_key", self.signing_key, "", "file with the key of signed packets");
-    AutopilotModelOptions::Visit(self.model, visitor);
-    visitor.Group("link", self.link);
+  static void Visit(auto& self, auto&& visit) {
+    visit("firmware", self.firmware, OneOf{{"ardupilot", "px4"}}, "simulated firmware");
+    visit("signing_key", self.signing_key, "file with the key of signed packets");
+    visit.Group(self.model);
+    visit.Group("link", self.link);
   }
-  std::vector<std::string> Validate() const;
 };
 
 // A simulated UAV behind real MAVLink: an autopilot that flies in real time, on the clock of Now().

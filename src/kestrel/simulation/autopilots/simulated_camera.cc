@@ -11,7 +11,6 @@
 
 #include "kestrel/core/base/hash.h"
 #include "kestrel/core/base/options.h"
-#include "kestrel/core/base/violations.h"
 #include "kestrel/simulation/recordings/landing_simulation.h"
 #include "kestrel/simulation/recordings/truth_text.h"
 #include "kestrel/simulation/rendering/lens.h"
@@ -41,19 +40,6 @@ CameraCalibration ScaledCalibration(double scale) {
 
 // Few rays, so that an image takes a few ms.
 SimulatedCameraOptions::SimulatedCameraOptions() { shutter.rays_per_pixel = 3; }
-
-std::vector<std::string> SimulatedCameraOptions::Validate() const {
-  std::vector<std::string> violations;
-  RequireIn(rate_hz, 0.1, 200, "rate_hz", &violations);
-  RequireIn(scale, 0.1, 2, "scale", &violations);
-  RequireIn(clock_offset_s, -1, 1, "clock_offset_s", &violations);
-  RequireIn(pose_wait_s, 0, 5, "pose_wait_s", &violations);
-  AddViolations("lens", lens.Validate(), &violations);
-  AddViolations("shutter", shutter.Validate(), &violations);
-  AddViolations("sensor", sensor.Validate(), &violations);
-  AddViolations("fault", fault.Validate(), &violations);
-  return violations;
-}
 
 SimulatedCamera::SimulatedCamera(const SimulatedCameraOptions& options, VehicleWorld* world,
                                  Time start, std::uint64_t seed)

@@ -7,10 +7,10 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include <opencv2/core/mat.hpp>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/core/geometry/rigid_transform.h"
@@ -29,28 +29,26 @@ struct SimulatedCameraOptions {
   SimulatedCameraOptions();
 
   double rate_hz = 20;
-  double scale = 0.5;         // of the paper's image of 752x480
-  double clock_offset_s = 0;  // t_nav = t_image + clock_offset_s; negative for a late stamp
-  double pose_wait_s = 0.4;   // longest wait of an image for its pose, which is then extrapolated
+  double scale = 0.5;
+  double clock_offset_s = 0;
+  double pose_wait_s = 0.4;
   LensViewOptions lens;
   ShutterOptions shutter;
   SensorOptions sensor;
   CameraFaultOptions fault;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("rate_hz", self.rate_hz, "Hz", "images per second");
-    visitor("scale", self.scale, "1", "size of the image; the paper's 752x480 is 1");
-    visitor("clock_offset_s", self.clock_offset_s, "s",
-            "time of an image minus its stamp; negative: stamps that are late");
-    visitor("pose_wait_s", self.pose_wait_s, "s",
-            "longest wait of an image for its pose, after which the pose is extrapolated");
-    visitor.Group("lens", self.lens);
-    visitor.Group("shutter", self.shutter);
-    visitor.Group("sensor", self.sensor);
-    visitor.Group("fault", self.fault);
+  static void Visit(auto& self, auto&& visit) {
+    visit("rate_hz", self.rate_hz, Range{0.1, 200}, "images per second");
+    visit("scale", self.scale, Range{0.1, 2}, "size of the image; the paper's 752x480 is 1");
+    visit("clock_offset_s", self.clock_offset_s, Range{-1, 1},
+          "time of an image minus its stamp; negative: stamps that are late");
+    visit("pose_wait_s", self.pose_wait_s, Range{0, 5},
+          "longest wait of an image for its pose, after which the pose is extrapolated");
+    visit.Group("lens", self.lens);
+    visit.Group("shutter", self.shutter);
+    visit.Group("sensor", self.sensor);
+    visit.Group("fault", self.fault);
   }
-  std::vector<std::string> Validate() const;
 };
 
 // A live camera that is rendered: the view from the UAV over a vehicle that drives in real time.

@@ -4,26 +4,11 @@
 #include <algorithm>
 
 #include "kestrel/core/base/options.h"
-#include "kestrel/core/base/violations.h"
 #include "kestrel/simulation/autopilot_rules/landing_rules.h"
 
 namespace kestrel {
 
 using Eigen::Vector3d;
-
-std::vector<std::string> PilotOptions::Validate() const {
-  constexpr double kLongest_s = 10000;
-  std::vector<std::string> violations;
-  RequireIn(start_altitude_m, 0, 200, "start_altitude_m", &violations);
-  RequireIn(offset_east_m, -100, 100, "offset_east_m", &violations);
-  RequireIn(offset_north_m, -100, 100, "offset_north_m", &violations);
-  RequireIn(heading_deg, -360, 360, "heading_deg", &violations);
-  RequireIn(land_after_s, -1, kLongest_s, "land_after_s", &violations);
-  RequireIn(guide_after_s, -1, kLongest_s, "guide_after_s", &violations);
-  RequireIn(take_back_after_s, -1, kLongest_s, "take_back_after_s", &violations);
-  RequireIn(battery_failsafe_after_s, -1, kLongest_s, "battery_failsafe_after_s", &violations);
-  return violations;
-}
 
 SimulatedPilot::SimulatedPilot(const PilotOptions& options, const VehicleWorld& world, Time start)
     : options_(Checked(options)), world_(world), start_(start) {}

@@ -3,11 +3,11 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include <Eigen/Core>
 
 #include "kestrel/comms/mavlink/autopilot_kind.h"
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/poses/set_point.h"
 #include "kestrel/simulation/autopilots/vehicle_world.h"
@@ -18,38 +18,34 @@ namespace kestrel {
 // the companion the guided mode. Commands from the link take over. All times are from the start of
 // the simulation.
 struct PilotOptions {
-  double start_altitude_m = 10;  // above the pattern; 0: disarmed on the ground at the origin
-  double offset_east_m = 2;      // of the UAV from the pattern
+  double start_altitude_m = 10;
+  double offset_east_m = 2;
   double offset_north_m = -1;
-  double heading_deg = 60;               // of its heading, clockwise from north
-  double land_after_s = 5;               // negative: never
-  double guide_after_s = -1;             // negative: never; otherwise instead of landing
-  double take_back_after_s = -1;         // negative: never
-  double battery_failsafe_after_s = -1;  // negative: never
-  bool follows_vehicle = true;           // until then, as a pilot does by eye; otherwise it hovers
+  double heading_deg = 60;
+  double land_after_s = 5;
+  double guide_after_s = -1;
+  double take_back_after_s = -1;
+  double battery_failsafe_after_s = -1;
+  bool follows_vehicle = true;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("start_altitude_m", self.start_altitude_m, "m",
-            "height above the pattern at the start; 0: disarmed on the ground at the origin");
-    visitor("offset_east_m", self.offset_east_m, "m",
-            "distance of the UAV east of the pattern at the start");
-    visitor("offset_north_m", self.offset_north_m, "m",
-            "distance of the UAV north of the pattern at the start");
-    visitor("heading_deg", self.heading_deg, "deg", "heading of the UAV, clockwise from north");
-    visitor("land_after_s", self.land_after_s, "s",
-            "time at which the pilot switches to the mode that lands; negative: never");
-    visitor("guide_after_s", self.guide_after_s, "s",
-            "time at which the pilot switches to GUIDED or OFFBOARD instead; negative: never");
-    visitor(
-        "take_back_after_s", self.take_back_after_s, "s",
-        "time at which the pilot switches to LOITER or POSCTL and stays there; negative: never");
-    visitor("battery_failsafe_after_s", self.battery_failsafe_after_s, "s",
-            "time at which the battery is low and the autopilot returns or lands; negative: never");
-    visitor("follows_vehicle", self.follows_vehicle, "",
-            "the pilot flies along with the vehicle until then; else the UAV hovers");
+  static void Visit(auto& self, auto&& visit) {
+    visit("start_altitude_m", self.start_altitude_m, Range{0, 200},
+          "height above the pattern at the start; 0: disarmed on the ground at the origin");
+    visit("offset_east_m", self.offset_east_m, Range{-100, 100},
+          "place of the UAV, east of the pattern");
+    visit("offset_north_m", self.offset_north_m, Range{-100, 100}, "place of the UAV, north of it");
+    visit("heading_deg", self.heading_deg, Range{-360, 360}, "heading, clockwise from north");
+    visit("land_after_s", self.land_after_s, Range{-1, 10000},
+          "time at which the pilot switches to the mode that lands; negative: never");
+    visit("guide_after_s", self.guide_after_s, Range{-1, 10000},
+          "time at which the pilot switches to GUIDED or OFFBOARD instead; negative: never");
+    visit("take_back_after_s", self.take_back_after_s, Range{-1, 10000},
+          "time at which the pilot switches to LOITER or POSCTL and stays there; negative: never");
+    visit("battery_failsafe_after_s", self.battery_failsafe_after_s, Range{-1, 10000},
+          "time at which the battery is low and the autopilot returns or lands; negative: never");
+    visit("follows_vehicle", self.follows_vehicle,
+          "the pilot flies along with the vehicle until then; else the UAV hovers");
   }
-  std::vector<std::string> Validate() const;
 };
 
 class SimulatedPilot {

@@ -23,14 +23,6 @@ Quaterniond Level(double heading) { return Quaterniond(AngleAxisd(heading, Vecto
 
 }  // namespace
 
-std::vector<std::string> SimulatedUavOptions::Validate() const {
-  std::vector<std::string> violations;
-  AddViolations("multicopter", multicopter.Validate(), &violations);
-  AddViolations("wind", wind.Validate(), &violations);
-  RequireIn(leg_m, 0.05, 2, "leg_m", &violations);
-  return violations;
-}
-
 SimulatedUav::SimulatedUav(const SimulatedUavOptions& options, const VehicleWorld& world, Time now,
                            const Vector3d& position, const Vector3d& velocity, double heading,
                            Random* random)

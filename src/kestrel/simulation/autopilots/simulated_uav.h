@@ -3,13 +3,12 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include <Eigen/Geometry>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/random.h"
 #include "kestrel/core/base/time.h"
-#include "kestrel/core/base/violations.h"
 #include "kestrel/core/geometry/rigid_transform.h"
 #include "kestrel/core/poses/pose_history.h"
 #include "kestrel/core/poses/set_point.h"
@@ -22,20 +21,17 @@
 namespace kestrel {
 
 struct SimulatedUavOptions {
-  // Autopilots measure accelerations, which makes such a stiff velocity control possible.
   SimulatedUavOptions() { multicopter.velocity_gain = 6; }
 
   MulticopterOptions multicopter;
   WindOptions wind;
-  double leg_m = 0.35;  // distance from the body's origin down to its feet
+  double leg_m = 0.35;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor.Group("multicopter", self.multicopter);
-    visitor.Group("wind", self.wind);
-    visitor("leg_m", self.leg_m, "m", "length from the body's origin down to its feet");
+  static void Visit(auto& self, auto&& visit) {
+    visit.Group("multicopter", self.multicopter);
+    visit.Group("wind", self.wind);
+    visit("leg_m", self.leg_m, Range{0.05, 2}, "length from the body's origin down to its feet");
   }
-  std::vector<std::string> Validate() const;
 };
 
 // Place and velocity at which a UAV came down.

@@ -12,7 +12,6 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/options.h"
-#include "kestrel/core/base/violations.h"
 
 namespace kestrel {
 namespace {
@@ -64,16 +63,6 @@ VehicleWorldOptions::VehicleWorldOptions() {
   surroundings.vehicles = 1;
   surroundings.lookalikes = 1;
   surroundings.banners = 1;
-}
-
-std::vector<std::string> VehicleWorldOptions::Validate() const {
-  std::vector<std::string> violations;
-  RequireIn(drive_altitude_m, 0, 1000, "drive_altitude_m", &violations);
-  RequireIn(drive_delay_s, 0, 1000, "drive_delay_s", &violations);
-  RequireIn(drive_acceleration, 0.1, 10, "drive_acceleration", &violations);
-  RequireIn(start_s, 0, 1e9, "start_s", &violations);
-  std::ranges::copy(LandingSceneOptions::Validate(), std::back_inserter(violations));
-  return violations;
 }
 
 std::span<const VehicleScenario> SitlScenarios() { return AllSitlScenarios(); }

@@ -12,6 +12,7 @@
 
 #include <Eigen/Core>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/geometry/rigid_transform.h"
 #include "kestrel/core/poses/pose_history.h"
@@ -25,27 +26,22 @@ namespace kestrel {
 struct VehicleWorldOptions : LandingSceneOptions {
   VehicleWorldOptions();
 
-  // 0: it drives all the time. Otherwise it waits at its start until a UAV has been this high above
-  // ground, and for 'drive_delay_s' more.
   double drive_altitude_m = 0;
   double drive_delay_s = 0;
-  double drive_acceleration = 1;  // of the start after waiting
-  // Time 0 of the scene on this computer's clock (Now()), for programs that share a world; 0: when
-  // the program opens it.
+  double drive_acceleration = 1;
   double start_s = 0;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("drive_altitude_m", self.drive_altitude_m, "m",
-            "height of the UAV that the vehicle waits for; 0: it drives all the time");
-    visitor("drive_delay_s", self.drive_delay_s, "s", "further wait before the vehicle drives off");
-    visitor("drive_acceleration", self.drive_acceleration, "m/s^2",
-            "acceleration of the vehicle when it drives off");
-    visitor("start_s", self.start_s, "s",
-            "start on this computer's steady clock, for programs that share a world; 0: now");
-    LandingSceneOptions::Visit(self, visitor);
+  static void Visit(auto& self, auto&& visit) {
+    visit("drive_altitude_m", self.drive_altitude_m, Range{0, 1000},
+          "height of the UAV that the vehicle waits for; 0: it drives all the time");
+    visit("drive_delay_s", self.drive_delay_s, Range{0, 1000},
+          "further wait before the vehicle drives off");
+    visit("drive_acceleration", self.drive_acceleration, Range{0.1, 10},
+          "[m/s^2] acceleration of the vehicle when it drives off");
+    visit("start_s", self.start_s, Range{0, 1e9},
+          "start on this computer's steady clock, for programs that share a world; 0: now");
+    LandingSceneOptions::Visit(self, visit);
   }
-  std::vector<std::string> Validate() const;
 };
 
 // The vehicles of `sim:SCENARIO`.

@@ -292,38 +292,25 @@ LandingStill RandomTruth(const LandingStillOptions& options, const SceneRenderer
 
 std::vector<std::string> LandingStillOptions::Validate() const {
   std::vector<std::string> violations = camera.Validate();
-  for (const std::string& violation : pattern.Validate()) {
-    violations.push_back("pattern." + violation);
-  }
-  const auto require = [&violations](bool holds, const char* key, double value,
-                                     const char* expected) {
-    if (!holds) violations.push_back(fmt::format("{} is {}, expected {}", key, value, expected));
-  };
-  require(lens_half_angle_deg >= 1 && lens_half_angle_deg <= 180, "lens_half_angle_deg",
-          lens_half_angle_deg, "1 to 180");
-  require(min_altitude_m > 0 && std::isfinite(min_altitude_m), "min_altitude_m", min_altitude_m,
-          "more than 0");
-  require(max_altitude_m >= min_altitude_m && std::isfinite(max_altitude_m), "max_altitude_m",
-          max_altitude_m, "at least min_altitude_m");
-  require(max_tilt_deg >= 0 && max_tilt_deg <= 80, "max_tilt_deg", max_tilt_deg, "0 to 80");
-  require(min_visible_fraction >= 0 && min_visible_fraction <= 1, "min_visible_fraction",
-          min_visible_fraction, "0 to 1");
-  require(max_visible_fraction >= min_visible_fraction, "max_visible_fraction",
-          max_visible_fraction, "at least min_visible_fraction");
-  require(min_ring_minor_px >= 0, "min_ring_minor_px", min_ring_minor_px, "0 or more");
-  require(min_ring_major_px >= 0, "min_ring_major_px", min_ring_major_px, "0 or more");
-  require(min_lookalike_minor_px >= 0, "min_lookalike_minor_px", min_lookalike_minor_px,
-          "0 or more");
-  require(min_lookalike_visible > 0 && min_lookalike_visible <= 1, "min_lookalike_visible",
-          min_lookalike_visible, "more than 0, 1 at most");
-  require(max_lookalike_minor_px > min_lookalike_minor_px, "max_lookalike_minor_px",
-          max_lookalike_minor_px, "more than min_lookalike_minor_px");
-  require(min_lookalike_major_px >= min_lookalike_minor_px, "min_lookalike_major_px",
-          min_lookalike_major_px, "at least min_lookalike_minor_px");
-  require(std::abs(bulge) <= 0.2, "bulge", bulge, "-0.2 to 0.2");
-  require(std::abs(fold) <= 0.2, "fold", fold, "-0.2 to 0.2");
-  require(std::abs(rolling_skew) <= 0.2, "rolling_skew", rolling_skew, "-0.2 to 0.2");
-  require(wear >= 0 && wear <= 1, "wear", wear, "0 to 1");
+  AddViolations("pattern", ViolationsOf(pattern), &violations);
+  Require(lens_half_angle_deg, Range{1, 180}, "lens_half_angle_deg", &violations);
+  Require(min_altitude_m, MoreThan(0), "min_altitude_m", &violations);
+  Require(max_altitude_m, AtLeast(min_altitude_m), "max_altitude_m", &violations);
+  Require(max_tilt_deg, Range{0, 80}, "max_tilt_deg", &violations);
+  Require(min_visible_fraction, Range{0, 1}, "min_visible_fraction", &violations);
+  Require(max_visible_fraction, AtLeast(min_visible_fraction), "max_visible_fraction", &violations);
+  Require(min_ring_minor_px, AtLeast(0), "min_ring_minor_px", &violations);
+  Require(min_ring_major_px, AtLeast(0), "min_ring_major_px", &violations);
+  Require(min_lookalike_minor_px, AtLeast(0), "min_lookalike_minor_px", &violations);
+  Require(min_lookalike_visible, Range{0, 1, false}, "min_lookalike_visible", &violations);
+  Require(max_lookalike_minor_px, MoreThan(min_lookalike_minor_px), "max_lookalike_minor_px",
+          &violations);
+  Require(min_lookalike_major_px, AtLeast(min_lookalike_minor_px), "min_lookalike_major_px",
+          &violations);
+  Require(bulge, Range{-0.2, 0.2}, "bulge", &violations);
+  Require(fold, Range{-0.2, 0.2}, "fold", &violations);
+  Require(rolling_skew, Range{-0.2, 0.2}, "rolling_skew", &violations);
+  Require(wear, Range{0, 1}, "wear", &violations);
   return violations;
 }
 

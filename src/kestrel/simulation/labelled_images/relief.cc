@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "kestrel/core/base/violations.h"
+#include "kestrel/core/base/limits.h"
 
 namespace kestrel {
 namespace {
@@ -30,10 +30,10 @@ double Relief::HeightAt(const Eigen::Vector2d& point) const {
 
 std::vector<std::string> Relief::Validate() const {
   std::vector<std::string> violations;
-  RequireIn(size_m, 1e-3, 1e3, "size_m", &violations);
+  Require(size_m, Range{1e-3, 1e3}, "size_m", &violations);
   constexpr double kSteepest = 0.2;  // of the size
-  RequireIn(bulge_m, -kSteepest * size_m, kSteepest * size_m, "bulge_m", &violations);
-  RequireIn(fold_m, -kSteepest * size_m, kSteepest * size_m, "fold_m", &violations);
+  Require(bulge_m, Range{-kSteepest * size_m, kSteepest * size_m}, "bulge_m", &violations);
+  Require(fold_m, Range{-kSteepest * size_m, kSteepest * size_m}, "fold_m", &violations);
   return violations;
 }
 

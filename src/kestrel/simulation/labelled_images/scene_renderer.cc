@@ -12,9 +12,9 @@
 #include <opencv2/imgproc.hpp>
 
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/options.h"
 #include "kestrel/core/base/random.h"
-#include "kestrel/core/base/violations.h"
 #include "kestrel/simulation/labelled_images/ground_texture.h"
 
 namespace kestrel {
@@ -73,22 +73,23 @@ double RowTime(const ImagingOptions& imaging, double row, int rows) {
 
 std::vector<std::string> Scene::Validate() const {
   std::vector<std::string> violations;
-  RequireIn(ground_reflectance, 0, 1, "ground_reflectance", &violations);
-  RequireIn(ground_texture, 0, 1, "ground_texture", &violations);
-  RequireNotNegative(sky_radiance, "sky_radiance", &violations);
+  Require(ground_reflectance, Range{0, 1}, "ground_reflectance", &violations);
+  Require(ground_texture, Range{0, 1}, "ground_texture", &violations);
+  Require(sky_radiance, AtLeast(0), "sky_radiance", &violations);
   for (std::size_t i = 0; i < layers.size(); ++i) {
-    RequireIn(layers[i].reflectance, 0, 1, fmt::format("layers[{}].reflectance", i), &violations);
-    RequireIn(layers[i].texture, 0, 1, fmt::format("layers[{}].texture", i), &violations);
+    Require(layers[i].reflectance, Range{0, 1}, fmt::format("layers[{}].reflectance", i),
+            &violations);
+    Require(layers[i].texture, Range{0, 1}, fmt::format("layers[{}].texture", i), &violations);
   }
   for (std::size_t i = 0; i < shadows.size(); ++i) {
-    RequireIn(shadows[i].transmission, 0, 1, fmt::format("shadows[{}].transmission", i),
-              &violations);
-    RequireNotNegative(shadows[i].penumbra_m, fmt::format("shadows[{}].penumbra_m", i),
-                       &violations);
+    Require(shadows[i].transmission, Range{0, 1}, fmt::format("shadows[{}].transmission", i),
+            &violations);
+    Require(shadows[i].penumbra_m, AtLeast(0), fmt::format("shadows[{}].penumbra_m", i),
+            &violations);
   }
   for (std::size_t i = 0; i < glares.size(); ++i) {
-    RequireIn(glares[i].sigma_m, 1e-3, 1e3, fmt::format("glares[{}].sigma_m", i), &violations);
-    RequireNotNegative(glares[i].strength, fmt::format("glares[{}].strength", i), &violations);
+    Require(glares[i].sigma_m, Range{1e-3, 1e3}, fmt::format("glares[{}].sigma_m", i), &violations);
+    Require(glares[i].strength, AtLeast(0), fmt::format("glares[{}].strength", i), &violations);
   }
   AddViolations("relief", relief.Validate(), &violations);
   return violations;
@@ -96,22 +97,22 @@ std::vector<std::string> Scene::Validate() const {
 
 std::vector<std::string> ImagingOptions::Validate() const {
   std::vector<std::string> violations;
-  RequireIn(black_level, 0, 255, "black_level", &violations);
-  RequireIn(white_level, 0, 255, "white_level", &violations);
+  Require(black_level, Range{0, 255}, "black_level", &violations);
+  Require(white_level, Range{0, 255}, "white_level", &violations);
   if (!(white_level > black_level)) {
     violations.push_back(fmt::format("white_level is {}, expected more than black_level, {}",
                                      white_level, black_level));
   }
-  RequireIn(blur_sigma_px, 0, 20, "blur_sigma_px", &violations);
-  RequireFinite(gradient.norm(), "gradient", &violations);
-  RequireIn(haze, 0, 1, "haze", &violations);
-  RequireNotNegative(haze_radiance, "haze_radiance", &violations);
-  RequireNotNegative(read_noise, "read_noise", &violations);
-  RequireNotNegative(shot_noise, "shot_noise", &violations);
-  RequireNotNegative(exposure_s, "exposure_s", &violations);
-  RequireNotNegative(readout_s, "readout_s", &violations);
-  RequireFinite(velocity_in_camera.norm(), "velocity_in_camera", &violations);
-  RequireFinite(angular_velocity_in_camera.norm(), "angular_velocity_in_camera", &violations);
+  Require(blur_sigma_px, Range{0, 20}, "blur_sigma_px", &violations);
+  Require(gradient.norm(), {}, "gradient", &violations);
+  Require(haze, Range{0, 1}, "haze", &violations);
+  Require(haze_radiance, AtLeast(0), "haze_radiance", &violations);
+  Require(read_noise, AtLeast(0), "read_noise", &violations);
+  Require(shot_noise, AtLeast(0), "shot_noise", &violations);
+  Require(exposure_s, AtLeast(0), "exposure_s", &violations);
+  Require(readout_s, AtLeast(0), "readout_s", &violations);
+  Require(velocity_in_camera.norm(), {}, "velocity_in_camera", &violations);
+  Require(angular_velocity_in_camera.norm(), {}, "angular_velocity_in_camera", &violations);
   return violations;
 }
 

@@ -7,11 +7,9 @@
 #include <utility>
 
 #include <Eigen/Geometry>
-#include <fmt/format.h>
 
 #include "kestrel/core/base/hash.h"
 #include "kestrel/core/base/options.h"
-#include "kestrel/core/base/violations.h"
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/simulation/recordings/hunt_truth.h"
 #include "kestrel/simulation/recordings/truth_text.h"
@@ -134,31 +132,8 @@ HuntScene MakeHuntScene(const HuntSimulationOptions& options, std::uint64_t seed
 
 }  // namespace
 
-std::vector<std::string> HuntFlightOptions::Validate() const {
-  std::vector<std::string> violations;
-  if (path != "sweep" && path != "descend") {
-    violations.push_back(fmt::format("path is '{}', expected sweep or descend", path));
-  }
-  RequireIn(altitude_m, 0.5, 50, "altitude_m", &violations);
-  RequireIn(end_altitude_m, 0.3, 50, "end_altitude_m", &violations);
-  RequireIn(speed_mps, 0.1, 10, "speed_mps", &violations);
-  RequireIn(length_m, 5, 200, "length_m", &violations);
-  RequireIn(width_m, 2, 200, "width_m", &violations);
-  RequireIn(lane_m, 1, 50, "lane_m", &violations);
-  RequireIn(first_lane, 0, 100, "first_lane", &violations);
-  RequireIn(attitude_noise_deg, 0, 10, "attitude_noise_deg", &violations);
-  return violations;
-}
-
 std::vector<std::string> HuntSimulationOptions::Validate() const {
-  std::vector<std::string> violations = recording.Validate();
-  AddViolations("flight", flight.Validate(), &violations);
-  AddViolations("objects", objects.Validate(), &violations);
-  AddViolations("ground", ground.Validate(), &violations);
-  AddViolations("light", light.Validate(), &violations);
-  RequireIn(field_seed, 0, 1'000'000'000, "field_seed", &violations);
-  RequireIn(banners, 0, 100, "banners", &violations);
-  RequireIn(vehicles, 0, 100, "vehicles", &violations);
+  std::vector<std::string> violations;
   const int count = objects.red + objects.green + objects.blue + objects.yellow + objects.orange +
                     objects.orange_bars;
   if (flight.path == "descend" && count == 0) {

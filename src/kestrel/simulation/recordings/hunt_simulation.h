@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/simulation/recordings/recording_plan.h"
 #include "kestrel/simulation/recordings/simulated_flight.h"
@@ -16,31 +17,31 @@ namespace kestrel {
 
 // Flight of the UAV over the objects.
 struct HuntFlightOptions {
-  std::string path = "sweep";   // sweep: back and forth over the area; descend: down to an object
-  double altitude_m = 6;        // of the sweep, or at the beginning of the descent
-  double end_altitude_m = 0.8;  // at the end of the descent
-  double speed_mps = 3.5;       // of the sweep
-  double length_m = 30;         // of the area, along the lanes
+  std::string path = "sweep";
+  double altitude_m = 6;
+  double end_altitude_m = 0.8;
+  double speed_mps = 3.5;
+  double length_m = 30;
   double width_m = 20;
-  double lane_m = 6.5;    // distance between lanes
-  double first_lane = 0;  // lane with which the sweep begins: the UAVs of a team begin with
-                          // different ones
+  double lane_m = 6.5;
+  double first_lane = 0;
   double attitude_noise_deg = 0.4;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("path", self.path, "", "sweep: to and fro over the area; descend: down on an object");
-    visitor("altitude_m", self.altitude_m, "m",
-            "height of the sweep, or at the start of the descent");
-    visitor("end_altitude_m", self.end_altitude_m, "m", "height at the end of the descent");
-    visitor("speed_mps", self.speed_mps, "m/s", "speed of the sweep");
-    visitor("length_m", self.length_m, "m", "length of the area, along the lanes");
-    visitor("width_m", self.width_m, "m", "width of the area, across the lanes");
-    visitor("lane_m", self.lane_m, "m", "distance from one lane to the next");
-    visitor("first_lane", self.first_lane, "1", "lane with which the sweep begins");
-    visitor("attitude_noise_deg", self.attitude_noise_deg, "deg", "errors of the attitude control");
+  static void Visit(auto& self, auto&& visit) {
+    visit("path", self.path, OneOf{{"sweep", "descend"}},
+          "sweep: to and fro over the area; descend: down on an object");
+    visit("altitude_m", self.altitude_m, Range{0.5, 50},
+          "height of the sweep, or at the start of the descent");
+    visit("end_altitude_m", self.end_altitude_m, Range{0.3, 50},
+          "height at the end of the descent");
+    visit("speed_mps", self.speed_mps, Range{0.1, 10}, "speed of the sweep");
+    visit("length_m", self.length_m, Range{5, 200}, "length of the area, along the lanes");
+    visit("width_m", self.width_m, Range{2, 200}, "width of the area, across the lanes");
+    visit("lane_m", self.lane_m, Range{1, 50}, "distance from one lane to the next");
+    visit("first_lane", self.first_lane, Range{0, 100}, "lane with which the sweep begins");
+    visit("attitude_noise_deg", self.attitude_noise_deg, Range{0, 10},
+          "errors of the attitude control");
   }
-  std::vector<std::string> Validate() const;
 };
 
 // A simulated flight over coloured objects, from the motion to the sensor.
@@ -50,28 +51,26 @@ struct HuntSimulationOptions {
   HuntObjectsOptions objects;
   GroundOptions ground = Arena();
   LightOptions light;
-  int field_seed = 0;  // seed of everything outside of the flight; 0: the recording's seed
+  int field_seed = 0;
   int banners = 4;
   int vehicles = 1;
   bool uav_shadow = true;
 
   static GroundOptions Arena();
 
-  // A colour camera with rolling shutter, sharpening and compression, on a shaking mount.
   static FlightRecordingOptions ConsumerCamera();
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    FlightRecordingOptions::Visit(self.recording, visitor);
-    visitor.Group("flight", self.flight);
-    visitor.Group("objects", self.objects);
-    visitor.Group("ground", self.ground);
-    visitor.Group("light", self.light);
-    visitor("field_seed", self.field_seed, "",
-            "seed of the surroundings, for several flights over one field; 0: that of --seed");
-    visitor("banners", self.banners, "1", "banners around");
-    visitor("vehicles", self.vehicles, "1", "parked vehicles");
-    visitor("uav_shadow", self.uav_shadow, "", "the UAV's shadow");
+  static void Visit(auto& self, auto&& visit) {
+    visit.Group(self.recording);
+    visit.Group("flight", self.flight);
+    visit.Group("objects", self.objects);
+    visit.Group("ground", self.ground);
+    visit.Group("light", self.light);
+    visit("field_seed", self.field_seed, Range{0, 1000000000},
+          "seed of the surroundings, for several flights over one field; 0: that of --seed");
+    visit("banners", self.banners, Range{0, 100}, "banners around");
+    visit("vehicles", self.vehicles, Range{0, 100}, "parked vehicles");
+    visit("uav_shadow", self.uav_shadow, "the UAV's shadow");
   }
   std::vector<std::string> Validate() const;
 };

@@ -17,15 +17,14 @@ namespace kestrel {
 // A simulated flight over the landing pattern, from the motion to the sensor.
 struct LandingSimulationOptions : LandingSceneOptions {
   FlightRecordingOptions recording;
-  StillsOptions stills;  // of what follows, stills use only the pattern and the lens' half angle
+  StillsOptions stills;
   LandingFlightOptions flight;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    FlightRecordingOptions::Visit(self.recording, visitor);
-    visitor.Group("stills", self.stills);
-    visitor.Group("flight", self.flight);
-    LandingSceneOptions::Visit(self, visitor);
+  static void Visit(auto& self, auto&& visit) {
+    visit.Group(self.recording);
+    visit.Group("stills", self.stills);
+    visit.Group("flight", self.flight);
+    LandingSceneOptions::Visit(self, visit);
   }
   std::vector<std::string> Validate() const;
 };

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "kestrel/core/base/hash.h"
-#include "kestrel/core/base/violations.h"
 #include "kestrel/io/recording/euroc/euroc_layout.h"
 #include "kestrel/io/recording/euroc/euroc_text.h"
 #include "kestrel/simulation/recordings/truth_text.h"
@@ -49,17 +48,6 @@ std::function<double(double)> GainControl(const SensorOptions& options, std::uin
 }
 
 }  // namespace
-
-std::vector<std::string> FlightRecordingOptions::Validate() const {
-  std::vector<std::string> violations;
-  RequireIn(frames, 1, 1e6, "frames", &violations);
-  RequireIn(rate_hz, 0.1, 1000, "rate_hz", &violations);
-  AddViolations("navigation", navigation.Validate(), &violations);
-  AddViolations("lens", lens.Validate(), &violations);
-  AddViolations("shutter", shutter.Validate(), &violations);
-  AddViolations("sensor", sensor.Validate(), &violations);
-  return violations;
-}
 
 SimulatedFlight::SimulatedFlight(const FlightRecordingOptions& options,
                                  const CameraCalibration& camera, const Drawing& airframe,

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/simulation/recordings/recording_plan.h"
 #include "kestrel/simulation/rendering/flight_camera.h"
@@ -26,16 +27,14 @@ struct FlightRecordingOptions {
   ShutterOptions shutter;
   SensorOptions sensor;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("frames", self.frames, "1", "number of images");
-    visitor("rate_hz", self.rate_hz, "Hz", "images per second");
-    visitor.Group("navigation", self.navigation);
-    visitor.Group("lens", self.lens);
-    visitor.Group("shutter", self.shutter);
-    visitor.Group("sensor", self.sensor);
+  static void Visit(auto& self, auto&& visit) {
+    visit("frames", self.frames, Range{1, 1e6}, "number of images");
+    visit("rate_hz", self.rate_hz, Range{0.1, 1000}, "images per second");
+    visit.Group("navigation", self.navigation);
+    visit.Group("lens", self.lens);
+    visit.Group("shutter", self.shutter);
+    visit.Group("sensor", self.sensor);
   }
-  std::vector<std::string> Validate() const;
 
   double duration_s() const { return frames / rate_hz; }
 };

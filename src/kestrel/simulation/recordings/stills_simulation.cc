@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "kestrel/core/base/hash.h"
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/options.h"
-#include "kestrel/core/base/violations.h"
 #include "kestrel/io/recording/euroc/euroc_layout.h"
 #include "kestrel/io/recording/euroc/euroc_text.h"
 #include "kestrel/simulation/labelled_images/landing_stills.h"
@@ -42,14 +42,7 @@ std::string TruthRow(Time time, const LandingStill& still) {
 
 std::vector<std::string> StillsOptions::Validate() const {
   std::vector<std::string> violations;
-  if (show != "nothing" && show != "pattern" && show != "lookalikes") {
-    violations.push_back(
-        fmt::format("show is '{}', expected nothing, pattern or lookalikes", show));
-  }
-  RequireIn(min_altitude_m, 0.1, 100, "min_altitude_m", &violations);
-  RequireIn(max_altitude_m, min_altitude_m, 100, "max_altitude_m", &violations);
-  RequireIn(max_tilt_deg, 0, 80, "max_tilt_deg", &violations);
-  RequireIn(min_visible_fraction, 0, 1, "min_visible_fraction", &violations);
+  Require(max_altitude_m, Range{min_altitude_m, 100}, "max_altitude_m", &violations);
   return violations;
 }
 

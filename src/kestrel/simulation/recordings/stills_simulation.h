@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/simulation/recordings/recording_plan.h"
 #include "kestrel/vision/landing/landing_pattern.h"
@@ -13,21 +14,20 @@ namespace kestrel {
 
 // Unrelated images, made by LandingStillMaker.
 struct StillsOptions {
-  std::string show = "nothing";  // pattern, lookalikes; nothing: a flight instead of stills
-  double min_altitude_m = 0.35;  // of the camera above the pattern
+  std::string show = "nothing";
+  double min_altitude_m = 0.35;
   double max_altitude_m = 14;
   double max_tilt_deg = 40;
-  double min_visible_fraction = 0.25;  // of the pattern
+  double min_visible_fraction = 0.25;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("show", self.show, "",
-            "pattern or lookalikes: single images instead of a flight; nothing: a flight");
-    visitor("min_altitude_m", self.min_altitude_m, "m", "smallest height of the camera");
-    visitor("max_altitude_m", self.max_altitude_m, "m", "largest height of the camera");
-    visitor("max_tilt_deg", self.max_tilt_deg, "deg", "largest tilt of the camera");
-    visitor("min_visible_fraction", self.min_visible_fraction, "1",
-            "smallest part of the pattern that is in view");
+  static void Visit(auto& self, auto&& visit) {
+    visit("show", self.show, OneOf{{"nothing", "pattern", "lookalikes"}},
+          "pattern or lookalikes: single images instead of a flight; nothing: a flight");
+    visit("min_altitude_m", self.min_altitude_m, Range{0.1, 100}, "smallest height of the camera");
+    visit("max_altitude_m", self.max_altitude_m, "largest height of the camera");
+    visit("max_tilt_deg", self.max_tilt_deg, Range{0, 80}, "largest tilt of the camera");
+    visit("min_visible_fraction", self.min_visible_fraction, Range{0, 1},
+          "smallest part of the pattern that is in view");
   }
   std::vector<std::string> Validate() const;
 };

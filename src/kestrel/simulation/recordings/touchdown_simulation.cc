@@ -3,13 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <numbers>
 #include <utility>
 
 #include <Eigen/Geometry>
 
-#include "kestrel/core/base/violations.h"
+#include "kestrel/core/base/limits.h"
 #include "kestrel/simulation/recordings/truth_text.h"
 #include "kestrel/simulation/vehicle/flight_time.h"
 #include "kestrel/vision/pipeline/pattern_area.h"
@@ -42,16 +41,7 @@ LandingPipelineOptions PipelineOptions(const TouchdownSimulationOptions& simulat
 
 std::vector<std::string> TouchdownOptions::Validate() const {
   std::vector<std::string> violations;
-  RequireIn(start_altitude_m, 1, 100, "start_altitude_m", &violations);
-  RequireIn(start_distance_m, 0, 500, "start_distance_m", &violations);
-  RequireIn(pass_min_s, 0, 1000, "pass_min_s", &violations);
-  RequireIn(pass_max_s, pass_min_s, 1000, "pass_max_s", &violations);
-  RequireIn(processing_delay_s, 0.02, 1, "processing_delay_s", &violations);
-  RequireIn(leg_m, 0.05, 2, "leg_m", &violations);
-  RequireIn(feet_radius_m, 0, 2, "feet_radius_m", &violations);
-  RequireIn(deck_m, 0, 100, "deck_m", &violations);
-  RequireIn(max_slip_mps, 0.1, 10, "max_slip_mps", &violations);
-  RequireIn(max_sink_mps, 0.1, 10, "max_sink_mps", &violations);
+  Require(pass_max_s, Range{pass_min_s, 1000}, "pass_max_s", &violations);
   return violations;
 }
 
@@ -69,18 +59,6 @@ TouchdownSimulationOptions::TouchdownSimulationOptions() {
                      .max_climb_mps = 2.5,
                      .max_sink_mps = 2.5,
                      .max_tilt_deg = multicopter.max_tilt_deg};
-}
-
-std::vector<std::string> TouchdownSimulationOptions::Validate() const {
-  std::vector<std::string> violations = recording.Validate();
-  AddViolations("touchdown", touchdown.Validate(), &violations);
-  AddViolations("multicopter", multicopter.Validate(), &violations);
-  AddViolations("wind", wind.Validate(), &violations);
-  AddViolations("guidance", guidance.Validate(), &violations);
-  AddViolations("tracker", tracker.Validate(), &violations);
-  AddViolations("exposure", exposure.Validate(), &violations);
-  std::ranges::copy(LandingSceneOptions::Validate(), std::back_inserter(violations));
-  return violations;
 }
 
 TouchdownSimulation::TouchdownSimulation(const TouchdownSimulationOptions& options,

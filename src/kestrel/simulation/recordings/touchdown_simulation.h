@@ -29,41 +29,33 @@ namespace kestrel {
 
 // Start of the UAV, conditions of a touchdown, and delay of the vision.
 struct TouchdownOptions {
-  double start_altitude_m = 10;  // above ground
-  double start_distance_m = 20;  // from the place where the vehicle should pass
-  // It starts so far behind the vehicle instead, as fast as that.
+  double start_altitude_m = 10;
+  double start_distance_m = 20;
   bool starts_behind = false;
-  // The vehicle passes that place at a random time between these. The UAV knows the place, but not
-  // the time. The vehicle is never nearer to the start than that place.
   double pass_min_s = 4;
   double pass_max_s = 8;
-  // Time from the middle of an image's exposure until its result can be used: transfer and
-  // detection.
   double processing_delay_s = 0.06;
-  double leg_m = 0.35;  // distance from the body's origin down to its feet
-  // Its feet stand on the board when their middle is this far inside of its edge. A board that is
-  // smaller than the deck lies on it, and the feet may stand beside the board.
+  double leg_m = 0.35;
   double feet_radius_m = 0.25;
   double deck_m = 1.5;
-  double max_slip_mps = 1.5;  // largest horizontal speed against the board for it to stay there
-  double max_sink_mps = 2;    // largest vertical speed
+  double max_slip_mps = 1.5;
+  double max_sink_mps = 2;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("start_altitude_m", self.start_altitude_m, "m", "height above ground at the start");
-    visitor("start_distance_m", self.start_distance_m, "m",
-            "distance from the start to the place where the vehicle passes");
-    visitor("starts_behind", self.starts_behind, "",
-            "the UAV starts so far behind the vehicle instead, as fast as it drives");
-    visitor("pass_min_s", self.pass_min_s, "s", "earliest time at which it passes there");
-    visitor("pass_max_s", self.pass_max_s, "s", "latest time at which it passes there");
-    visitor("processing_delay_s", self.processing_delay_s, "s",
-            "delay from the middle of an exposure to the result");
-    visitor("leg_m", self.leg_m, "m", "length from the body's origin down to its feet");
-    visitor("feet_radius_m", self.feet_radius_m, "m", "room that the feet need on the board");
-    visitor("deck_m", self.deck_m, "m", "side of the deck under a smaller board");
-    visitor("max_slip_mps", self.max_slip_mps, "m/s", "horizontal speed at which it stays there");
-    visitor("max_sink_mps", self.max_sink_mps, "m/s", "largest vertical speed that the legs stand");
+  static void Visit(auto& self, auto&& visit) {
+    visit("start_altitude_m", self.start_altitude_m, Range{1, 100}, "height at the start");
+    visit("start_distance_m", self.start_distance_m, Range{0, 500},
+          "distance from the start to the place where the vehicle passes");
+    visit("starts_behind", self.starts_behind,
+          "the UAV starts so far behind the vehicle instead, as fast as it drives");
+    visit("pass_min_s", self.pass_min_s, Range{0, 1000}, "earliest time at which it passes there");
+    visit("pass_max_s", self.pass_max_s, "latest time at which it passes there");
+    visit("processing_delay_s", self.processing_delay_s, Range{0.02, 1},
+          "delay from the middle of an exposure to the result");
+    visit("leg_m", self.leg_m, Range{0.05, 2}, "length from the body's origin down to its feet");
+    visit("feet_radius_m", self.feet_radius_m, Range{0, 2}, "room that the feet need");
+    visit("deck_m", self.deck_m, Range{0, 100}, "side of the deck under a smaller board");
+    visit("max_slip_mps", self.max_slip_mps, Range{0.1, 10}, "speed at which it stays there");
+    visit("max_sink_mps", self.max_sink_mps, Range{0.1, 10}, "sink rate that the legs stand");
   }
   std::vector<std::string> Validate() const;
 };
@@ -73,25 +65,23 @@ struct TouchdownSimulationOptions : LandingSceneOptions {
   TouchdownSimulationOptions();
 
   TouchdownOptions touchdown;
-  FlightRecordingOptions recording;  // 'frames': the flight ends after so many
+  FlightRecordingOptions recording;
   MulticopterOptions multicopter;
   WindOptions wind;
   GuidanceOptions guidance;
   TargetTrackerOptions tracker;
   ExposureOptions exposure;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    FlightRecordingOptions::Visit(self.recording, visitor);
-    visitor.Group("touchdown", self.touchdown);
-    visitor.Group("multicopter", self.multicopter);
-    visitor.Group("wind", self.wind);
-    visitor.Group("guidance", self.guidance);
-    visitor.Group("tracker", self.tracker);
-    visitor.Group("exposure", self.exposure);
-    LandingSceneOptions::Visit(self, visitor);
+  static void Visit(auto& self, auto&& visit) {
+    visit.Group(self.recording);
+    visit.Group("touchdown", self.touchdown);
+    visit.Group("multicopter", self.multicopter);
+    visit.Group("wind", self.wind);
+    visit.Group("guidance", self.guidance);
+    visit.Group("tracker", self.tracker);
+    visit.Group("exposure", self.exposure);
+    LandingSceneOptions::Visit(self, visit);
   }
-  std::vector<std::string> Validate() const;
 };
 
 // A closed loop: the UAV flies by the track, the track comes from the pipeline, the pipeline

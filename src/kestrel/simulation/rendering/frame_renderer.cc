@@ -8,7 +8,6 @@
 
 #include "kestrel/core/base/hash.h"
 #include "kestrel/core/base/options.h"
-#include "kestrel/core/base/violations.h"
 
 namespace kestrel {
 namespace {
@@ -261,14 +260,6 @@ float PixelAngle(const std::array<Vector3f, 4>& corners) {
 }
 
 }  // namespace
-
-std::vector<std::string> ShutterOptions::Validate() const {
-  std::vector<std::string> violations;
-  RequireIn(exposure_s, 1e-6, 1, "exposure_s", &violations);
-  RequireIn(readout_s, 0, 1, "readout_s", &violations);
-  RequireIn(rays_per_pixel, 1, 64, "rays_per_pixel", &violations);
-  return violations;
-}
 
 FrameRenderer::FrameRenderer(const Lens& lens, const World& world, const ShutterOptions& shutter)
     : lens_(lens), world_(world), shutter_(shutter), tiles_(lens) {

@@ -3,11 +3,11 @@
 
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/simulation/rendering/frame_view.h"
 #include "kestrel/simulation/rendering/lens.h"
 #include "kestrel/simulation/scene/motion.h"
@@ -17,21 +17,18 @@ namespace kestrel {
 
 // Exposure of a frame.
 struct ShutterOptions {
-  double exposure_s = 0.003;  // of a row, > 0
-  double readout_s = 0;       // from the exposure of the first row to that of the last; 0: global
-                              // shutter
-  int rays_per_pixel = 8;     // 1 to 64, spread over the pixel and over the exposure
+  double exposure_s = 0.003;
+  double readout_s = 0;
+  int rays_per_pixel = 8;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("exposure_s", self.exposure_s, "s", "exposure time of a row");
-    visitor(
-        "readout_s", self.readout_s, "s",
+  static void Visit(auto& self, auto&& visit) {
+    visit("exposure_s", self.exposure_s, Range{1e-6, 1}, "exposure time of a row");
+    visit(
+        "readout_s", self.readout_s, Range{0, 1},
         "time from the first row's exposure to the last's (rolling shutter); 0: a global shutter");
-    visitor("rays_per_pixel", self.rays_per_pixel, "1",
-            "rays per pixel, spread over its area and over the exposure");
+    visit("rays_per_pixel", self.rays_per_pixel, Range{1, 64},
+          "rays per pixel, spread over its area and over the exposure");
   }
-  std::vector<std::string> Validate() const;
 };
 
 // Ray casting: the light on the pixels of a moving camera in a moving world. Every ray has its own

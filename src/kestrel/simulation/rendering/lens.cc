@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/options.h"
-#include "kestrel/core/base/violations.h"
 
 namespace kestrel {
 namespace {
@@ -19,9 +19,9 @@ double DegFromRad(double angle) { return angle * 180 / std::numbers::pi; }
 
 std::vector<std::string> LensOptions::Validate() const {
   std::vector<std::string> violations;
-  RequireIn(half_angle_deg, 1, 180, "half_angle_deg", &violations);
-  RequireIn(vignette, 0, 1, "vignette", &violations);
-  RequireIn(airframe_radiance, 0, 1, "airframe_radiance", &violations);
+  Require(half_angle_deg, Range{1, 180}, "half_angle_deg", &violations);
+  Require(vignette, Range{0, 1}, "vignette", &violations);
+  Require(airframe_radiance, Range{0, 1}, "airframe_radiance", &violations);
   return violations;
 }
 

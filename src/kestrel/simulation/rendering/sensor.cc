@@ -9,7 +9,6 @@
 
 #include "kestrel/core/base/hash.h"
 #include "kestrel/core/base/random.h"
-#include "kestrel/core/base/violations.h"
 #include "kestrel/core/codec/image_codec.h"
 #include "kestrel/core/codec/jpeg_codec.h"
 
@@ -74,20 +73,6 @@ class ToneCurve {
 };
 
 }  // namespace
-
-std::vector<std::string> SensorOptions::Validate() const {
-  std::vector<std::string> violations;
-  RequireIn(black_level, 0, 255, "black_level", &violations);
-  RequireIn(white_level, 1, 5000, "white_level", &violations);
-  RequireIn(gain_variation, 0, 1, "gain_variation", &violations);
-  RequireIn(gamma, 0.1, 3, "gamma", &violations);
-  RequireIn(read_noise, 0, 100, "read_noise", &violations);
-  RequireIn(shot_noise, 0, 100, "shot_noise", &violations);
-  RequireIn(blur_sigma_px, 0, 20, "blur_sigma_px", &violations);
-  RequireIn(sharpening, 0, 3, "sharpening", &violations);
-  RequireIn(jpeg_quality, 1, 100, "jpeg_quality", &violations);
-  return violations;
-}
 
 cv::Mat Expose(const SensorOptions& options, const Lens& lens, double gain, std::uint64_t seed,
                cv::Mat radiance) {

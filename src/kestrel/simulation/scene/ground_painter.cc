@@ -7,7 +7,6 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "kestrel/core/base/violations.h"
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/simulation/scene/direction.h"
 #include "kestrel/simulation/scene/ground_materials.h"
@@ -59,9 +58,6 @@ std::vector<std::string> GroundOptions::Validate() const {
     violations.push_back(
         fmt::format("material is '{}', expected asphalt, concrete, sand or grass", material));
   }
-  RequireIn(markings, 0, 1000, "markings", &violations);
-  RequireIn(details, 0, 1000, "details", &violations);
-  RequireIn(map_size_m, 1, 1000, "map_size_m", &violations);
   if (map_px < 64 || map_px > 8192 || !std::has_single_bit(static_cast<unsigned>(map_px))) {
     violations.push_back(fmt::format("map_px is {}, expected a power of two, 64 to 8192", map_px));
   }

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/random.h"
 #include "kestrel/simulation/scene/paint.h"
 #include "kestrel/simulation/scene/world.h"
@@ -16,24 +17,23 @@ namespace kestrel {
 
 // Material of a world's ground, and the paint on it.
 struct GroundOptions {
-  std::string material = "asphalt";  // asphalt, concrete, sand, grass
-  int markings = 12;                 // lines, bays, crossings
-  int details = 30;                  // manhole covers, drains, cracks, stains, tyre marks
-  bool curb = true;                  // a round curb, another material behind it
-  bool shadows = true;               // of trees and houses outside of the world
-  double map_size_m = 64;            // side of the square that the map covers; it repeats, mirrored
-  int map_px = 4096;                 // side of the map; a power of two, 64 to 8192
+  std::string material = "asphalt";
+  int markings = 12;
+  int details = 30;
+  bool curb = true;
+  bool shadows = true;
+  double map_size_m = 64;
+  int map_px = 4096;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("material", self.material, "", "asphalt, concrete, sand or grass");
-    visitor("markings", self.markings, "1", "number of road markings");
-    visitor("details", self.details, "1",
-            "number of manhole covers, drains, cracks, stains and tyre marks");
-    visitor("curb", self.curb, "", "a curb around, another material behind it");
-    visitor("shadows", self.shadows, "", "shadows of trees and houses");
-    visitor("map_size_m", self.map_size_m, "m", "side of the ground's map, which repeats");
-    visitor("map_px", self.map_px, "px", "side of the ground's map in pixels, a power of two");
+  static void Visit(auto& self, auto&& visit) {
+    visit("material", self.material, "asphalt, concrete, sand or grass");
+    visit("markings", self.markings, Range{0, 1000}, "number of road markings");
+    visit("details", self.details, Range{0, 1000},
+          "number of manhole covers, drains, cracks, stains and tyre marks");
+    visit("curb", self.curb, "a curb around, another material behind it");
+    visit("shadows", self.shadows, "shadows of trees and houses");
+    visit("map_size_m", self.map_size_m, Range{1, 1000}, "side of the ground's map, which repeats");
+    visit("map_px", self.map_px, "side of the ground's map in pixels, a power of two");
   }
   std::vector<std::string> Validate() const;
 };

@@ -8,11 +8,9 @@
 #include <numbers>
 
 #include <Eigen/Geometry>
-#include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
 #include "kestrel/core/base/error.h"
-#include "kestrel/core/base/violations.h"
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/simulation/scene/hunt_paint.h"
 #include "kestrel/simulation/scene/solids.h"
@@ -201,30 +199,6 @@ class Placer {
 };
 
 }  // namespace
-
-std::vector<std::string> HuntObjectsOptions::Validate() const {
-  std::vector<std::string> violations;
-  if (shape != "disc" && shape != "cuboid") {
-    violations.push_back(fmt::format("shape is '{}', expected disc or cuboid", shape));
-  }
-  if (yellow_path != "wander" && yellow_path != "straight") {
-    violations.push_back(
-        fmt::format("yellow_path is '{}', expected wander or straight", yellow_path));
-  }
-  constexpr int kMost = 200;
-  RequireIn(size_m, 0.02, 2, "size_m", &violations);
-  RequireIn(red, 0, kMost, "red", &violations);
-  RequireIn(green, 0, kMost, "green", &violations);
-  RequireIn(blue, 0, kMost, "blue", &violations);
-  RequireIn(yellow, 0, kMost, "yellow", &violations);
-  RequireIn(yellow_speed_mps, 0, 10, "yellow_speed_mps", &violations);
-  RequireIn(orange, 0, kMost, "orange", &violations);
-  RequireIn(orange_bars, 0, kMost, "orange_bars", &violations);
-  RequireIn(distractors, 0, kMost, "distractors", &violations);
-  RequireIn(fading, 0, 1, "fading", &violations);
-  RequireIn(gloss, 0, 10, "gloss", &violations);
-  return violations;
-}
 
 std::vector<HuntObject> AddHuntObjects(const HuntObjectsOptions& options, const Vector2d& half_area,
                                        Random* random, World* world) {

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/random.h"
 #include "kestrel/simulation/scene/motion.h"
 #include "kestrel/simulation/scene/world.h"
@@ -16,40 +17,37 @@ namespace kestrel {
 // Objects of the treasure hunt (paper, section 3): coloured things to be found, and things of the
 // same colours that are not to be found.
 struct HuntObjectsOptions {
-  std::string shape = "disc";  // of the red, green and blue ones: disc or cuboid
-  double size_m = 0.2;         // diameter, or side of the cuboids
+  std::string shape = "disc";
+  double size_m = 0.2;
   int red = 4;
   int green = 4;
   int blue = 4;
-  int yellow = 3;  // discs that move
+  int yellow = 3;
   double yellow_speed_mps = 0.6;
-  // wander: around a place, at about that speed; straight: away from it, at that speed.
   std::string yellow_path = "wander";
-  int orange = 1;        // large discs, 0.5 m
-  int orange_bars = 1;   // 2 m long
-  int distractors = 10;  // other shapes
-  double fading = 0.15;  // largest part by which the paint is bleached, 0 to 1
-  double gloss = 0.25;   // largest strength of the sun's mirror image in the paint
+  int orange = 1;
+  int orange_bars = 1;
+  int distractors = 10;
+  double fading = 0.15;
+  double gloss = 0.25;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("shape", self.shape, "",
-            "shape of the red, green and blue objects: disc, or cuboid with digit");
-    visitor("size_m", self.size_m, "m", "diameter of the discs, side of the cuboids");
-    visitor("red", self.red, "1", "red objects");
-    visitor("green", self.green, "1", "green objects");
-    visitor("blue", self.blue, "1", "blue objects");
-    visitor("yellow", self.yellow, "1", "yellow discs, which move");
-    visitor("yellow_speed_mps", self.yellow_speed_mps, "m/s", "typical speed of the yellow discs");
-    visitor("yellow_path", self.yellow_path, "",
-            "wander: about a place, at about that speed; straight: from there, at that speed");
-    visitor("orange", self.orange, "1", "large orange discs, 0.5 m");
-    visitor("orange_bars", self.orange_bars, "1", "orange bars, 2 m long");
-    visitor("distractors", self.distractors, "1", "things of the same colours and other shapes");
-    visitor("fading", self.fading, "1", "largest bleaching of the paint");
-    visitor("gloss", self.gloss, "1", "largest strength of the sun's mirror image in the paint");
+  static void Visit(auto& self, auto&& visit) {
+    visit("shape", self.shape, OneOf{{"disc", "cuboid"}},
+          "shape of the red, green and blue objects; a cuboid has a digit");
+    visit("size_m", self.size_m, Range{0.02, 2}, "diameter of the discs, side of the cuboids");
+    visit("red", self.red, Range{0, 200}, "red objects");
+    visit("green", self.green, Range{0, 200}, "green objects");
+    visit("blue", self.blue, Range{0, 200}, "blue objects");
+    visit("yellow", self.yellow, Range{0, 200}, "yellow discs, which move");
+    visit("yellow_speed_mps", self.yellow_speed_mps, Range{0, 10}, "speed of the yellow discs");
+    visit("yellow_path", self.yellow_path, OneOf{{"wander", "straight"}},
+          "wander: about a place, at about that speed; straight: from there, at that speed");
+    visit("orange", self.orange, Range{0, 200}, "large orange discs, 0.5 m");
+    visit("orange_bars", self.orange_bars, Range{0, 200}, "orange bars, 2 m long");
+    visit("distractors", self.distractors, Range{0, 200}, "other shapes of the same colours");
+    visit("fading", self.fading, Range{0, 1}, "largest bleaching of the paint");
+    visit("gloss", self.gloss, Range{0, 10}, "strength of the sun's mirror image");
   }
-  std::vector<std::string> Validate() const;
 };
 
 // An object that is to be found.

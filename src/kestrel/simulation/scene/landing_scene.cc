@@ -8,10 +8,8 @@
 #include <vector>
 
 #include <Eigen/Geometry>
-#include <fmt/format.h>
 
 #include "kestrel/core/base/hash.h"
-#include "kestrel/core/base/violations.h"
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/simulation/scene/board_paint.h"
 #include "kestrel/simulation/scene/direction.h"
@@ -133,41 +131,6 @@ void AddSurroundings(const SurroundingsOptions& options, const std::vector<Vecto
 
 Random RandomOf(std::uint64_t seed, LandingPart part) {
   return Random(Hash(seed, static_cast<std::uint64_t>(part)));
-}
-
-std::vector<std::string> BoardOptions::Validate() const {
-  std::vector<std::string> violations;
-  if (carrier != "pickup" && carrier != "car" && carrier != "box" && carrier != "none") {
-    violations.push_back(
-        fmt::format("carrier is '{}', expected pickup, car, box or none", carrier));
-  }
-  RequireIn(border_m, 0, 1, "border_m", &violations);
-  RequireIn(arm_variation_m, 0, 0.2, "arm_variation_m", &violations);
-  RequireIn(dirt, 0, 1, "dirt", &violations);
-  RequireIn(scratches, 0, 200, "scratches", &violations);
-  RequireIn(gloss, 0, 10, "gloss", &violations);
-  RequireIn(gloss_width_deg, 1, 90, "gloss_width_deg", &violations);
-  return violations;
-}
-
-std::vector<std::string> SurroundingsOptions::Validate() const {
-  std::vector<std::string> violations;
-  RequireIn(vehicles, 0, 100, "vehicles", &violations);
-  RequireIn(lookalikes, 0, 100, "lookalikes", &violations);
-  RequireIn(banners, 0, 100, "banners", &violations);
-  return violations;
-}
-
-std::vector<std::string> LandingSceneOptions::Validate() const {
-  std::vector<std::string> violations;
-  AddViolations("vehicle", vehicle.Validate(), &violations);
-  AddViolations("target", target.Validate(), &violations);
-  AddViolations("pattern", pattern.Validate(), &violations);
-  AddViolations("board", board.Validate(), &violations);
-  AddViolations("ground", ground.Validate(), &violations);
-  AddViolations("surroundings", surroundings.Validate(), &violations);
-  AddViolations("light", light.Validate(), &violations);
-  return violations;
 }
 
 LandingScene MakeLandingScene(const LandingSceneOptions& options, double duration_s, int channels,

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 #include <string>
-#include <vector>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/random.h"
 #include "kestrel/simulation/scene/ground_painter.h"
 #include "kestrel/simulation/scene/light_options.h"
@@ -19,27 +19,25 @@ namespace kestrel {
 
 // The board with the pad, and the vehicle that carries it.
 struct BoardOptions {
-  std::string carrier = "pickup";  // pickup, car, box (0.4 m high) or none: on the ground
-  double border_m = 0.08;          // dark frame around the white board
-  double arm_variation_m = 0.03;   // the arms' length varies by up to this, more or less
-  double dirt = 0.06;              // relative variation of the print
-  int scratches = 4;               // places without ink
-  double gloss = 0.15;             // strength of the sun's mirror image in it, in units of white
-  double gloss_width_deg = 12;     // angle at which it has faded to 1 / e
+  std::string carrier = "pickup";
+  double border_m = 0.08;
+  double arm_variation_m = 0.03;
+  double dirt = 0.06;
+  int scratches = 4;
+  double gloss = 0.15;
+  double gloss_width_deg = 12;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("carrier", self.carrier, "",
-            "carrier of the board: pickup, car, box, or none: the board slides over the ground");
-    visitor("border_m", self.border_m, "m", "dark frame around the white board");
-    visitor("arm_variation_m", self.arm_variation_m, "m",
-            "the arms may be this much shorter or longer");
-    visitor("dirt", self.dirt, "1", "variation of the print's reflectance");
-    visitor("scratches", self.scratches, "1", "places where the ink is gone");
-    visitor("gloss", self.gloss, "1", "strength of the sun's mirror image in the board");
-    visitor("gloss_width_deg", self.gloss_width_deg, "deg", "width of the sun's mirror image");
+  static void Visit(auto& self, auto&& visit) {
+    visit("carrier", self.carrier, OneOf{{"pickup", "car", "box", "none"}},
+          "carrier of the board; none: the board slides over the ground");
+    visit("border_m", self.border_m, Range{0, 1}, "dark frame around the white board");
+    visit("arm_variation_m", self.arm_variation_m, Range{0, 0.2},
+          "the arms may be this much shorter or longer");
+    visit("dirt", self.dirt, Range{0, 1}, "variation of the print's reflectance");
+    visit("scratches", self.scratches, Range{0, 200}, "places where the ink is gone");
+    visit("gloss", self.gloss, Range{0, 10}, "strength of the sun's mirror image in the board");
+    visit("gloss_width_deg", self.gloss_width_deg, Range{1, 90}, "width of the sun's mirror image");
   }
-  std::vector<std::string> Validate() const;
 };
 
 // Other things around.
@@ -47,41 +45,37 @@ struct SurroundingsOptions {
   int vehicles = 3;
   int lookalikes = 2;
   int banners = 3;
-  bool landing_legs = true;  // of the UAV, in the corners of the image
+  bool landing_legs = true;
   bool uav_shadow = true;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("vehicles", self.vehicles, "1", "other vehicles, parked");
-    visitor("lookalikes", self.lookalikes, "1", "things on the ground that look like the pattern");
-    visitor("banners", self.banners, "1", "banners around");
-    visitor("landing_legs", self.landing_legs, "", "the UAV's legs in the corners of the image");
-    visitor("uav_shadow", self.uav_shadow, "", "the UAV's shadow");
+  static void Visit(auto& self, auto&& visit) {
+    visit("vehicles", self.vehicles, Range{0, 100}, "other vehicles, parked");
+    visit("lookalikes", self.lookalikes, Range{0, 100}, "things that look like the pattern");
+    visit("banners", self.banners, Range{0, 100}, "banners around");
+    visit("landing_legs", self.landing_legs, "the UAV's legs in the corners of the image");
+    visit("uav_shadow", self.uav_shadow, "the UAV's shadow");
   }
-  std::vector<std::string> Validate() const;
 };
 
 // Scene under a landing.
 struct LandingSceneOptions {
   VehicleMotionOptions vehicle;
   TargetOptions target;
-  LandingPattern pattern;  // of the kinds of target with a ring
+  LandingPattern pattern;
   BoardOptions board;
   GroundOptions ground;
   SurroundingsOptions surroundings;
   LightOptions light;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor.Group("vehicle", self.vehicle);
-    visitor.Group("target", self.target);
-    visitor.Group("pattern", self.pattern);
-    visitor.Group("board", self.board);
-    visitor.Group("ground", self.ground);
-    visitor.Group("surroundings", self.surroundings);
-    visitor.Group("light", self.light);
+  static void Visit(auto& self, auto&& visit) {
+    visit.Group("vehicle", self.vehicle);
+    visit.Group("target", self.target);
+    visit.Group("pattern", self.pattern);
+    visit.Group("board", self.board);
+    visit.Group("ground", self.ground);
+    visit.Group("surroundings", self.surroundings);
+    visit.Group("light", self.light);
   }
-  std::vector<std::string> Validate() const;
 };
 
 // A world with a pad on a vehicle.

@@ -4,28 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "kestrel/core/base/violations.h"
-
 namespace kestrel {
-
-std::vector<std::string> LightOptions::Validate() const {
-  std::vector<std::string> violations;
-  RequireIn(sun_elevation_deg, 3, 90, "sun_elevation_deg", &violations);
-  RequireIn(direct, 0, 1, "direct", &violations);
-  RequireIn(sky_radiance, 0, 10, "sky_radiance", &violations);
-  RequireIn(visibility_m, 0, 1e5, "visibility_m", &violations);
-  RequireIn(dust_clouds, 0, 1, "dust_clouds", &violations);
-  RequireIn(flare, 0, 100, "flare", &violations);
-  RequireIn(haze_radiance, 0, 10, "haze_radiance", &violations);
-  return violations;
-}
-
-std::vector<std::string> LensViewOptions::Validate() const {
-  std::vector<std::string> violations;
-  RequireIn(half_angle_deg, 1, 180, "half_angle_deg", &violations);
-  RequireIn(vignette, 0, 1, "vignette", &violations);
-  return violations;
-}
 
 Lighting MakeLighting(const LightOptions& options, Random* random) {
   Lighting light;

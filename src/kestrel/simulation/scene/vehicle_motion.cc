@@ -2,14 +2,11 @@
 #include "kestrel/simulation/scene/vehicle_motion.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 
 #include <Eigen/Geometry>
-#include <fmt/format.h>
 
-#include "kestrel/core/base/violations.h"
 #include "kestrel/core/geometry/angles.h"
 
 namespace kestrel {
@@ -150,24 +147,6 @@ Waves WavesOf(const VehicleMotionOptions& options, Random* random) {
 }
 
 }  // namespace
-
-std::vector<std::string> VehicleMotionOptions::Validate() const {
-  constexpr std::array kPaths = {"standing", "straight", "circle", "figure8", "lanes", "stops"};
-  std::vector<std::string> violations;
-  if (std::ranges::find(kPaths, path) == kPaths.end()) {
-    violations.push_back(fmt::format(
-        "path is '{}', expected standing, straight, circle, figure8, lanes or stops", path));
-  }
-  RequireIn(speed_mps, 0, 40, "speed_mps", &violations);
-  RequireIn(radius_m, 2, 500, "radius_m", &violations);
-  RequireIn(lane_m, 0, 50, "lane_m", &violations);
-  RequireIn(lane_period_s, 1, 1000, "lane_period_s", &violations);
-  RequireIn(shake_deg, 0, 10, "shake_deg", &violations);
-  RequireIn(heave_m, 0, 10, "heave_m", &violations);
-  RequireIn(heave_period_s, 1, 60, "heave_period_s", &violations);
-  RequireIn(roll_deg, 0, 45, "roll_deg", &violations);
-  return violations;
-}
 
 Motion VehicleMotion(const VehicleMotionOptions& options, Random* random) {
   const Drive drive = DriveOf(options, random);

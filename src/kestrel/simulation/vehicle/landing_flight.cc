@@ -9,7 +9,6 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "kestrel/core/base/violations.h"
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/simulation/vehicle/multicopter_motion.h"
 
@@ -22,18 +21,6 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 }  // namespace
-
-std::vector<std::string> LandingFlightOptions::Validate() const {
-  std::vector<std::string> violations;
-  RequireIn(start_altitude_m, 0.1, 100, "start_altitude_m", &violations);
-  RequireIn(end_altitude_m, 0.1, 100, "end_altitude_m", &violations);
-  RequireIn(offset_m, 0, 3, "offset_m", &violations);
-  RequireIn(sway_acceleration, 0, 15, "sway_acceleration", &violations);
-  RequireIn(sway_period_s, 0.5, 60, "sway_period_s", &violations);
-  RequireIn(attitude_noise_deg, 0, 10, "attitude_noise_deg", &violations);
-  RequireIn(yaw_rate_deg, 0, 360, "yaw_rate_deg", &violations);
-  return violations;
-}
 
 Motion LandingFlight(const LandingFlightOptions& options, const Path& target, double duration_s,
                      Random* random) {

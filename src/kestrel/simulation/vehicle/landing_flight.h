@@ -3,10 +3,10 @@
 
 #include <functional>
 #include <string>
-#include <vector>
 
 #include <Eigen/Geometry>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/random.h"
 #include "kestrel/simulation/scene/motion.h"
 #include "kestrel/simulation/scene/world.h"
@@ -17,27 +17,25 @@ namespace kestrel {
 struct LandingFlightOptions {
   double start_altitude_m = 12;
   double end_altitude_m = 0.6;
-  double offset_m = 0.15;          // horizontal offset from the pattern per metre of altitude
-  double sway_acceleration = 0.2;  // largest acceleration of its swaying, m/s^2, less near the
-                                   // pattern; the paper's calm flight: 0.2; 8 tilts the UAV by 40
-                                   // degrees
+  double offset_m = 0.15;
+  double sway_acceleration = 0.2;
   double sway_period_s = 6;
-  double attitude_noise_deg = 0.3;  // fast, small errors of the attitude control
-  double yaw_rate_deg = 10;         // amplitude of its slow turning, degrees per second
+  double attitude_noise_deg = 0.3;
+  double yaw_rate_deg = 10;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("start_altitude_m", self.start_altitude_m, "m",
-            "height above the pattern at the beginning");
-    visitor("end_altitude_m", self.end_altitude_m, "m", "height above the pattern at the end");
-    visitor("offset_m", self.offset_m, "m/m", "distance beside the pattern, per metre of altitude");
-    visitor("sway_acceleration", self.sway_acceleration, "m/s^2",
-            "largest acceleration of its swaying; 8 tilts the UAV by 40 deg");
-    visitor("sway_period_s", self.sway_period_s, "s", "period of its swaying");
-    visitor("attitude_noise_deg", self.attitude_noise_deg, "deg", "errors of the attitude control");
-    visitor("yaw_rate_deg", self.yaw_rate_deg, "deg/s", "rate of its slow turning");
+  static void Visit(auto& self, auto&& visit) {
+    visit("start_altitude_m", self.start_altitude_m, Range{0.1, 100},
+          "height above the pattern at first");
+    visit("end_altitude_m", self.end_altitude_m, Range{0.1, 100}, "the same at the end");
+    visit("offset_m", self.offset_m, Range{0, 3},
+          "[m/m] distance beside the pattern, per metre of altitude");
+    visit("sway_acceleration", self.sway_acceleration, Range{0, 15},
+          "[m/s^2] largest acceleration of its swaying; 8 tilts the UAV by 40 deg");
+    visit("sway_period_s", self.sway_period_s, Range{0.5, 60}, "period of its swaying");
+    visit("attitude_noise_deg", self.attitude_noise_deg, Range{0, 10},
+          "errors of the attitude control");
+    visit("yaw_rate_deg", self.yaw_rate_deg, Range{0, 360}, "[deg/s] rate of its slow turning");
   }
-  std::vector<std::string> Validate() const;
 };
 
 // Returns the UAV's motion above 'target' over 'duration_s', from the start altitude to the end

@@ -7,7 +7,6 @@
 
 #include <Eigen/Geometry>
 
-#include "kestrel/core/base/violations.h"
 #include "kestrel/core/poses/gravity.h"
 
 namespace kestrel {
@@ -26,19 +25,6 @@ Vector3d Limited(const Vector3d& vector, double horizontal, double vertical) {
 }
 
 }  // namespace
-
-std::vector<std::string> MulticopterOptions::Validate() const {
-  std::vector<std::string> violations;
-  RequireIn(max_tilt_deg, 1, 80, "max_tilt_deg", &violations);
-  RequireIn(max_acceleration, 0.1, 50, "max_acceleration", &violations);
-  RequireIn(max_speed_mps, 0.1, 50, "max_speed_mps", &violations);
-  RequireIn(max_climb_mps, 0.1, 20, "max_climb_mps", &violations);
-  RequireIn(attitude_lag_s, 0.01, 1, "attitude_lag_s", &violations);
-  RequireIn(drag, 0, 5, "drag", &violations);
-  RequireIn(velocity_gain, 0.1, 10, "velocity_gain", &violations);
-  RequireIn(max_turn_dps, 0, 1000, "max_turn_dps", &violations);
-  return violations;
-}
 
 Multicopter::Multicopter(const MulticopterOptions& options, const Vector3d& position,
                          double heading, const Vector3d& velocity)

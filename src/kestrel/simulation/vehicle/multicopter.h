@@ -3,10 +3,10 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include <Eigen/Core>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/geometry/rigid_transform.h"
 #include "kestrel/core/poses/set_point.h"
 
@@ -15,27 +15,27 @@ namespace kestrel {
 // Abilities of the simulated multicopter.
 struct MulticopterOptions {
   double max_tilt_deg = 40;
-  double max_acceleration = 8;   // horizontal, m/s^2
-  double max_speed_mps = 16;     // horizontal
-  double max_climb_mps = 4;      // up and down
-  double attitude_lag_s = 0.06;  // of each of two lags in series between command and thrust
-  double drag = 0.25;            // deceleration by the air, per m/s of speed through it
-  double velocity_gain = 4;      // of its velocity control, m/s^2 per m/s
-  double max_turn_dps = 60;      // of its heading, deg/s
+  double max_acceleration = 8;
+  double max_speed_mps = 16;
+  double max_climb_mps = 4;
+  double attitude_lag_s = 0.06;
+  double drag = 0.25;
+  double velocity_gain = 4;
+  double max_turn_dps = 60;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("max_tilt_deg", self.max_tilt_deg, "deg", "largest tilt");
-    visitor("max_acceleration", self.max_acceleration, "m/s^2", "largest horizontal acceleration");
-    visitor("max_speed_mps", self.max_speed_mps, "m/s", "largest horizontal speed");
-    visitor("max_climb_mps", self.max_climb_mps, "m/s", "largest vertical speed, up and down");
-    visitor("attitude_lag_s", self.attitude_lag_s, "s",
-            "time constant of each of two lags in a row between the command and the thrust");
-    visitor("drag", self.drag, "1/s", "deceleration by the air, per m/s of speed through it");
-    visitor("velocity_gain", self.velocity_gain, "1/s", "gain of its velocity control");
-    visitor("max_turn_dps", self.max_turn_dps, "deg/s", "largest rate of turn");
+  static void Visit(auto& self, auto&& visit) {
+    visit("max_tilt_deg", self.max_tilt_deg, Range{1, 80}, "largest tilt");
+    visit("max_acceleration", self.max_acceleration, Range{0.1, 50}, "[m/s^2] horizontal, at most");
+    visit("max_speed_mps", self.max_speed_mps, Range{0.1, 50}, "largest horizontal speed");
+    visit("max_climb_mps", self.max_climb_mps, Range{0.1, 20}, "largest speed up and down");
+    visit("attitude_lag_s", self.attitude_lag_s, Range{0.01, 1},
+          "time constant of each of two lags in a row between the command and the thrust");
+    visit("drag", self.drag, Range{0, 5},
+          "[1/s] deceleration by the air, per m/s of speed through it");
+    visit("velocity_gain", self.velocity_gain, Range{0.1, 10},
+          "[1/s] gain of its velocity control");
+    visit("max_turn_dps", self.max_turn_dps, Range{0, 1000}, "largest rate of turn");
   }
-  std::vector<std::string> Validate() const;
 };
 
 // A multicopter with its autopilot: a point of mass 1 that is driven by its thrust, gravity and the

@@ -8,6 +8,7 @@
 
 #include <Eigen/Geometry>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/random.h"
 #include "kestrel/core/geometry/rigid_transform.h"
 #include "kestrel/core/poses/pose_history.h"
@@ -19,46 +20,44 @@ namespace kestrel {
 // Errors of the UAV's navigation: position, attitude, clock, and mount of the camera.
 struct NavigationOptions {
   double rate_hz = 100;
-  // Origin of the true world in the navigation's world, and the direction of the true x axis there,
-  // from x to y: no two navigations begin with quite the same world.
   double origin_x_m = 0;
   double origin_y_m = 0;
   double world_yaw_deg = 0;
-  double position_noise_m = 0.01;    // standard deviation per axis, new for every pose
-  double position_drift_m = 0.02;    // the same, changes over minutes
-  double position_bias_m = 0.02;     // the same, constant
-  double attitude_noise_deg = 0.15;  // standard deviation per axis, new for every pose
-  double attitude_bias_deg = 0.2;    // the same, constant
-  double clock_offset_min_s = -0.1;  // the clock offset is random between these
+  double position_noise_m = 0.01;
+  double position_drift_m = 0.02;
+  double position_bias_m = 0.02;
+  double attitude_noise_deg = 0.15;
+  double attitude_bias_deg = 0.2;
+  double clock_offset_min_s = -0.1;
   double clock_offset_max_s = 0.3;
-  double mount_error_deg = 1;  // standard deviation of the camera's roll, pitch and yaw
-  double vibration_deg = 0;    // of the camera on its mount, standard deviation per axis
-  double vibration_hz = 90;    // around this frequency
+  double mount_error_deg = 1;
+  double vibration_deg = 0;
+  double vibration_hz = 90;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("rate_hz", self.rate_hz, "Hz", "poses per second");
-    visitor("origin_x_m", self.origin_x_m, "m",
-            "x of the world's origin in the navigation's world");
-    visitor("origin_y_m", self.origin_y_m, "m",
-            "y of the world's origin in the navigation's world");
-    visitor("world_yaw_deg", self.world_yaw_deg, "deg",
-            "direction of the world's x axis in the navigation's world, from x to y");
-    visitor("position_noise_m", self.position_noise_m, "m", "noise of the position, per axis");
-    visitor("position_drift_m", self.position_drift_m, "m", "slow error of the position, per axis");
-    visitor("position_bias_m", self.position_bias_m, "m",
-            "constant error of the position, per axis");
-    visitor("attitude_noise_deg", self.attitude_noise_deg, "deg",
-            "noise of the attitude, per axis");
-    visitor("attitude_bias_deg", self.attitude_bias_deg, "deg", "constant error of the attitude");
-    visitor("clock_offset_min_s", self.clock_offset_min_s, "s",
-            "smallest clock offset that is drawn");
-    visitor("clock_offset_max_s", self.clock_offset_max_s, "s",
-            "largest clock offset that is drawn");
-    visitor("mount_error_deg", self.mount_error_deg, "deg",
-            "error of the mount's roll, pitch, yaw");
-    visitor("vibration_deg", self.vibration_deg, "deg", "vibration of the camera on its mount");
-    visitor("vibration_hz", self.vibration_hz, "Hz", "frequency of the vibration");
+  static void Visit(auto& self, auto&& visit) {
+    visit("rate_hz", self.rate_hz, Range{1, 1000}, "poses per second");
+    visit("origin_x_m", self.origin_x_m, Range{-1000, 1000},
+          "x of the world's origin in the navigation's world");
+    visit("origin_y_m", self.origin_y_m, Range{-1000, 1000},
+          "y of the world's origin in the navigation's world");
+    visit("world_yaw_deg", self.world_yaw_deg, Range{-180, 180},
+          "direction of the world's x axis in the navigation's world, from x to y");
+    visit("position_noise_m", self.position_noise_m, Range{0, 10},
+          "noise of the position, per axis");
+    visit("position_drift_m", self.position_drift_m, Range{0, 10},
+          "slow error of the position, per axis");
+    visit("position_bias_m", self.position_bias_m, Range{0, 10},
+          "constant error of the position, per axis");
+    visit("attitude_noise_deg", self.attitude_noise_deg, Range{0, 10},
+          "noise of the attitude, per axis");
+    visit("attitude_bias_deg", self.attitude_bias_deg, Range{0, 10},
+          "constant error of the attitude");
+    visit("clock_offset_min_s", self.clock_offset_min_s, Range{-10, 10},
+          "least clock offset drawn");
+    visit("clock_offset_max_s", self.clock_offset_max_s, "largest clock offset drawn");
+    visit("mount_error_deg", self.mount_error_deg, Range{0, 20}, "error of the mount, per axis");
+    visit("vibration_deg", self.vibration_deg, Range{0, 5}, "vibration of the camera on its mount");
+    visit("vibration_hz", self.vibration_hz, Range{1, 500}, "frequency of the vibration");
   }
   std::vector<std::string> Validate() const;
 };

@@ -4,16 +4,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "kestrel/core/base/violations.h"
+#include "kestrel/core/base/limits.h"
 
 namespace kestrel {
 
 std::vector<std::string> WindOptions::Validate() const {
   std::vector<std::string> violations;
-  RequireIn(min_mps, 0, 30, "min_mps", &violations);
-  RequireIn(max_mps, min_mps, 30, "max_mps", &violations);
-  RequireIn(gusts, 0, 1, "gusts", &violations);
-  RequireIn(gust_period_s, 0.2, 60, "gust_period_s", &violations);
+  Require(max_mps, Range{min_mps, 30}, "max_mps", &violations);
   return violations;
 }
 

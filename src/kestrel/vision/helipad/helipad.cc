@@ -7,8 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "kestrel/core/base/require_metres.h"
-#include "kestrel/core/base/violations.h"
+#include "kestrel/core/base/limits.h"
 
 namespace kestrel {
 namespace {
@@ -58,21 +57,14 @@ PrintShape FrameOf(const Helipad& helipad, double gray) {
 std::vector<std::string> Helipad::Validate() const {
   std::vector<std::string> violations;
   constexpr double kLargestFrame = 100;  // m: real helipads have large circles around an H
-  RequireMetres(height_m, "height_m", &violations);
-  RequireMetres(width_m, "width_m", &violations);
-  RequireMetres(stroke_m, "stroke_m", &violations);
-  RequireMetres(board_size_m, "board_size_m", &violations, kLargestFrame);
   if (frame == "circle" || frame == "square") {
-    RequireMetres(frame_size_m, "frame_size_m", &violations, kLargestFrame);
-    RequireMetres(frame_width_m, "frame_width_m", &violations);
+    Require(frame_size_m, Metres{kLargestFrame}, "frame_size_m", &violations);
+    Require(frame_width_m, Metres(), "frame_width_m", &violations);
   }
   if (!violations.empty()) return violations;
   // The detector needs a gap on all sides of the bar that is not much thinner than a stroke.
-  RequireIn(stroke_m, 0.05 * height_m, height_m / 4, "stroke_m", &violations);
-  RequireIn(width_m, 2.5 * stroke_m, 2 * height_m, "width_m", &violations);
-  if (frame != "circle" && frame != "square" && frame != "none") {
-    violations.push_back(fmt::format("frame is '{}', expected circle, square or none", frame));
-  }
+  Require(stroke_m, Range{0.05 * height_m, height_m / 4}, "stroke_m", &violations);
+  Require(width_m, Range{2.5 * stroke_m, 2 * height_m}, "width_m", &violations);
   const double diagonal = std::hypot(height_m, width_m);
   if (frame == "none") {
     if (std::max(height_m, width_m) > board_size_m) {

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/vision/target/target_print.h"
 #include "kestrel/vision/target/target_shape.h"
 
@@ -17,25 +18,24 @@ namespace kestrel {
 //
 // Frame P: origin in the middle of the bar, y along the legs, z up out of the printed face.
 struct Helipad {
-  double height_m = 1;           // length of the legs
-  double width_m = 0.6;          // from outside to outside of the legs
-  double stroke_m = 0.4 / 3;     // width of legs and bar
-  std::string frame = "circle";  // circle, square or none
-  double frame_size_m = 1.5;     // outer diameter, or outer side
-  double frame_width_m = 0.1;    // width of its line
-  double board_size_m = 1.7;     // side of the square board
-  bool white = true;             // white on a black board, otherwise black on white
+  double height_m = 1;
+  double width_m = 0.6;
+  double stroke_m = 0.4 / 3;
+  std::string frame = "circle";
+  double frame_size_m = 1.5;
+  double frame_width_m = 0.1;
+  double board_size_m = 1.7;
+  bool white = true;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("height_m", self.height_m, "m", "length of the H's legs");
-    visitor("width_m", self.width_m, "m", "width of the H, from outside to outside of its legs");
-    visitor("stroke_m", self.stroke_m, "m", "width of the H's legs and of its bar");
-    visitor("frame", self.frame, "", "line around the H: circle, square or none");
-    visitor("frame_size_m", self.frame_size_m, "m", "outer diameter of the circle, or outer side");
-    visitor("frame_width_m", self.frame_width_m, "m", "width of the frame's line");
-    visitor("board_size_m", self.board_size_m, "m", "side of the board");
-    visitor("white", self.white, "", "white on a black board; otherwise black on a white one");
+  static void Visit(auto& self, auto&& visit) {
+    visit("height_m", self.height_m, Metres{}, "length of the H's legs");
+    visit("width_m", self.width_m, Metres{}, "width of the H, from outside to outside of its legs");
+    visit("stroke_m", self.stroke_m, Metres{}, "width of the H's legs and of its bar");
+    visit("frame", self.frame, OneOf{{"circle", "square", "none"}}, "line around the H");
+    visit("frame_size_m", self.frame_size_m, "outer diameter of the circle, or outer side");
+    visit("frame_width_m", self.frame_width_m, "width of the frame's line");
+    visit("board_size_m", self.board_size_m, Metres{100}, "side of the board");
+    visit("white", self.white, "white on a black board; otherwise black on a white one");
   }
   // Returns every violation in words; empty when the dimensions are consistent.
   std::vector<std::string> Validate() const;

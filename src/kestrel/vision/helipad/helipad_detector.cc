@@ -4,19 +4,11 @@
 #include <utility>
 
 #include "kestrel/core/base/options.h"
-#include "kestrel/core/base/violations.h"
 #include "kestrel/vision/helipad/helipad_candidates.h"
 #include "kestrel/vision/helipad/helipad_model.h"
 #include "kestrel/vision/helipad/helipad_search.h"
 
 namespace kestrel {
-
-std::vector<std::string> HelipadDetectorOptions::Validate() const {
-  std::vector<std::string> violations = Helipad::Validate();
-  RequireIn(min_quality, 0, 1, "min_quality", &violations);
-  RequirePositive(level_sigma_deg, "level_sigma_deg", &violations);
-  return violations;
-}
 
 struct HelipadDetector::Impl {
   Impl(const CameraModel& of_image, const HelipadDetectorOptions& how)

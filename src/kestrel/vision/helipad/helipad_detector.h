@@ -3,10 +3,10 @@
 
 #include <memory>
 #include <string>
-#include <vector>
 
 #include <opencv2/core.hpp>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/vision/helipad/helipad.h"
 #include "kestrel/vision/target/target_detector.h"
@@ -14,20 +14,15 @@
 namespace kestrel {
 
 struct HelipadDetectorOptions : Helipad {
-  // Smallest accepted quality, 0 to 1: the probability that it is the helipad.
   double min_quality = 0.7;
-  // Standard deviation per axis of the pad's tilt from level, where the hint has up_in_camera.
   double level_sigma_deg = 3;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    Helipad::Visit(self, visitor);
-    visitor("min_quality", self.min_quality, "1",
-            "smallest probability of the helipad that is accepted, 0 to 1");
-    visitor("level_sigma_deg", self.level_sigma_deg, "deg",
-            "tilt of the pad from level, standard deviation");
+  static void Visit(auto& self, auto&& visit) {
+    Helipad::Visit(self, visit);
+    visit("min_quality", self.min_quality, Range{0, 1}, "smallest accepted probability of the pad");
+    visit("level_sigma_deg", self.level_sigma_deg, MoreThan(0),
+          "tilt from level, standard deviation");
   }
-  std::vector<std::string> Validate() const;
 };
 
 // Finds a helipad by its H in the raw image of any lens.

@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kestrel/core/base/options.h"
+
 namespace kestrel {
 namespace {
 
@@ -47,27 +49,26 @@ TEST(Helipad, MillimetresAreRefused) {
         &Helipad::frame_width_m, &Helipad::board_size_m}) {
     Helipad helipad;
     helipad.*length *= 1000;
-    EXPECT_THAT(helipad.Validate(), ElementsAre(HasSubstr("expected metres: ")));
+    EXPECT_THAT(ViolationsOf(helipad), ElementsAre(HasSubstr("expected metres: ")));
   }
-  EXPECT_THAT((Helipad{.height_m = 90}).Validate(),
+  EXPECT_THAT(ViolationsOf(Helipad{.height_m = 90}),
               ElementsAre("height_m is 90, expected metres: 0.09?"));
   EXPECT_THAT(
-      (Helipad{
-           .height_m = 3, .width_m = 1.8, .stroke_m = 0.4, .frame_size_m = 26, .board_size_m = 30})
-          .Validate(),
+      ViolationsOf(Helipad{
+          .height_m = 3, .width_m = 1.8, .stroke_m = 0.4, .frame_size_m = 26, .board_size_m = 30}),
       IsEmpty());
 }
 
 TEST(Helipad, EachDimensionIsChecked) {
-  EXPECT_THAT(Helipad().Validate(), IsEmpty());
-  EXPECT_THAT((Helipad{.frame = "none", .frame_size_m = 0}).Validate(), IsEmpty());
-  EXPECT_THAT((Helipad{.height_m = 3000}).Validate().at(0), HasSubstr("height_m"));
-  EXPECT_THAT((Helipad{.stroke_m = 0.4}).Validate().at(0), HasSubstr("stroke_m"));
-  EXPECT_THAT((Helipad{.width_m = 0.2}).Validate().at(0), HasSubstr("width_m"));
-  EXPECT_THAT((Helipad{.frame = "triangle"}).Validate().at(0), HasSubstr("triangle"));
-  EXPECT_THAT((Helipad{.frame_size_m = 1.1}).Validate().at(0), HasSubstr("frame_size_m"));
-  EXPECT_THAT((Helipad{.board_size_m = 1.4}).Validate().at(0), HasSubstr("board_size_m"));
-  EXPECT_THAT((Helipad{.frame = "none", .board_size_m = 0.9}).Validate().at(0),
+  EXPECT_THAT(ViolationsOf(Helipad()), IsEmpty());
+  EXPECT_THAT(ViolationsOf(Helipad{.frame = "none", .frame_size_m = 0}), IsEmpty());
+  EXPECT_THAT(ViolationsOf(Helipad{.height_m = 3000}).at(0), HasSubstr("height_m"));
+  EXPECT_THAT(ViolationsOf(Helipad{.stroke_m = 0.4}).at(0), HasSubstr("stroke_m"));
+  EXPECT_THAT(ViolationsOf(Helipad{.width_m = 0.2}).at(0), HasSubstr("width_m"));
+  EXPECT_THAT(ViolationsOf(Helipad{.frame = "triangle"}).at(0), HasSubstr("triangle"));
+  EXPECT_THAT(ViolationsOf(Helipad{.frame_size_m = 1.1}).at(0), HasSubstr("frame_size_m"));
+  EXPECT_THAT(ViolationsOf(Helipad{.board_size_m = 1.4}).at(0), HasSubstr("board_size_m"));
+  EXPECT_THAT(ViolationsOf(Helipad{.frame = "none", .board_size_m = 0.9}).at(0),
               HasSubstr("board_size_m"));
 }
 

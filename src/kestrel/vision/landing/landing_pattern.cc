@@ -8,7 +8,6 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "kestrel/core/base/require_metres.h"
 #include "kestrel/vision/target/closed_lines.h"
 
 namespace kestrel {
@@ -30,7 +29,6 @@ std::vector<Eigen::Vector2d> CornersOfCross(const LandingPattern& pattern) {
 
 }  // namespace
 
-// Each comparison is written so that NaN violates it.
 std::vector<std::string> LandingPattern::Validate() const {
   std::vector<std::string> violations;
   const auto require = [&violations](bool holds, const char* key, double value,
@@ -38,13 +36,6 @@ std::vector<std::string> LandingPattern::Validate() const {
     if (!holds)
       violations.push_back(fmt::format("{} is {:.7g}, expected {}", key, value, expected));
   };
-  RequireMetres(outer_diameter_m, "outer_diameter_m", &violations);
-  RequireMetres(ring_width_m, "ring_width_m", &violations);
-  RequireMetres(arm_width_m, "arm_width_m", &violations);
-  RequireMetres(arm_half_length_m, "arm_half_length_m", &violations);
-  RequireMetres(board_size_m, "board_size_m", &violations);
-  if (!violations.empty()) return violations;  // the other limits are of lengths to each other
-
   require(ring_width_m < outer_radius_m(), "ring_width_m", ring_width_m,
           fmt::format("less than the outer radius, {:g}", outer_radius_m()));
   require(arm_width_m < inner_radius_m(), "arm_width_m", arm_width_m,

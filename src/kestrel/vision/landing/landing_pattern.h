@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/vision/target/target_print.h"
 #include "kestrel/vision/target/target_shape.h"
 
@@ -16,25 +17,23 @@ namespace kestrel {
 struct LandingPattern {
   static constexpr int kArms = 4;  // half arms of the X, from the centre to an end
 
-  double outer_diameter_m = 1.0;    // outer diameter of the ring
-  double ring_width_m = 0.1;        // outer minus inner radius of the ring
-  double arm_width_m = 0.1;         // across the arm
-  double arm_half_length_m = 0.38;  // from the centre to the end of an arm; at least the inner
-                                    // radius when the arms touch the ring
-  double board_size_m = 1.5;        // side of the white square board around the ring
+  double outer_diameter_m = 1.0;
+  double ring_width_m = 0.1;
+  double arm_width_m = 0.1;
+  double arm_half_length_m = 0.38;
+  double board_size_m = 1.5;
 
   double outer_radius_m() const { return 0.5 * outer_diameter_m; }
   double inner_radius_m() const { return outer_radius_m() - ring_width_m; }
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("outer_diameter_m", self.outer_diameter_m, "m", "outer diameter of the black ring");
-    visitor("ring_width_m", self.ring_width_m, "m", "width of the black ring");
-    visitor("arm_width_m", self.arm_width_m, "m", "width of an arm of the cross");
-    visitor("arm_half_length_m", self.arm_half_length_m, "m",
-            "length from the centre to the end of an arm; at least the inner radius where the arm "
-            "touches the ring");
-    visitor("board_size_m", self.board_size_m, "m", "side of the white board");
+  static void Visit(auto& self, auto&& visit) {
+    visit("outer_diameter_m", self.outer_diameter_m, Metres{}, "outer diameter of the black ring");
+    visit("ring_width_m", self.ring_width_m, Metres{}, "width of the black ring");
+    visit("arm_width_m", self.arm_width_m, Metres{}, "width of an arm of the cross");
+    visit("arm_half_length_m", self.arm_half_length_m, Metres{},
+          "length from the centre to the end of an arm; at least the inner radius where the arm "
+          "touches the ring");
+    visit("board_size_m", self.board_size_m, Metres{}, "side of the white board");
   }
   // Returns every violation in words; empty when the dimensions are consistent.
   std::vector<std::string> Validate() const;

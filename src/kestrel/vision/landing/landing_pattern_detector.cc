@@ -3,31 +3,10 @@
 
 #include <string_view>
 
-#include "kestrel/core/base/error.h"
+#include "kestrel/core/base/options.h"
 #include "kestrel/vision/landing/landing_search.h"
 
 namespace kestrel {
-
-std::vector<std::string> LandingPatternDetectorOptions::Validate() const {
-  std::vector<std::string> violations;
-  for (const std::string& violation : pattern.Validate()) {
-    violations.push_back("pattern." + violation);
-  }
-  if (!(min_ring_px >= 4 && min_ring_px <= 1000)) {
-    violations.push_back("min_ring_px: must be 4 to 1000");
-  }
-  if (!(min_quality >= 0 && min_quality <= 1)) {
-    violations.push_back("min_quality: must be 0 to 1");
-  }
-  if (!(level_sigma_deg > 0 && level_sigma_deg <= 90)) {
-    violations.push_back("level_sigma_deg: must be positive, 90 at most");
-  }
-  if (!(max_partial_altitude_m >= 0)) {
-    violations.push_back("max_partial_altitude_m: must not be negative");
-  }
-  if (!(max_search_ms >= 0)) violations.push_back("max_search_ms: must not be negative");
-  return violations;
-}
 
 LandingWorkspace::LandingWorkspace() : buffers_(std::make_unique<Buffers>()) {}
 LandingWorkspace::~LandingWorkspace() = default;
@@ -42,17 +21,8 @@ struct LandingPatternDetector::Impl : LandingModels {
 };
 
 LandingPatternDetector::LandingPatternDetector(const CameraModel& camera,
-                                               const LandingPatternDetectorOptions& options) {
-  const std::vector<std::string> violations = options.Validate();
-  if (!violations.empty()) {
-    std::string message = "landing pattern detector: ";
-    for (std::size_t i = 0; i < violations.size(); ++i) {
-      message += (i == 0 ? "" : "; ") + violations[i];
-    }
-    throw InputError(message);
-  }
-  impl_ = std::make_unique<const Impl>(camera, options);
-}
+                                               const LandingPatternDetectorOptions& options)
+    : impl_(std::make_unique<const Impl>(camera, Checked(options))) {}
 LandingPatternDetector::~LandingPatternDetector() = default;
 LandingPatternDetector::LandingPatternDetector(LandingPatternDetector&&) noexcept = default;
 LandingPatternDetector& LandingPatternDetector::operator=(LandingPatternDetector&&) noexcept =

@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include <opencv2/core.hpp>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/vision/landing/landing_pattern.h"
 #include "kestrel/vision/target/landing_detection.h"
@@ -17,38 +17,25 @@ namespace kestrel {
 
 struct LandingPatternDetectorOptions {
   LandingPattern pattern;
-  // Smallest minor axis (diameter) of a ring that is searched for, px. Smaller values are slower
-  // and raise the danger of look-alikes.
   double min_ring_px = 6;
-  // Smallest accepted quality, 0 to 1: the probability that it is the pattern.
   double min_quality = 0.7;
-  // Standard deviation per axis of the pattern's tilt from level. The image hardly shows the tilt
-  // of a far pattern, and its distance depends on the tilt. Used where the hint has up_in_camera.
-  // Larger for a deck that rolls, smaller for a floor.
   double level_sigma_deg = 3;
-  // Height of the camera (m) up to which a partial pattern is searched for, where the height is
-  // known.
   double max_partial_altitude_m = 2.5;
-  // Time (ms) after which the search of a frame stops, to continue in the next one; 0: the hint's
-  // limit.
   double max_search_ms = 0;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor.Group("pattern", self.pattern);
-    visitor("min_ring_px", self.min_ring_px, "px",
-            "smallest minor axis of a ring that is searched for");
-    visitor("min_quality", self.min_quality, "1",
-            "smallest probability of the pattern that is accepted, 0 to 1");
-    visitor("level_sigma_deg", self.level_sigma_deg, "deg",
-            "tilt of the pattern from level, standard deviation");
-    visitor("max_partial_altitude_m", self.max_partial_altitude_m, "m",
-            "largest height at which a pattern cut off by the image border is searched for");
-    visitor("max_search_ms", self.max_search_ms, "ms",
-            "longest search in one frame, which the next frame continues; 0: no limit, in flight "
-            "the rest of the camera's period");
+  static void Visit(auto& self, auto&& visit) {
+    visit.Group("pattern", self.pattern);
+    visit("min_ring_px", self.min_ring_px, Range{4, 1000},
+          "smallest minor axis of a ring; less is slower");
+    visit("min_quality", self.min_quality, Range{0, 1}, "smallest accepted probability");
+    visit("level_sigma_deg", self.level_sigma_deg, Range{0, 90, false, true},
+          "tilt from level, standard deviation; larger for a deck that rolls");
+    visit("max_partial_altitude_m", self.max_partial_altitude_m, AtLeast(0),
+          "largest height at which a pattern cut off by the image border is searched for");
+    visit("max_search_ms", self.max_search_ms, AtLeast(0),
+          "longest search in one frame, which the next frame continues; 0: no limit, in flight "
+          "the rest of the camera's period");
   }
-  std::vector<std::string> Validate() const;
 };
 
 // Memory of one thread's detections. It grows in the first frames and is kept.

@@ -16,6 +16,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/base/options.h"
 #include "kestrel/vision/landing/test_landing_detector.h"
 
 namespace kestrel {
@@ -335,13 +336,13 @@ TEST_F(LandingPatternDetectorTest, StagesAreCountedAndTimed) {
 
 TEST(LandingPatternDetectorOptions, EveryViolationIsNamed) {
   LandingPatternDetectorOptions options;
-  EXPECT_TRUE(options.Validate().empty());
+  EXPECT_TRUE(ViolationsOf(options).empty());
   options.pattern.board_size_m = 0.2;
   options.min_ring_px = 1;
   options.min_quality = NAN;
   options.max_partial_altitude_m = -1;
   options.max_search_ms = -1;
-  EXPECT_EQ(options.Validate().size(), 5u);
+  EXPECT_EQ(ViolationsOf(options).size(), 5u);
   const CameraModel camera = TestPrintCamera();
   try {
     LandingPatternDetector detector(camera, options);

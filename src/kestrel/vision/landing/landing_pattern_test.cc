@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kestrel/core/base/options.h"
+
 namespace kestrel {
 namespace {
 
@@ -15,7 +17,7 @@ using ::testing::IsEmpty;
 
 TEST(LandingPattern, TheDefaultsCanExist) {
   const LandingPattern pattern{};
-  EXPECT_THAT(pattern.Validate(), IsEmpty());
+  EXPECT_THAT(ViolationsOf(pattern), IsEmpty());
   EXPECT_DOUBLE_EQ(pattern.outer_radius_m(), 0.5);
   EXPECT_DOUBLE_EQ(pattern.inner_radius_m(), 0.4);
 }
@@ -23,17 +25,17 @@ TEST(LandingPattern, TheDefaultsCanExist) {
 TEST(LandingPattern, ArmsMayReachIntoTheRing) {
   LandingPattern pattern;
   pattern.arm_half_length_m = 0.5;
-  EXPECT_THAT(pattern.Validate(), IsEmpty());
+  EXPECT_THAT(ViolationsOf(pattern), IsEmpty());
   pattern.arm_half_length_m = 0.51;
-  EXPECT_THAT(pattern.Validate(), ElementsAre(HasSubstr("arm_half_length_m is 0.51")));
+  EXPECT_THAT(ViolationsOf(pattern), ElementsAre(HasSubstr("arm_half_length_m is 0.51")));
 }
 
 TEST(LandingPattern, EveryViolationIsNamed) {
   LandingPattern pattern;
   pattern.ring_width_m = 0.5;
   pattern.board_size_m = 0.9;
-  EXPECT_THAT(pattern.Validate(), ::testing::Contains(HasSubstr("ring_width_m is 0.5")));
-  EXPECT_THAT(pattern.Validate(), ::testing::Contains(HasSubstr("board_size_m is 0.9")));
+  EXPECT_THAT(ViolationsOf(pattern), ::testing::Contains(HasSubstr("ring_width_m is 0.5")));
+  EXPECT_THAT(ViolationsOf(pattern), ::testing::Contains(HasSubstr("board_size_m is 0.9")));
 }
 
 TEST(LandingPattern, MillimetresAreRefused) {
@@ -43,11 +45,11 @@ TEST(LandingPattern, MillimetresAreRefused) {
         &LandingPattern::board_size_m}) {
     LandingPattern pattern;
     pattern.*length *= 1000;
-    EXPECT_THAT(pattern.Validate(), ElementsAre(HasSubstr("expected metres: ")));
+    EXPECT_THAT(ViolationsOf(pattern), ElementsAre(HasSubstr("expected metres: ")));
   }
   LandingPattern pattern;
   pattern.ring_width_m = 160;
-  EXPECT_THAT(pattern.Validate(), ElementsAre("ring_width_m is 160, expected metres: 0.16?"));
+  EXPECT_THAT(ViolationsOf(pattern), ElementsAre("ring_width_m is 160, expected metres: 0.16?"));
 }
 
 TEST(LandingPattern, NaNIsNoLength) {
@@ -57,11 +59,11 @@ TEST(LandingPattern, NaNIsNoLength) {
         &LandingPattern::board_size_m}) {
     LandingPattern pattern;
     pattern.*length = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_FALSE(pattern.Validate().empty());
+    EXPECT_FALSE(ViolationsOf(pattern).empty());
     pattern.*length = 0;
-    EXPECT_FALSE(pattern.Validate().empty());
+    EXPECT_FALSE(ViolationsOf(pattern).empty());
     pattern.*length = std::numeric_limits<double>::infinity();
-    EXPECT_FALSE(pattern.Validate().empty());
+    EXPECT_FALSE(ViolationsOf(pattern).empty());
   }
 }
 

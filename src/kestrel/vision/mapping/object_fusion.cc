@@ -46,10 +46,10 @@ struct Pairing {
 
 // Returns for each object the known ones that it may be.
 std::vector<std::vector<Pairing>> FindPairings(const std::vector<MappedObject>& objects,
-                                               const std::vector<MappedObject>& known,
-                                               const ObjectMapOptions& options) {
+                                               const std::vector<MappedObject>& known) {
   // Each UAV's navigation has its own bias.
-  const double shared_variance = 2 * options.shared_sigma_m * options.shared_sigma_m;
+  const double shared_variance =
+      2 * ObjectMapOptions::kSharedSigma_m * ObjectMapOptions::kSharedSigma_m;
   const std::vector<Outline> outlines = OutlinesOf(objects);
   const std::vector<Outline> known_outlines = OutlinesOf(known);
   std::vector<std::vector<Pairing>> pairings(objects.size());
@@ -60,9 +60,9 @@ std::vector<std::vector<Pairing>> FindPairings(const std::vector<MappedObject>& 
       if (a.color != b.color || a.shape != b.shape) continue;
       // The variance along any direction is at most the trace, so most pairs need no solver.
       const double trace = a.trace + b.trace + 3 * shared_variance;
-      if ((a.position - b.position).squaredNorm() > options.gate * trace) continue;
+      if ((a.position - b.position).squaredNorm() > ObjectMapOptions::kGate * trace) continue;
       const double cost = SquaredDistance(objects[i], known[k], shared_variance);
-      if (cost <= options.gate) pairings[i].push_back({k, cost});
+      if (cost <= ObjectMapOptions::kGate) pairings[i].push_back({k, cost});
     }
   }
   return pairings;
@@ -124,10 +124,9 @@ std::vector<std::size_t> Assign(const std::vector<std::vector<Pairing>>& pairing
 }  // namespace
 
 std::vector<std::size_t> FuseObjects(const std::vector<MappedObject>& objects,
-                                     const ObjectMapOptions& options,
                                      std::vector<MappedObject>* fused) {
   std::vector<std::size_t> indices =
-      Assign(FindPairings(objects, *fused, options), fused->size(), options.gate);
+      Assign(FindPairings(objects, *fused), fused->size(), ObjectMapOptions::kGate);
   for (std::size_t i = 0; i < objects.size(); ++i) {
     if (indices[i] == kNew) {
       indices[i] = fused->size();

@@ -14,7 +14,6 @@ namespace kestrel {
 // least total cost. Objects of one map stay apart. Returns the index in 'fused' of each of
 // 'objects'.
 std::vector<std::size_t> FuseObjects(const std::vector<MappedObject>& objects,
-                                     const ObjectMapOptions& options,
                                      std::vector<MappedObject>* fused);
 
 }  // namespace kestrel

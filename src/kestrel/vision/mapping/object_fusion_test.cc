@@ -28,8 +28,8 @@ TEST(FuseObjects, TheSameObjectOfTwoMapsIsOneAndBetterKnown) {
   Random random(2);
   std::vector<MappedObject> fused;
   const std::vector<MappedObject> first = MapOfTwo(8, &random);
-  EXPECT_THAT(FuseObjects(first, {}, &fused), ElementsAre(0, 1));
-  EXPECT_THAT(FuseObjects(MapOfTwo(-8, &random), {}, &fused), ElementsAre(0, 2));
+  EXPECT_THAT(FuseObjects(first, &fused), ElementsAre(0, 1));
+  EXPECT_THAT(FuseObjects(MapOfTwo(-8, &random), &fused), ElementsAre(0, 2));
   ASSERT_THAT(fused, SizeIs(3));
   EXPECT_EQ(fused[0].detections, 10);
   EXPECT_LT(fused[0].sigma_m(), 0.8 * first[0].sigma_m());
@@ -41,7 +41,7 @@ TEST(FuseObjects, ThoseOfOneMapStayApart) {
   std::vector<MappedObject> objects = MapOfTwo(8, &random);
   objects[1] = objects[0];
   std::vector<MappedObject> fused;
-  FuseObjects(objects, {}, &fused);
+  FuseObjects(objects, &fused);
   EXPECT_THAT(fused, SizeIs(2));
 }
 
@@ -59,12 +59,12 @@ MappedObject Yellow(double x, double move_log_odds) {
 
 TEST(FuseObjects, OfOneThatMovesAndOneThatStandsTheSurerIsRight) {
   std::vector<MappedObject> fused = {Yellow(0, -2)};
-  FuseObjects({Yellow(0.1, 6)}, {}, &fused);
+  FuseObjects({Yellow(0.1, 6)}, &fused);
   ASSERT_THAT(fused, SizeIs(1));
   EXPECT_TRUE(fused[0].moves);
   EXPECT_EQ(fused[0].velocity().x(), 0.6);
   fused = {Yellow(0, -6)};
-  FuseObjects({Yellow(0.1, 2)}, {}, &fused);
+  FuseObjects({Yellow(0.1, 2)}, &fused);
   EXPECT_FALSE(fused[0].moves);
   EXPECT_EQ(fused[0].velocity().x(), 0);
   EXPECT_EQ(fused[0].move_log_odds, -4);

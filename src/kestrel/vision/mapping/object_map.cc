@@ -66,41 +66,10 @@ double ColorCost(const ColorProbabilities& probabilities, const ColorProbabiliti
 
 }  // namespace
 
-std::vector<std::string> ObjectMapOptions::Validate() const {
-  std::vector<std::string> violations;
-  const auto require = [&](bool holds, const char* rule) {
-    if (!holds) violations.emplace_back(rule);
-  };
-  const auto is_share = [](double x) { return x > 0 && x < 1; };
-  require(gate > 0, "gate must be positive");
-  require(new_density > 0, "new_density must be positive");
-  require(min_separation_m >= 0, "min_separation_m must not be negative");
-  require(drift_noise >= 0, "drift_noise must not be negative");
-  require(acceleration_sigma_mps2 > 0, "acceleration_sigma_mps2 must be positive");
-  require(acceleration_time_s >= 0.01, "acceleration_time_s must be at least 0.01");
-  require(velocity_time_s >= 0.01, "velocity_time_s must be at least 0.01");
-  require(start_speed_sigma_mps > 0, "start_speed_sigma_mps must be positive");
-  require(wander_sigma_m >= 0, "wander_sigma_m must not be negative");
-  require(wander_time_s >= 0.01, "wander_time_s must be at least 0.01");
-  require(clock_sigma_s >= 0, "clock_sigma_s must not be negative");
-  require(moving_probability > 0.5 && moving_probability < 1,
-          "moving_probability must be in 0.5 to 1");
-  require(shared_sigma_m >= 0, "shared_sigma_m must not be negative");
-  require(is_share(detection_probability), "detection_probability must be in 0 to 1");
-  require(is_share(false_probability) && false_probability < detection_probability,
-          "false_probability must be positive and below detection_probability");
-  require(max_probability > 0.5 && max_probability < 1, "max_probability must be in 0.5 to 1");
-  require(removal_probability > 0 && removal_probability < 0.5,
-          "removal_probability must be in 0 to 0.5");
-  require(confirm_count >= 1, "confirm_count must be at least 1");
-  require(capacity >= 1 && capacity <= 4096, "capacity must be in 1 to 4096");
-  return violations;
-}
-
 ObjectMotion ObjectMapOptions::motion() const {
-  return {drift_noise,     acceleration_sigma_mps2, acceleration_time_s,
-          velocity_time_s, start_speed_sigma_mps,   wander_sigma_m,
-          wander_time_s,   clock_sigma_s,           LogOdds(moving_probability)};
+  return {kDriftNoise,     kAccelerationSigma_mps2, kAccelerationTime_s,
+          kVelocityTime_s, kStartSpeedSigma_mps,    wander_sigma_m,
+          kWanderTime_s,   clock_sigma_s,           LogOdds(moving_probability)};
 }
 
 class ObjectMap::Impl {
@@ -147,11 +116,12 @@ class ObjectMap::Impl {
 ObjectMap::Impl::Impl(const ObjectModel& model, const ObjectMapOptions& options)
     : model_(model),
       options_(Checked(options)),
-      hit_log_odds_(std::log(options.detection_probability / options.false_probability)),
-      miss_log_odds_(
-          std::log((1 - options.detection_probability) / (1 - options.false_probability))),
-      new_cost_(-2 * std::log(options.new_density)),
-      max_log_odds_(LogOdds(options.max_probability)),
+      hit_log_odds_(
+          std::log(ObjectMapOptions::kDetectionProbability / ObjectMapOptions::kFalseProbability)),
+      miss_log_odds_(std::log((1 - ObjectMapOptions::kDetectionProbability) /
+                              (1 - ObjectMapOptions::kFalseProbability))),
+      new_cost_(-2 * std::log(ObjectMapOptions::kNewDensity)),
+      max_log_odds_(LogOdds(ObjectMapOptions::kMaxProbability)),
       removal_log_odds_(LogOdds(options.removal_probability)),
       motion_(options.motion()) {
   const auto capacity = static_cast<std::size_t>(options.capacity);
@@ -209,11 +179,12 @@ double ObjectMap::Impl::Cost(const ObjectMeasurement& measurement, const Entry& 
       object.may_move ? entry.motion.Expect(measurement)
                       : ExpectedPosition{object.position(), PositionCovariance(object)};
   Eigen::Matrix3d covariance = expected.covariance + measurement.covariance;
-  covariance.diagonal().array() += options_.shared_sigma_m * options_.shared_sigma_m;
+  covariance.diagonal().array() +=
+      ObjectMapOptions::kSharedSigma_m * ObjectMapOptions::kSharedSigma_m;
   const Eigen::LLT<Eigen::Matrix3d> llt(covariance);
   const Eigen::Vector3d whitened = llt.matrixL().solve(measurement.position - expected.position);
   const double distance = whitened.squaredNorm();
-  if (distance > options_.gate) return kImpossibleCost;
+  if (distance > ObjectMapOptions::kGate) return kImpossibleCost;
   // -2 log of the likelihood.
   return distance + 3 * std::log(2 * std::numbers::pi) +
          2 * llt.matrixL().nestedExpression().diagonal().array().log().sum() +
@@ -297,7 +268,7 @@ void ObjectMap::Impl::UnifyNeighbors() {
       MappedObject& kept = entries_[i].object;
       const MappedObject& other = entries_[k].object;
       if (kept.shape != other.shape || kept.color_index() != other.color_index() ||
-          (kept.position() - other.position()).norm() >= options_.min_separation_m) {
+          (kept.position() - other.position()).norm() >= ObjectMapOptions::kMinSeparation_m) {
         continue;
       }
       if (other.detections > kept.detections) entries_[i].motion = entries_[k].motion;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/vision/mapping/mapped_object.h"
 
@@ -14,80 +15,52 @@ namespace kestrel {
 
 struct ObjectMapOptions {
   // Squared Mahalanobis distance beyond which a detection does not belong to an object. One true
-  // detection in a thousand exceeds 16.3 (3 degrees of freedom).
-  double gate = 16.3;
+  // detection in a thousand exceeds it (3 degrees of freedom).
+  static constexpr double kGate = 16.3;
   // Density of objects that are not in the map yet, 1/m^3. It makes a detection rather a new object
   // than an old one whose position is no longer known.
-  double new_density = 0.005;
+  static constexpr double kNewDensity = 0.005;
   // Two objects of one shape and colour cannot be nearer than this; they are merged.
-  double min_separation_m = 0.2;
+  static constexpr double kMinSeparation_m = 0.2;
   // Growth of a standing object's position error; acceleration of a moving object, and the times
   // for which it keeps its acceleration and its velocity.
-  double drift_noise = 0.005;
-  double acceleration_sigma_mps2 = 0.2;
-  double acceleration_time_s = 2;
-  double velocity_time_s = 30;
-  double start_speed_sigma_mps = 1.5;
-  // Errors that look like motion: an error (per axis) that detections at one time share and that
-  // wanders over wander_time_s (the navigation's), and an error of the clock offset.
-  double wander_sigma_m = 0.05;
-  double wander_time_s = 3;
-  double clock_sigma_s = 0.03;
-  // Probability from which on an object is reported as moving.
-  double moving_probability = 0.99;
+  static constexpr double kDriftNoise = 0.005;
+  static constexpr double kAccelerationSigma_mps2 = 0.2;
+  static constexpr double kAccelerationTime_s = 2;
+  static constexpr double kVelocityTime_s = 30;
+  static constexpr double kStartSpeedSigma_mps = 1.5;
+  static constexpr double kWanderTime_s = 3;  // in which the error of wander_sigma_m changes
   // Position error per axis that many detections in a row share (bias of the navigation, clock): no
   // object is known better than this.
-  double shared_sigma_m = 0.02;
+  static constexpr double kSharedSigma_m = 0.02;
   // Evidence of a detection and of a miss: the probability that an object in view is detected, and
-  // that of a detection without an object. An object is removed at 'removal_probability'.
-  double detection_probability = 0.6;
-  double false_probability = 0.02;
-  double max_probability = 0.999;
+  // that of a detection without an object.
+  static constexpr double kDetectionProbability = 0.6;
+  static constexpr double kFalseProbability = 0.02;
+  static constexpr double kMaxProbability = 0.999;
+
+  double wander_sigma_m = 0.05;
+  double clock_sigma_s = 0.03;
+  double moving_probability = 0.99;
   double removal_probability = 0.05;
-  // Number of detections after which an object is part of the map.
   int confirm_count = 3;
-  // Largest number of objects; the least certain are removed.
   int capacity = 256;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("gate", self.gate, "1",
-            "largest squared Mahalanobis distance of a detection that belongs to an object");
-    visitor("new_density", self.new_density, "1/m^3",
-            "density of objects that are not in the map yet");
-    visitor("min_separation_m", self.min_separation_m, "m",
-            "distance below which two objects of one kind are merged");
-    visitor("drift_noise", self.drift_noise, "m/sqrt(s)",
-            "growth of the position error of standing objects");
-    visitor("acceleration_sigma_mps2", self.acceleration_sigma_mps2, "m/s^2",
-            "acceleration of moving objects, standard deviation per axis");
-    visitor("acceleration_time_s", self.acceleration_time_s, "s",
-            "typical duration of an acceleration");
-    visitor("velocity_time_s", self.velocity_time_s, "s", "typical duration of a velocity");
-    visitor("start_speed_sigma_mps", self.start_speed_sigma_mps, "m/s",
-            "speed of a new object that may move, standard deviation per axis");
-    visitor("wander_sigma_m", self.wander_sigma_m, "m",
-            "slowly changing error that detections share, standard deviation per axis");
-    visitor("wander_time_s", self.wander_time_s, "s", "typical duration of that error");
-    visitor("clock_sigma_s", self.clock_sigma_s, "s",
-            "error of the clock offset, standard deviation");
-    visitor("moving_probability", self.moving_probability, "1",
-            "probability of motion from which on an object is reported as moving");
-    visitor("shared_sigma_m", self.shared_sigma_m, "m",
-            "error that consecutive detections share, standard deviation per axis");
-    visitor("detection_probability", self.detection_probability, "1",
-            "probability that an object in view is detected");
-    visitor("false_probability", self.false_probability, "1",
-            "probability of a detection where there is no object");
-    visitor("max_probability", self.max_probability, "1",
-            "largest probability that an object exists");
-    visitor("removal_probability", self.removal_probability, "1",
-            "probability of existence below which an object is removed");
-    visitor("confirm_count", self.confirm_count, "1",
-            "number of detections that confirm an object");
-    visitor("capacity", self.capacity, "1", "largest number of objects that are kept");
+  static void Visit(auto& self, auto&& visit) {
+    visit("wander_sigma_m", self.wander_sigma_m, AtLeast(0),
+          "slowly changing error that detections share, standard deviation per axis");
+    visit("clock_sigma_s", self.clock_sigma_s, AtLeast(0),
+          "standard deviation of the clock offset");
+    visit("moving_probability", self.moving_probability, Between(0.5, 1),
+          "probability of motion from which on an object is reported as moving");
+    visit("removal_probability", self.removal_probability, Between(0, 0.5),
+          "probability of existence below which an object is removed");
+    visit("confirm_count", self.confirm_count, AtLeast(1), "detections that confirm an object");
+    visit("capacity", self.capacity, Range{1, 4096}, "largest number of objects that are kept");
+    visit.Gone({"gate", "new_density", "min_separation_m", "drift_noise", "acceleration_sigma_mps2",
+                "acceleration_time_s", "velocity_time_s", "start_speed_sigma_mps", "wander_time_s",
+                "shared_sigma_m", "detection_probability", "false_probability", "max_probability"});
   }
-  std::vector<std::string> Validate() const;
 
   ObjectMotion motion() const;
 };

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/base/options.h"
 #include "kestrel/vision/mapping/test_map.h"
 
 namespace kestrel {
@@ -177,9 +178,9 @@ TEST(ObjectMap, DigitIsTheMostLikelyOfAllDetections) {
 
 TEST(ObjectMapOptions, ViolationsAreNamed) {
   ObjectMapOptions options;
-  options.gate = 0;
-  options.false_probability = 0.9;
-  EXPECT_THAT(options.Validate(), SizeIs(2));
+  options.capacity = 0;
+  options.moving_probability = 0.4;
+  EXPECT_THAT(ViolationsOf(options), SizeIs(2));
   EXPECT_THROW(ObjectMap(DefaultObjectModel(), options), InputError);
 }
 

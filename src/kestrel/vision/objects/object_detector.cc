@@ -46,28 +46,6 @@ const char* ToString(ObjectStage stage) {
   return kNames[static_cast<std::size_t>(stage)];
 }
 
-std::vector<std::string> ObjectDetectorOptions::Validate() const {
-  std::vector<std::string> violations;
-  const auto require = [&](bool holds, const char* rule) {
-    if (!holds) violations.emplace_back(rule);
-  };
-  require(min_pixels >= 5, "min_pixels must be at least 5");
-  require(max_roundness_error > 0, "max_roundness_error must be positive");
-  require(max_circularity_error > 0, "max_circularity_error must be positive");
-  require(outline_tolerance >= 0, "outline_tolerance must not be negative");
-  require(outline_tolerance_px > 0, "outline_tolerance_px must be positive");
-  require(min_outline_share > 0 && min_outline_share <= 1, "min_outline_share must be in 0 to 1");
-  require(max_gap >= 0 && max_gap < 1, "max_gap must be in 0 to 1");
-  require(max_cut_off_gap >= 0 && max_cut_off_gap < 1, "max_cut_off_gap must be in 0 to 1");
-  require(max_outside >= 0 && max_outside < 1, "max_outside must be in 0 to 1");
-  require(ground_tolerance > 0, "ground_tolerance must be positive");
-  require(ground_tolerance_m >= 0, "ground_tolerance_m must not be negative");
-  require(center_sigma_px > 0, "center_sigma_px must be positive");
-  require(radius_sigma_px > 0, "radius_sigma_px must be positive");
-  require(track_radius_px >= 0, "track_radius_px must not be negative");
-  return violations;
-}
-
 ObjectWorkspace::ObjectWorkspace() : buffers_(std::make_unique<Buffers>()) {}
 ObjectWorkspace::~ObjectWorkspace() = default;
 ObjectWorkspace::ObjectWorkspace(ObjectWorkspace&&) noexcept = default;

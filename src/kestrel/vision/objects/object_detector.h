@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/vision/objects/object_detection.h"
 #include "kestrel/vision/objects/object_model.h"
@@ -20,63 +21,45 @@ namespace kestrel {
 class ColorGrid;
 
 struct ObjectDetectorOptions {
-  // Segments of fewer pixels are noise. Also determines the step of the search, see SearchStep.
-  int min_pixels = 30;
-  // Largest |roundness - 1| (paper, eq. 7). An oblique ellipse with axes 3 : 1 has 0.7.
-  double max_roundness_error = 1.2;
-  // Largest |circularity - 1| of a disc (paper, eq. 12). A square has 0.05, and so does a disc of
-  // 50 px half in a shadow. Squares are therefore distinguished by their outline.
-  double max_circularity_error = 0.07;
   // Largest root mean square distance of a disc's edge points from their cone: a share of the
   // shorter semi-axis, plus an allowance for blur and noise. The points of a square lie 0.075 of it
   // away.
-  double outline_tolerance = 0.03;
-  double outline_tolerance_px = 0.3;
-  // Largest share of a disc's outline that one object may hide, for a whole disc and for one that
-  // the image border cuts off; largest share that may be out of view; least share of the rest that
-  // must fit. A polygon does not fit at its corners, which lie all around.
+  static constexpr double kOutlineTolerance = 0.03;
+  static constexpr double kOutlineTolerance_px = 0.3;
+  // As max_gap, for a disc that the image border cuts off; largest share that may be out of view;
+  // least share of the rest that must fit. A polygon does not fit at its corners, which lie all
+  // around.
+  static constexpr double kMaxCutOffGap = 0.1;
+  static constexpr double kMaxOutside = 0.5;
+  static constexpr double kMinOutlineShare = 0.7;
+  // Constant part of the deviation that 'ground_tolerance' allows.
+  static constexpr double kGroundTolerance_m = 0.15;
+  // Standard deviations of a location: across the line of sight, and of the radius in the image.
+  static constexpr double kCenterSigma_px = 0.3;
+  static constexpr double kRadiusSigma_px = 0.15;
+
+  int min_pixels = 30;
+  double max_roundness_error = 1.2;
+  double max_circularity_error = 0.07;
   double max_gap = 0.35;
-  double max_cut_off_gap = 0.1;
-  double max_outside = 0.5;
-  double min_outline_share = 0.7;
-  // With known attitude and height: tolerance of an object's distance, and of the axes of its
-  // image, against those of an object on the ground. A share plus a constant in metres.
   double ground_tolerance = 0.22;
-  double ground_tolerance_m = 0.15;
-  // Standard deviations of a location: across the line of sight (px), and of the radius in the
-  // image (px).
-  double center_sigma_px = 0.3;
-  double radius_sigma_px = 0.15;
-  // Mode `track`: radius of the search around an object's expected position.
   int track_radius_px = 60;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("min_pixels", self.min_pixels, "px", "size of the smallest segment that is not noise");
-    visitor("max_roundness_error", self.max_roundness_error, "1", "largest |roundness - 1|");
-    visitor("max_circularity_error", self.max_circularity_error, "1",
-            "largest |circularity - 1| of a disc");
-    visitor("outline_tolerance", self.outline_tolerance, "1",
-            "distance of a disc's edge from an ellipse, share of the shorter semi-axis");
-    visitor("outline_tolerance_px", self.outline_tolerance_px, "px",
-            "constant part of that distance, added to outline_tolerance");
-    visitor("max_gap", self.max_gap, "1", "share of a disc's outline that may be hidden");
-    visitor("max_cut_off_gap", self.max_cut_off_gap, "1",
-            "share of the outline that may be hidden where the image's border cuts the disc off");
-    visitor("max_outside", self.max_outside, "1",
-            "share of a disc that may be outside of the image");
-    visitor("min_outline_share", self.min_outline_share, "1",
-            "share of the visible outline that must fit the ellipse");
-    visitor("ground_tolerance", self.ground_tolerance, "1",
-            "deviation of size and distance from those of an object on the ground, share");
-    visitor("ground_tolerance_m", self.ground_tolerance_m, "m",
-            "constant part of that deviation, added to ground_tolerance");
-    visitor("center_sigma_px", self.center_sigma_px, "px", "standard deviation of a centre");
-    visitor("radius_sigma_px", self.radius_sigma_px, "px", "standard deviation of a radius");
-    visitor("track_radius_px", self.track_radius_px, "px",
-            "radius around the last place of a followed object in which it is searched for");
+  static void Visit(auto& self, auto&& visit) {
+    visit("min_pixels", self.min_pixels, AtLeast(5),
+          "[px] size of the smallest segment that is not noise");
+    visit("max_roundness_error", self.max_roundness_error, MoreThan(0), "largest |roundness - 1|");
+    visit("max_circularity_error", self.max_circularity_error, MoreThan(0),
+          "largest |circularity - 1| of a disc");
+    visit("max_gap", self.max_gap, Range{0, 1, true, false},
+          "share of a disc's outline that may be hidden");
+    visit("ground_tolerance", self.ground_tolerance, MoreThan(0),
+          "deviation of size and distance from those of an object on the ground, share");
+    visit("track_radius_px", self.track_radius_px, AtLeast(0),
+          "radius around the last place of a followed object in which it is searched for");
+    visit.Gone({"outline_tolerance", "outline_tolerance_px", "max_cut_off_gap", "max_outside",
+                "min_outline_share", "ground_tolerance_m", "center_sigma_px", "radius_sigma_px"});
   }
-  std::vector<std::string> Validate() const;
 };
 
 // An object to be followed, with its expected position in the image.

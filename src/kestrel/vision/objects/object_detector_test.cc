@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/base/options.h"
 #include "kestrel/vision/objects/test_objects.h"
 
 namespace kestrel {
@@ -154,7 +155,7 @@ TEST(ObjectDetectorOptions, ViolationsAreNamed) {
   ObjectDetectorOptions options;
   options.min_pixels = 0;
   options.max_gap = 2;
-  EXPECT_THAT(options.Validate(), ::testing::SizeIs(2));
+  EXPECT_THAT(ViolationsOf(options), ::testing::SizeIs(2));
   EXPECT_THROW(ObjectDetector(ObjectCamera(), DefaultObjectModel(), options), InputError);
   EXPECT_THROW(ObjectDetector(ObjectCamera(), ObjectModel()), InputError);
 }

@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/read_file.h"
-#include "kestrel/core/base/require_metres.h"
 #include "kestrel/core/base/yaml_reader.h"
 #include "kestrel/vision/objects/embedded_data.h"
 
@@ -123,9 +123,9 @@ std::vector<std::string> ObjectModel::Validate() const {
     };
     require(c.color < colors.colors.size(), "its color must be one of the colors");
     const std::string name = fmt::format("class {} ({}): ", i + 1, c.name);
-    RequireMetres(c.size_m, name + "size_m", &violations);
-    if (c.shape == ObjectShape::kBar) RequireMetres(c.width_m, name + "width_m", &violations);
-    if (c.max_height_m > 0) RequireMetres(c.max_height_m, name + "max_height_m", &violations);
+    Require(c.size_m, Metres(), name + "size_m", &violations);
+    if (c.shape == ObjectShape::kBar) Require(c.width_m, Metres(), name + "width_m", &violations);
+    if (c.max_height_m > 0) Require(c.max_height_m, Metres(), name + "max_height_m", &violations);
     require(c.shape != ObjectShape::kBar || c.width_m < c.size_m,
             "width_m must be less than size_m");
     require(c.height_m >= 0 && c.height_m <= c.max_height_m && std::isfinite(c.max_height_m),

@@ -11,12 +11,6 @@
 
 namespace kestrel {
 
-// Longest prediction of a pose beyond the newest one, and the motion that may change meanwhile.
-struct PosePrediction {
-  Duration max_ahead = Duration::zero();
-  UnmodelledMotion unmodelled;
-};
-
 struct CameraPose {
   RigidTransform world_from_camera;
   PoseUncertainty uncertainty;  // in addition to that of a reported pose
@@ -26,13 +20,14 @@ struct CameraPose {
 // clock offset.
 class CameraPoses {
  public:
-  // 'smoothing': see PoseHistory::Smooth; zero leaves the poses as they are.
+  // 'smoothing': see PoseHistory::Smooth; zero leaves the poses as they are. 'max_ahead': longest
+  // prediction of a pose beyond the newest one.
   CameraPoses(const CameraCalibration& calibration, std::size_t capacity, Duration max_gap,
-              Duration smoothing, const PosePrediction& prediction)
+              Duration smoothing, Duration max_ahead)
       : body_from_camera_(calibration.body_from_camera),
         clock_offset_(calibration.clock_offset.value_or(Duration::zero())),
         smoothing_(smoothing),
-        prediction_(prediction),
+        max_ahead_(max_ahead),
         poses_(capacity, max_gap) {}
 
   // Adds a pose from the navigation, on its clock.
@@ -58,14 +53,13 @@ class CameraPoses {
 
  private:
   std::optional<PredictedPose> Predict(Time image_time) const {
-    return poses_.Predict(image_time + clock_offset_, prediction_.max_ahead,
-                          prediction_.unmodelled);
+    return poses_.Predict(image_time + clock_offset_, max_ahead_, UnmodelledMotion());
   }
 
   std::optional<RigidTransform> body_from_camera_;
   Duration clock_offset_;
   Duration smoothing_;
-  PosePrediction prediction_;
+  Duration max_ahead_;
   PoseHistory poses_;
 };
 

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "kestrel/core/base/options.h"
-#include "kestrel/core/base/violations.h"
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/vision/objects/color/color_grid.h"
 #include "kestrel/vision/pipeline/camera_poses.h"
@@ -35,29 +34,6 @@ bool IsClear(const ObjectDetection& detection) {
 }
 
 }  // namespace
-
-std::vector<std::string> HuntPipelineOptions::Validate() const {
-  std::vector<std::string> violations;
-  for (const std::string& violation : detector.Validate()) {
-    violations.push_back("detector." + violation);
-  }
-  for (const std::string& violation : map.Validate()) violations.push_back("map." + violation);
-  const auto require = [&](bool holds, const char* rule) {
-    if (!holds) violations.emplace_back(rule);
-  };
-  require(readout_s >= 0 && readout_s < 1, "readout_s must be in 0 to 1");
-  require(ground_sigma_m >= 0, "ground_sigma_m must not be negative");
-  require(track_count >= 0, "track_count must not be negative");
-  require(pose_sigma_m >= 0, "pose_sigma_m must not be negative");
-  require(attitude_sigma_deg >= 0, "attitude_sigma_deg must not be negative");
-  require(pose_capacity >= 2, "pose_capacity must be at least 2");
-  require(pose_gap_s > 0 && pose_gap_s < 1e6, "pose_gap_s must be positive and below 1e6");
-  require(pose_extrapolation_s >= 0 && pose_extrapolation_s <= 1,
-          "pose_extrapolation_s must be in 0 to 1");
-  AddViolations("unmodelled", unmodelled.Validate(), &violations);
-  require(pose_smoothing_s >= 0 && pose_smoothing_s <= 1, "pose_smoothing_s must be in 0 to 1");
-  return violations;
-}
 
 class HuntPipeline::Impl {
  public:
@@ -109,9 +85,9 @@ HuntPipeline::Impl::Impl(const CameraCalibration& calibration, const ObjectModel
                          const ColorGrid& grid, const HuntPipelineOptions& options)
     : options_(Checked(options)),
       detector_(CameraModel(calibration.intrinsics), model, grid, options.detector),
-      poses_(calibration, options.pose_capacity, DurationFromSeconds(options.pose_gap_s),
-             DurationFromSeconds(options.pose_smoothing_s),
-             {DurationFromSeconds(options.pose_extrapolation_s), options.unmodelled}),
+      poses_(calibration, HuntPipelineOptions::kPoseCapacity,
+             DurationFromSeconds(options.pose_gap_s), DurationFromSeconds(options.pose_smoothing_s),
+             DurationFromSeconds(options.pose_extrapolation_s)),
       map_(model, options.map) {}
 
 void HuntPipeline::Impl::ChangeOptions(const HuntPipelineOptions& options) {

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/core/geometry/rigid_transform.h"
@@ -21,66 +22,47 @@ namespace kestrel {
 struct GroundHeight;
 
 struct HuntPipelineOptions {
+  static constexpr int kPoseCapacity = 1000;  // poses that are kept
+
   ObjectDetectorOptions detector;
   ObjectMapOptions map;
-  // Independent frames: no state is carried from one to the next.
   bool still = false;
-  // Height of the ground in the world. It holds until objects that agree with each other show
-  // another one (the navigation's z may be an altitude above sea level). An object that, by its
-  // size, is not on the ground is rejected.
   double ground_height_m = 0;
   bool is_ground_flat = true;
-  // Unevenness of the ground, standard deviation.
   double ground_sigma_m = 0.03;
-  // Time from the first to the last row of a rolling shutter; 0 for a global shutter. The time of
-  // an image is that of its middle row.
   double readout_s = 0;
-  // More than 0: once so many objects are in view, only these are followed (the paper's mode
-  // `track`), until one is lost.
   int track_count = 0;
-  // Standard deviations of the navigation's poses, per axis, which the map adds to those of a
-  // detection. Increase them where clock offset or mount are not known.
   double pose_sigma_m = 0.02;
   double attitude_sigma_deg = 0.2;
-  // Number of poses that are kept, and longest gap between two poses that is interpolated.
-  int pose_capacity = 1000;
   double pose_gap_s = 0.5;
-  // Longest time beyond the newest pose for which a frame's pose is predicted from the motion; the
-  // uncertainty grows with it. A recording contains every pose, so 0 suffices.
   double pose_extrapolation_s = 0;
-  UnmodelledMotion unmodelled;
-  // Poses are smoothed over this time before and, as far as poses have arrived, after an instant;
-  // 0: no smoothing.
   double pose_smoothing_s = 0.1;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor.Group("detector", self.detector);
-    visitor.Group("map", self.map);
-    visitor("still", self.still, "",
-            "independent frames: no state is carried from one to the next");
-    visitor("ground_height_m", self.ground_height_m, "m", "height of the ground in the world");
-    visitor("is_ground_flat", self.is_ground_flat, "",
-            "objects that are not on the ground are discarded, where there are poses");
-    visitor("ground_sigma_m", self.ground_sigma_m, "m", "unevenness of the ground");
-    visitor("readout_s", self.readout_s, "s",
-            "time from the first row of a rolling shutter to the last; 0: a global shutter");
-    visitor("track_count", self.track_count, "1",
-            "number of objects that are followed, and the rest of the image ignored; 0: the whole "
-            "image is searched");
-    visitor("pose_sigma_m", self.pose_sigma_m, "m",
-            "error of the navigation's position, standard deviation per axis");
-    visitor("attitude_sigma_deg", self.attitude_sigma_deg, "deg",
-            "error of the navigation's attitude, standard deviation per axis");
-    visitor("pose_capacity", self.pose_capacity, "1", "number of poses that are kept");
-    visitor("pose_gap_s", self.pose_gap_s, "s", "longest gap between poses that is interpolated");
-    visitor("pose_extrapolation_s", self.pose_extrapolation_s, "s",
-            "longest prediction of the pose beyond the newest one; 0: none");
-    visitor.Group("unmodelled", self.unmodelled);
-    visitor("pose_smoothing_s", self.pose_smoothing_s, "s",
-            "time before (and after, if poses are there) over which poses are averaged; 0: none");
+  static void Visit(auto& self, auto&& visit) {
+    visit.Group("detector", self.detector);
+    visit.Group("map", self.map);
+    visit("still", self.still, "independent frames: no state is carried from one to the next");
+    visit("ground_height_m", self.ground_height_m, "height of the ground in the world");
+    visit("is_ground_flat", self.is_ground_flat,
+          "objects that are not on the ground are discarded, where there are poses");
+    visit("ground_sigma_m", self.ground_sigma_m, AtLeast(0), "unevenness of the ground");
+    visit("readout_s", self.readout_s, Range{0, 1, true, false},
+          "time from the first row of a rolling shutter to the last; 0: a global shutter");
+    visit("track_count", self.track_count, AtLeast(0),
+          "number of objects that are followed, and the rest of the image ignored; 0: the whole "
+          "image is searched");
+    visit("pose_sigma_m", self.pose_sigma_m, AtLeast(0),
+          "error of the navigation's position, standard deviation per axis");
+    visit("attitude_sigma_deg", self.attitude_sigma_deg, AtLeast(0),
+          "error of the navigation's attitude, standard deviation per axis");
+    visit("pose_gap_s", self.pose_gap_s, Between(0, 1e6),
+          "longest gap between poses that is interpolated");
+    visit("pose_extrapolation_s", self.pose_extrapolation_s, Range{0, 1},
+          "longest prediction of the pose beyond the newest one; 0: none");
+    visit("pose_smoothing_s", self.pose_smoothing_s, Range{0, 1},
+          "time before (and after, if poses are there) over which poses are averaged; 0: none");
+    visit.Gone({"pose_capacity", "unmodelled"});
   }
-  std::vector<std::string> Validate() const;
 };
 
 // The result of one frame.

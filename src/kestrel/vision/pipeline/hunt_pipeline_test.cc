@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/base/options.h"
 #include "kestrel/vision/objects/test_objects.h"
 #include "kestrel/vision/pipeline/ground_height.h"
 
@@ -212,9 +213,9 @@ TEST(HuntPipeline, OtherOptionsKeepTheMap) {
 TEST(HuntPipeline, BadOptionsAreRefused) {
   HuntPipelineOptions options;
   options.readout_s = -1;
-  options.map.gate = 0;
+  options.map.capacity = 0;
   options.detector.min_pixels = 1;
-  EXPECT_THAT(options.Validate(), SizeIs(3));
+  EXPECT_THAT(ViolationsOf(options), SizeIs(3));
   EXPECT_THROW(HuntPipeline(Calibration(), DefaultObjectModel(), options), InputError);
 }
 

@@ -8,33 +8,12 @@
 #include <fmt/format.h>
 
 #include "kestrel/core/base/options.h"
-#include "kestrel/core/base/violations.h"
 #include "kestrel/vision/pipeline/calibration_monitor.h"
 #include "kestrel/vision/pipeline/camera_poses.h"
 #include "kestrel/vision/pipeline/told_contradictions.h"
 #include "kestrel/vision/pipeline/world_location.h"
 
 namespace kestrel {
-
-std::vector<std::string> LandingPipelineOptions::Validate() const {
-  std::vector<std::string> violations;
-  AddViolations("target", target.Validate(), &violations);
-  AddViolations("detector", detector.Validate(), &violations);
-  AddViolations("tracker", tracker.Validate(), &violations);
-  AddViolations("noise", noise.Validate(), &violations);
-  const auto require = [&](bool holds, const char* rule) {
-    if (!holds) violations.push_back(rule);
-  };
-  require(hint_sigma_m > 0, "hint_sigma_m must be positive");
-  require(hint_speed_mps >= 0, "hint_speed_mps must not be negative");
-  require(hint_age_s >= 0, "hint_age_s must not be negative");
-  require(pose_capacity >= 2, "pose_capacity must be at least 2");
-  require(pose_gap_s > 0 && pose_gap_s < 1e6, "pose_gap_s must be positive and below 1e6");
-  require(pose_extrapolation_s >= 0 && pose_extrapolation_s <= 1,
-          "pose_extrapolation_s must be in 0 to 1");
-  AddViolations("unmodelled", unmodelled.Validate(), &violations);
-  return violations;
-}
 
 const char* ToString(PositionMethod method) {
   return method == PositionMethod::kSize ? "size" : "altitude";
@@ -135,9 +114,9 @@ LandingPipeline::Impl::Impl(const CameraCalibration& calibration,
                                  : MakeTargetDetector(CameraModel(calibration.intrinsics),
                                                       options.target, options.detector)),
       workspace_(detector_->MakeWorkspace()),
-      poses_(calibration, options.pose_capacity, DurationFromSeconds(options.pose_gap_s),
-             Duration::zero(),
-             {DurationFromSeconds(options.pose_extrapolation_s), options.unmodelled}),
+      poses_(calibration, LandingPipelineOptions::kPoseCapacity,
+             DurationFromSeconds(options.pose_gap_s), Duration::zero(),
+             DurationFromSeconds(options.pose_extrapolation_s)),
       tracker_(options.tracker) {
   if (!is_detector_own_) others_ = OthersOf(detector_->camera(), options.target);
 }
@@ -265,7 +244,7 @@ void LandingPipeline::Impl::AddLastSighting(const LandingObservation& observatio
   const double age_s = ToSeconds(observation.time - last_->time);
   if (age_s < 0 || age_s > options_.hint_age_s) return;
   hint->center_in_camera = last_->center_in_camera;
-  hint->center_sigma_m = options_.hint_sigma_m + options_.hint_speed_mps * age_s;
+  hint->center_sigma_m = options_.hint_sigma_m + LandingPipelineOptions::kHintSpeed_mps * age_s;
   hint->rotation_in_camera = last_->rotation_in_camera;
   hint->id = last_->id;
 }

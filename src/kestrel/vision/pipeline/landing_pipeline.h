@@ -6,11 +6,11 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/core/geometry/rigid_transform.h"
@@ -27,71 +27,48 @@ class CalibrationMonitor;
 class ToldContradictions;
 
 struct LandingPipelineOptions {
-  TargetOptions target;                    // what is landed on
-  LandingPatternDetectorOptions detector;  // of a ring with a cross
-  TargetTrackerOptions tracker;
-  MeasurementNoise noise;  // of the tracker's measurements, besides the detector's own
-  // Independent frames: no state is carried from one to the next.
-  bool still = false;
-  // Takes the world position from the camera's altitude (paper, eq. 3) instead of from the
-  // pattern's size in the image. Better only where the altitude is known to a few cm and the
-  // pattern is small.
-  bool position_by_altitude = false;
-  // Height of the pattern's face above the world's z = 0. It converts the navigation's z to the
-  // height above the pattern, for the hint and for position_by_altitude. It holds until the
-  // detections contradict it: the navigation's z may be an altitude above sea level.
-  double target_height_m = 0;
-  // The pattern turns with the vehicle, so its yaw tells the tracker how the path bends. Switch off
-  // where the pattern turns by itself.
-  bool track_yaw = true;
-  // Gives the detector the height above the pattern that the navigation reports. Switch off where
-  // the world's z is not a height above ground.
-  bool altitude_hint = true;
-  // The pattern is searched first around its predicted position, with a standard deviation per axis
-  // of hint_sigma_m plus that of the track. Without poses there is no track: the last position in
-  // the camera serves for hint_age_s, with an uncertainty that grows by hint_speed_mps. Where the
-  // pattern is not found there, the whole image is searched.
-  double hint_sigma_m = 0.2;
-  double hint_speed_mps = 5;
-  double hint_age_s = 0.5;
-  // Number of poses that are kept, and longest gap between two poses that is interpolated.
-  int pose_capacity = 1000;
-  double pose_gap_s = 0.5;
-  // Longest time beyond the newest pose for which a frame's pose is predicted from the motion; the
-  // uncertainty grows with it. A recording contains every pose, so 0 suffices.
-  double pose_extrapolation_s = 0;
-  UnmodelledMotion unmodelled;
+  // Growth of the hint's uncertainty with the age of the last detection, where there are no poses.
+  static constexpr double kHintSpeed_mps = 5;
+  static constexpr int kPoseCapacity = 1000;  // poses that are kept
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor.Group("target", self.target);
-    visitor.Group("detector", self.detector);
-    visitor.Group("tracker", self.tracker);
-    visitor.Group("noise", self.noise);
-    visitor("still", self.still, "",
-            "independent frames: no state is carried from one to the next");
-    visitor("position_by_altitude", self.position_by_altitude, "",
-            "world position from the altitude instead of from the pattern's size");
-    visitor("target_height_m", self.target_height_m, "m",
-            "height of the pattern above the world's z = 0");
-    visitor("track_yaw", self.track_yaw, "",
-            "the pattern turns with the vehicle, so that its yaw shows how the path bends");
-    visitor("altitude_hint", self.altitude_hint, "",
-            "the detector gets the height that the navigation reports");
-    visitor("hint_sigma_m", self.hint_sigma_m, "m",
-            "error of the predicted position that the first search covers, in addition to the "
-            "track's, standard deviation per axis");
-    visitor("hint_speed_mps", self.hint_speed_mps, "m/s",
-            "growth of that error with the age of the last detection, where there are no poses");
-    visitor("hint_age_s", self.hint_age_s, "s",
-            "largest age of a detection that serves as a hint, where there are no poses");
-    visitor("pose_capacity", self.pose_capacity, "1", "number of poses that are kept");
-    visitor("pose_gap_s", self.pose_gap_s, "s", "longest gap between poses that is interpolated");
-    visitor("pose_extrapolation_s", self.pose_extrapolation_s, "s",
-            "longest prediction of the pose beyond the newest one; 0: none");
-    visitor.Group("unmodelled", self.unmodelled);
+  TargetOptions target;
+  LandingPatternDetectorOptions detector;
+  TargetTrackerOptions tracker;
+  MeasurementNoise noise;
+  bool still = false;
+  bool position_by_altitude = false;
+  double target_height_m = 0;
+  bool track_yaw = true;
+  bool altitude_hint = true;
+  double hint_sigma_m = 0.2;
+  double hint_age_s = 0.5;
+  double pose_gap_s = 0.5;
+  double pose_extrapolation_s = 0;
+
+  static void Visit(auto& self, auto&& visit) {
+    visit.Group("target", self.target);
+    visit.Group("detector", self.detector);
+    visit.Group("tracker", self.tracker);
+    visit.Group("noise", self.noise);
+    visit("still", self.still, "independent frames: no state is carried from one to the next");
+    visit("position_by_altitude", self.position_by_altitude,
+          "world position from the altitude instead of from the pattern's size");
+    visit("target_height_m", self.target_height_m, "height of the pattern above the world's z = 0");
+    visit("track_yaw", self.track_yaw,
+          "the pattern turns with the vehicle, so that its yaw shows how the path bends");
+    visit("altitude_hint", self.altitude_hint,
+          "the detector gets the height that the navigation reports");
+    visit("hint_sigma_m", self.hint_sigma_m, MoreThan(0),
+          "error of the predicted position that the first search covers, in addition to the "
+          "track's, standard deviation per axis");
+    visit("hint_age_s", self.hint_age_s, AtLeast(0),
+          "largest age of a detection that serves as a hint, where there are no poses");
+    visit("pose_gap_s", self.pose_gap_s, Between(0, 1e6),
+          "longest gap between poses that is interpolated");
+    visit("pose_extrapolation_s", self.pose_extrapolation_s, Range{0, 1},
+          "longest prediction of the pose beyond the newest one; 0: none");
+    visit.Gone({"hint_speed_mps", "pose_capacity", "unmodelled"});
   }
-  std::vector<std::string> Validate() const;
 };
 
 // Method by which a position in the world was found (paper, section 2.5).

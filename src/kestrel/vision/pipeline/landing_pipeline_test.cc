@@ -427,11 +427,11 @@ TEST_F(LandingPipelineTest, OptionsAndCalibrationAreChecked) {
   options_.hint_sigma_m = 0;
   options_.pose_gap_s = std::numeric_limits<double>::quiet_NaN();
   options_.detector.min_quality = 2;
-  EXPECT_THAT(options_.Validate(), Contains(HasSubstr("hint_sigma_m")));
-  EXPECT_THAT(options_.Validate(), Contains(HasSubstr("pose_gap_s")));
+  EXPECT_THAT(ViolationsOf(options_), Contains(HasSubstr("hint_sigma_m")));
+  EXPECT_THAT(ViolationsOf(options_), Contains(HasSubstr("pose_gap_s")));
   options_.target.kind = "ring";
-  EXPECT_THAT(options_.Validate(), Contains(HasSubstr("detector.min_quality")));
-  EXPECT_THAT(options_.Validate(), Contains(HasSubstr("target.kind is 'ring'")));
+  EXPECT_THAT(ViolationsOf(options_), Contains(HasSubstr("detector.min_quality")));
+  EXPECT_THAT(ViolationsOf(options_), Contains(HasSubstr("target.kind is 'ring'")));
   EXPECT_THROW(LandingPipeline(calibration_, options_), InputError);
   calibration_.intrinsics.fx_px = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(LandingPipeline(calibration_, LandingPipelineOptions()), InputError);

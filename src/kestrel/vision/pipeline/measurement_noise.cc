@@ -27,20 +27,6 @@ Eigen::Matrix3d InWorld(const Eigen::Matrix3d& in_camera, const Eigen::Quaternio
 
 }  // namespace
 
-std::vector<std::string> MeasurementNoise::Validate() const {
-  std::vector<std::string> violations;
-  const auto require = [&](bool holds, const char* rule) {
-    if (!holds) violations.push_back(rule);
-  };
-  require(pose_sigma_m > 0 && pose_sigma_m < 100, "pose_sigma_m must be positive, below 100");
-  require(attitude_sigma_deg >= 0 && attitude_sigma_deg < 90, "attitude_sigma_deg must be 0 to 90");
-  require(clock_sigma_s >= 0 && clock_sigma_s < 1, "clock_sigma_s must be 0 to 1");
-  require(pose_bias_m >= 0 && pose_bias_m < 100, "pose_bias_m must be 0 to 100");
-  require(attitude_bias_deg >= 0 && attitude_bias_deg < 90, "attitude_bias_deg must be 0 to 90");
-  require(scale_bias >= 0 && scale_bias < 1, "scale_bias must be 0 to 1");
-  return violations;
-}
-
 MeasurementNoise WithPose(const MeasurementNoise& noise, const PoseUncertainty& pose) {
   MeasurementNoise sum = noise;
   sum.pose_sigma_m = std::hypot(noise.pose_sigma_m, pose.position_m);

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/poses/pose_history.h"
 
 namespace kestrel {
@@ -14,28 +14,27 @@ namespace kestrel {
 // Errors of a position in the world besides the detector's error in the image, as standard
 // deviations: those that differ from frame to frame, and those that a whole flight shares.
 struct MeasurementNoise {
-  double pose_sigma_m = 0.01;        // of the UAV's position, per axis
-  double attitude_sigma_deg = 0.15;  // of the UAV's attitude, per axis
-  double clock_sigma_s = 0;          // of the poses' times, besides PoseSample::time_sigma_s
-  double pose_bias_m = 0.03;         // of the UAV's position, per axis, the same in all frames
-  double attitude_bias_deg = 0.2;    // of the UAV's attitude and the camera's mount, per axis
-  double scale_bias = 0.002;         // of the pattern's size and the focal length, relative
+  double pose_sigma_m = 0.01;
+  double attitude_sigma_deg = 0.15;
+  double clock_sigma_s = 0;
+  double pose_bias_m = 0.03;
+  double attitude_bias_deg = 0.2;
+  double scale_bias = 0.002;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("pose_sigma_m", self.pose_sigma_m, "m", "noise of the UAV's position, per axis");
-    visitor("attitude_sigma_deg", self.attitude_sigma_deg, "deg",
-            "noise of the UAV's attitude, per axis");
-    visitor("clock_sigma_s", self.clock_sigma_s, "s",
-            "error of the poses' times, besides what the autopilot's link is known to cause");
-    visitor("pose_bias_m", self.pose_bias_m, "m",
-            "error of the UAV's position that all frames share, per axis");
-    visitor("attitude_bias_deg", self.attitude_bias_deg, "deg",
-            "error of attitude and mount that all frames share, per axis");
-    visitor("scale_bias", self.scale_bias, "1",
-            "relative error of the pattern's size and of the focal length");
+  static void Visit(auto& self, auto&& visit) {
+    visit("pose_sigma_m", self.pose_sigma_m, Between(0, 100),
+          "noise of the UAV's position, per axis");
+    visit("attitude_sigma_deg", self.attitude_sigma_deg, Range{0, 90, true, false},
+          "noise of the UAV's attitude, per axis");
+    visit("clock_sigma_s", self.clock_sigma_s, Range{0, 1, true, false},
+          "error of the poses' times, besides what the autopilot's link is known to cause");
+    visit("pose_bias_m", self.pose_bias_m, Range{0, 100, true, false},
+          "error of the UAV's position that all frames share, per axis");
+    visit("attitude_bias_deg", self.attitude_bias_deg, Range{0, 90, true, false},
+          "error of attitude and mount that all frames share, per axis");
+    visit("scale_bias", self.scale_bias, Range{0, 1, true, false},
+          "relative error of the pattern's size and of the focal length");
   }
-  std::vector<std::string> Validate() const;
 };
 
 // Returns the noise of a frame whose pose is less certain than that of others.

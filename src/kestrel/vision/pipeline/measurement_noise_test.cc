@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "kestrel/core/base/options.h"
+
 namespace kestrel {
 namespace {
 
@@ -39,8 +41,8 @@ TEST(YawVarianceInWorld, IsThatAboutTheVertical) {
 }
 
 TEST(MeasurementNoise, IsChecked) {
-  EXPECT_TRUE(MeasurementNoise().Validate().empty());
-  EXPECT_EQ((MeasurementNoise{0, -1, -1, -1, 90, 2}).Validate().size(), 6u);
+  EXPECT_TRUE(ViolationsOf(MeasurementNoise()).empty());
+  EXPECT_EQ(ViolationsOf(MeasurementNoise{0, -1, -1, -1, 90, 2}).size(), 6u);
 }
 
 }  // namespace

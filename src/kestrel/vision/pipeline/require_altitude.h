@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kestrel/core/base/error.h"
-#include "kestrel/core/base/require_metres.h"
+#include "kestrel/core/base/limits.h"
 
 namespace kestrel {
 
@@ -15,7 +15,7 @@ namespace kestrel {
 inline void RequireAltitude(double altitude_m, const std::string& key,
                             std::vector<std::string>* violations) {
   constexpr double kLeastWrong = 500;
-  RequireMetres(altitude_m, key, violations, kLeastWrong);
+  Require(altitude_m, Metres{kLeastWrong}, key, violations);
 }
 
 // Throws InputError when the height is known and not valid.

@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/read_file.h"
-#include "kestrel/core/base/violations.h"
 #include "kestrel/core/base/yaml_reader.h"
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/vision/tags/fractal_marker.h"
@@ -94,7 +94,7 @@ void AddTagViolations(const BoardTag& tag, std::vector<std::string>* violations)
   } catch (const InputError& error) {
     violations->emplace_back(error.what());
   }
-  RequirePositive(tag.size_m, name + ": size_m", violations);
+  Require(tag.size_m, MoreThan(0), name + ": size_m", violations);
   if (tag.size_m >= kLargestSize) {
     violations->push_back(fmt::format("{}: size_m is {}, expected metres: {}?", name, tag.size_m,
                                       kMillimetre * tag.size_m));
@@ -276,7 +276,7 @@ TagBoard TagTargetOptions::Board() const {
   return {{tag}};
 }
 
-std::vector<std::string> TagTargetOptions::Validate() const {
+std::vector<std::string> TagTargetOptions::ValidateBoard() const {
   std::vector<std::string> violations;
   try {
     violations = Board().Validate();

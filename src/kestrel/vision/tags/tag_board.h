@@ -80,22 +80,19 @@ struct TagTargetOptions {
   std::string family = "tag36h11";
   int id = 0;
   double size_m = 0.5;
-  std::string board{};  // path of a file of several tags (ParseTagBoard); empty: one tag
+  std::string board{};
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("family", self.family, "",
-            "family of the tag: tag36h11, tagStandard41h12, aruco_4x4_50, ...");
-    visitor("id", self.id, "", "id of the tag");
-    visitor("size_m", self.size_m, "m",
-            "side of the square where the tag's black and white borders meet");
-    visitor(
-        "board", self.board, "",
-        "YAML file of a board of several tags, or apriltag_ros' file of a bundle, instead of id "
-        "and size; or ArUco's file of a fractal marker, of this size");
+  static void Visit(auto& self, auto&& visit) {
+    visit("family", self.family,
+          "family of the tag: tag36h11, tagStandard41h12, aruco_4x4_50, ...");
+    visit("id", self.id, "id of the tag");
+    visit("size_m", self.size_m, "side of the square where the tag's black and white borders meet");
+    visit("board", self.board,
+          "YAML file of a board of several tags, or apriltag_ros' file of a bundle, instead of id "
+          "and size; or ArUco's file of a fractal marker, of this size");
   }
   // Includes the violations of the board; a file that cannot be read is one, too.
-  std::vector<std::string> Validate() const;
+  std::vector<std::string> ValidateBoard() const;
   // Returns the board. Throws InputError for a file that cannot be read.
   TagBoard Board() const;
 };

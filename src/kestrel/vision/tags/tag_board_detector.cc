@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "kestrel/core/base/options.h"
-#include "kestrel/core/base/violations.h"
 #include "kestrel/vision/tags/board_model.h"
 #include "kestrel/vision/tags/tag_quads.h"
 #include "kestrel/vision/tags/tag_search.h"
@@ -52,13 +51,6 @@ TargetShape ShapeOf(const TagBoard& board) {
   std::stable_sort(shape.outlines.begin(), shape.outlines.end(),
                    [&](const auto& a, const auto& b) { return size(a) > size(b); });
   return shape;
-}
-
-std::vector<std::string> TagBoardDetectorOptions::Validate() const {
-  std::vector<std::string> violations;
-  RequireIn(min_quality, 0, 1, "min_quality", &violations);
-  RequirePositive(level_sigma_deg, "level_sigma_deg", &violations);
-  return violations;
 }
 
 struct TagBoardDetector::Impl {

@@ -3,10 +3,10 @@
 
 #include <memory>
 #include <string>
-#include <vector>
 
 #include <opencv2/core.hpp>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/vision/tags/tag_board.h"
 #include "kestrel/vision/target/target_detector.h"
@@ -14,21 +14,15 @@
 namespace kestrel {
 
 struct TagBoardDetectorOptions {
-  // Smallest accepted quality, 0 to 1: the probability that it is the board.
   double min_quality = 0.7;
-  // Standard deviation per axis of the board's tilt from level. The image hardly shows the tilt of
-  // a far tag, and which of two poses it has depends on the tilt. Used where the hint has
-  // up_in_camera. Larger for a deck that rolls, smaller for a floor.
   double level_sigma_deg = 3;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("min_quality", self.min_quality, "1",
-            "smallest probability of the board that is accepted, 0 to 1");
-    visitor("level_sigma_deg", self.level_sigma_deg, "deg",
-            "tilt of the board from level, standard deviation");
+  static void Visit(auto& self, auto&& visit) {
+    visit("min_quality", self.min_quality, Range{0, 1},
+          "smallest accepted probability of the board");
+    visit("level_sigma_deg", self.level_sigma_deg, MoreThan(0),
+          "tilt from level, standard deviation");
   }
-  std::vector<std::string> Validate() const;
 };
 
 // Returns the shape of a board: the squares of its tags, the largest first. The board must be

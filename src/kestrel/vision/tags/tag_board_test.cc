@@ -34,7 +34,7 @@ BoardTag Tag(const std::string& family, int id, double size_m, double x_m = 0, d
 
 TEST(TagBoardTest, OneTagIsABoard) {
   const TagTargetOptions options;
-  EXPECT_THAT(options.Validate(), IsEmpty());
+  EXPECT_THAT(options.ValidateBoard(), IsEmpty());
   const std::vector<PrintedTag> printed = options.Board().Printed();
   ASSERT_EQ(printed.size(), 1u);
   // 36h11: the square is 8 cells wide; y points up, rows down.
@@ -87,7 +87,7 @@ TEST(TagBoardTest, ErrorsOfAFileNameTheKey) {
               ThrowsMessage<InputError>(HasSubstr("unknown key 'size'")));
   TagTargetOptions options;
   options.board = "/nowhere/board.yaml";
-  EXPECT_THAT(options.Validate(), ElementsAre(HasSubstr("/nowhere/board.yaml")));
+  EXPECT_THAT(options.ValidateBoard(), ElementsAre(HasSubstr("/nowhere/board.yaml")));
 }
 
 TEST(TagBoardTest, FilesWithoutABoardAreRefusedWithTheWayOut) {
@@ -107,9 +107,9 @@ TEST(TagBoardTest, ViolationsOfAFileNameItAsAPathThatExists) {
   const TestFolder folder;
   TagTargetOptions options;
   options.board = folder.Write("board.yaml", "tags:\n  - {id: 7, size: 0.3}\n");
-  EXPECT_THAT(options.Validate(), ElementsAre(StartsWith("board: " + options.board + ":2: ")));
+  EXPECT_THAT(options.ValidateBoard(), ElementsAre(StartsWith("board: " + options.board + ":2: ")));
   options.board = folder.Write("board.yaml", "tags:\n  - {id: 7, size_m: 300}\n");
-  EXPECT_THAT(options.Validate(),
+  EXPECT_THAT(options.ValidateBoard(),
               ElementsAre(StartsWith("board: " + options.board + ": tag36h11")));
 }
 

@@ -9,9 +9,8 @@
 #include <fmt/ranges.h>
 
 #include "kestrel/core/base/edit_distance.h"
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/options.h"
-#include "kestrel/core/base/require_metres.h"
-#include "kestrel/core/base/violations.h"
 #include "kestrel/vision/tags/plain_tags.h"
 #include "kestrel/vision/tags/tag_print.h"
 #include "kestrel/vision/targets/ring_with_tags_detector.h"
@@ -55,15 +54,9 @@ TargetShape ShapeOfRingCross(const KindOptions& options) {
   return ShapeOf(PatternOf(options.target, options.ring.pattern));
 }
 
-// Adds a violation where an id is set for a kind that has none.
-void AddIdOfNone(const TargetOptions& target, std::vector<std::string>* violations) {
-  if (target.id == TargetOptions::kOwnId) return;
-  violations->push_back(fmt::format("id is {}, but a {} has no id", target.id, target.kind));
-}
-std::vector<std::string> ValidateRingCross(const TargetOptions& target) {
-  std::vector<std::string> violations;
-  AddIdOfNone(target, &violations);
-  return violations;
+std::vector<std::string> ValidateNoId(const TargetOptions& target) {
+  if (target.id == TargetOptions::kOwnId) return {};
+  return {fmt::format("id is {}, but a {} has no id", target.id, target.kind)};
 }
 
 TagTargetOptions WithId(TagTargetOptions tag, int id) {
@@ -107,15 +100,14 @@ std::vector<std::string> ValidateTags(const TargetOptions& target) {
   const TagTargetOptions tags = kTagsOf(target);
   std::vector<std::string> violations;
   if (tags.board.empty()) {
-    violations = tags.Validate();
+    violations = tags.ValidateBoard();
   } else {
-    AddViolations(GroupOf(kTagsOf), tags.Validate(), &violations);
+    AddViolations(GroupOf(kTagsOf), tags.ValidateBoard(), &violations);
   }
   if (target.id != TargetOptions::kOwnId && !tags.board.empty()) {
     violations.push_back(fmt::format(
         "id is {}, but the ids of the tags are those of the board '{}'", target.id, tags.board));
   }
-  AddViolations("tags", target.tags.Validate(), &violations);
   return violations;
 }
 template <TagsOf kTagsOf>
@@ -174,16 +166,11 @@ TargetShape ShapeOfHelipad(const KindOptions& options) {
 TargetPrint PrintOfHelipad(const TargetOptions& target, const LandingPattern& /*ring*/) {
   return PrintOf(HelipadOf(target));
 }
-std::vector<std::string> ValidateHelipad(const TargetOptions& target) {
-  std::vector<std::string> violations = target.helipad.Validate();
-  AddIdOfNone(target, &violations);
-  return violations;
-}
 
 // All kinds of pads, a line each.
 constexpr TargetKind kTargetKinds[] = {
-    {"ring-cross", 4, MakeRingCross, ShapeOfRingCross, PrintOfRingCross, ValidateRingCross,
-     NoWarnings, nullptr},
+    {"ring-cross", 4, MakeRingCross, ShapeOfRingCross, PrintOfRingCross, ValidateNoId, NoWarnings,
+     nullptr},
     {"ring-with-tags", 1, MakeRingWithTags, ShapeOfRingWithTags, PrintOfRingWithTags,
      ValidateNested, WarningsOfTags<Nested>, Nested},
     {"apriltag", 1, MakeTags<Apriltag>, ShapeOfTags<Apriltag>, PrintOfTags<Apriltag>,
@@ -192,8 +179,7 @@ constexpr TargetKind kTargetKinds[] = {
      WarningsOfTags<Aruco>, Aruco},
     {"nested", 1, MakeTags<Nested>, ShapeOfTags<Nested>, PrintOfTags<Nested>, ValidateNested,
      WarningsOfTags<Nested>, Nested},
-    {"helipad", 2, MakeHelipad, ShapeOfHelipad, PrintOfHelipad, ValidateHelipad, NoWarnings,
-     nullptr},
+    {"helipad", 2, MakeHelipad, ShapeOfHelipad, PrintOfHelipad, ValidateNoId, NoWarnings, nullptr},
 };
 
 const TargetKind* FindKind(std::string_view name) {
@@ -218,7 +204,7 @@ std::optional<int> HeadingSymmetryOf(std::string_view kind) {
 std::vector<std::string> TargetOptions::Validate() const {
   if (const TargetKind* known = FindKind(kind)) {
     std::vector<std::string> violations = known->validate(*this);
-    if (HasSize(*this)) RequireMetres(size_m, "size_m", &violations);
+    if (HasSize(*this)) Require(size_m, Metres(), "size_m", &violations);
     return violations;
   }
   const std::vector<std::string> names = TargetKinds();

@@ -20,16 +20,15 @@ namespace kestrel {
 
 // A board of tags of any families, as a target.
 struct NestedTargetOptions {
-  std::string board;    // path of its file: ParseTagBoard
-  double size_m = 0.5;  // of a fractal marker
+  std::string board;
+  double size_m = 0.5;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("board", self.board, "",
-            "YAML file of a board of tags of any families and sizes, inside each other or beside "
-            "each other, or ArUco's file of a fractal marker");
-    visitor("size_m", self.size_m, "m",
-            "side of a fractal marker's largest square, unless its file has metres");
+  static void Visit(auto& self, auto&& visit) {
+    visit("board", self.board,
+          "YAML file of a board of tags of any families and sizes, inside each other or beside "
+          "each other, or ArUco's file of a fractal marker");
+    visit("size_m", self.size_m,
+          "side of a fractal marker's largest square, unless its file has metres");
   }
 };
 
@@ -39,34 +38,29 @@ struct TargetOptions {
   static constexpr double kOwnSize = 0;
 
   std::string kind = "ring-cross";
-  int id = kOwnId;  // of the pad, over that of the options of a kind that is one tag
-  // m, of the pad, whose dimensions all are scaled to it: the ring's outer diameter, the side of
-  // the tag or of the largest tag of a board, the outer size of a helipad's frame or the height of
-  // its H.
+  int id = kOwnId;
   double size_m = kOwnSize;
   TagTargetOptions apriltag;
   TagTargetOptions aruco{.family = "aruco_4x4_50", .board = ""};
   NestedTargetOptions nested;
-  TagBoardDetectorOptions tags;  // how any of the three is found
+  TagBoardDetectorOptions tags;
   HelipadDetectorOptions helipad;
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor(
-        "kind", self.kind, "",
-        "what the target is: ring-cross, ring-with-tags (of nested.board, in the ring's frame), "
-        "apriltag, aruco, nested, helipad");
-    visitor("id", self.id, "",
-            "id of the pad where it is one tag (apriltag, aruco); -1: as the kind's options say");
-    visitor("size_m", self.size_m, "m",
-            "size to which all dimensions of the pad are scaled: outer diameter of the ring, side "
-            "of the (largest) tag, size of the helipad's frame, or of its H without one; 0: the "
-            "dimensions are those of the kind's options");
-    visitor.Group("apriltag", self.apriltag);
-    visitor.Group("aruco", self.aruco);
-    visitor.Group("nested", self.nested);
-    visitor.Group("tags", self.tags);
-    visitor.Group("helipad", self.helipad);
+  static void Visit(auto& self, auto&& visit) {
+    visit("kind", self.kind,
+          "what the target is: ring-cross, ring-with-tags (of nested.board, in the ring's frame), "
+          "apriltag, aruco, nested, helipad");
+    visit("id", self.id,
+          "id of the pad where it is one tag (apriltag, aruco); -1: as the kind's options say");
+    visit("size_m", self.size_m,
+          "size to which all dimensions of the pad are scaled: outer diameter of the ring, side "
+          "of the (largest) tag, size of the helipad's frame, or of its H without one; 0: the "
+          "dimensions are those of the kind's options");
+    visit.Group("apriltag", self.apriltag);
+    visit.Group("aruco", self.aruco);
+    visit.Group("nested", self.nested);
+    visit.Group("tags", self.tags);
+    visit.Group("helipad", self.helipad);
   }
   std::vector<std::string> Validate() const;
   // Returns what is allowed but not advisable, a line each (WarningsOfPlainTags). The options must

@@ -53,9 +53,9 @@ TEST_F(MakeTargetDetectorTest, ASizeScalesPadsOfAllKinds) {
                 ShapeOfTarget(target, {}).diameter_m, 1e-12)
         << kind;
     target.size_m = 160;
-    EXPECT_THAT(target.Validate(), ElementsAre("size_m is 160, expected metres: 0.16?"));
+    EXPECT_THAT(ViolationsOf(target), ElementsAre("size_m is 160, expected metres: 0.16?"));
     target.size_m = -1;
-    EXPECT_THAT(target.Validate(), ElementsAre("size_m is -1, expected more than 0"));
+    EXPECT_THAT(ViolationsOf(target), ElementsAre("size_m is -1, expected more than 0"));
   }
 }
 
@@ -80,12 +80,12 @@ TEST_F(MakeTargetDetectorTest, BoardsOfTagsAreKinds) {
   SetOption("kind=aruco", &target);
   EXPECT_NEAR(ShapeOfTarget(target, {}).outlines[0][0].norm(), 0.25 * M_SQRT2, 1e-9);
   SetOption("aruco.id=50", &target);
-  EXPECT_THAT(target.Validate(), ElementsAre("aruco_4x4_50 has no id 50, expected 0 to 49"));
+  EXPECT_THAT(ViolationsOf(target), ElementsAre("aruco_4x4_50 has no id 50, expected 0 to 49"));
   SetOption("kind=nested", &target);
-  EXPECT_THAT(target.Validate(), ElementsAre(HasSubstr("nested.board is empty")));
+  EXPECT_THAT(ViolationsOf(target), ElementsAre(HasSubstr("nested.board is empty")));
   // The options of other kinds do not matter.
   SetOption("kind=ring-cross", &target);
-  EXPECT_TRUE(target.Validate().empty());
+  EXPECT_TRUE(ViolationsOf(target).empty());
 }
 
 TEST(TargetOptions, AnIdThatIsAsPlainAsAWindowIsWarnedOf) {
@@ -100,16 +100,16 @@ TEST(TargetOptions, AnIdThatIsAsPlainAsAWindowIsWarnedOf) {
 TEST(TargetOptions, AnIdIsOfTheKindsThatAreOneTag) {
   TargetOptions target;
   SetOption("id=9", &target);
-  EXPECT_THAT(target.Validate(), ElementsAre("id is 9, but a ring-cross has no id"));
+  EXPECT_THAT(ViolationsOf(target), ElementsAre("id is 9, but a ring-cross has no id"));
   SetOption("kind=helipad", &target);
-  EXPECT_THAT(target.Validate(), ElementsAre("id is 9, but a helipad has no id"));
+  EXPECT_THAT(ViolationsOf(target), ElementsAre("id is 9, but a helipad has no id"));
   SetOption("kind=apriltag", &target);
-  EXPECT_TRUE(target.Validate().empty());
+  EXPECT_TRUE(ViolationsOf(target).empty());
   const TargetShape shape = ShapeOfTarget(target, {});
   ASSERT_EQ(shape.tags.size(), 1u);
   EXPECT_EQ(shape.tags[0].id, 9);
   SetOption("id=587", &target);
-  EXPECT_THAT(target.Validate(), ElementsAre(HasSubstr("tag36h11 has no id 587")));
+  EXPECT_THAT(ViolationsOf(target), ElementsAre(HasSubstr("tag36h11 has no id 587")));
 }
 
 }  // namespace

@@ -12,6 +12,24 @@
 namespace kestrel {
 namespace {
 
+// Sway of the board on the vehicle's springs, see SwayMotion: a body rolls and pitches at 1 to 2
+// Hz.
+constexpr double kSwayFrequency_hz = 1.4;
+constexpr double kSwayDamping = 0.3;
+// Standard deviation of the speed of a new track.
+constexpr double kStartSpeedSigma_mps = 6;
+// Squared Mahalanobis distance beyond which a measurement is not of the target. One true
+// measurement in a thousand exceeds it.
+constexpr double kGate = 16.3;
+// Number of measurements in a row outside of the gate, each within reach of the one before at
+// max_speed_mps, after which the track is considered wrong and a new one begins.
+constexpr int kRestartCount = 5;
+constexpr int kConfirmCount = 5;  // measurements that confirm a track
+// Time without a measurement after which a track is predicted, and standard deviation of the
+// position at which it is lost.
+constexpr double kPredictAfter_s = 0.15;
+constexpr double kLostSigma_m = 3;
+
 constexpr double kMaxCoordinate_m = 1e7;
 constexpr double kMaxVariance_m2 = 1e6;
 
@@ -80,43 +98,12 @@ double TargetEstimate::velocity_sigma_mps() const {
       motion.covariance.block<3, 3>(TurnState::kVelocity, TurnState::kVelocity));
 }
 
-std::vector<std::string> TargetTrackerOptions::Validate() const {
-  std::vector<std::string> violations;
-  const auto require = [&](bool holds, const char* rule) {
-    if (!holds) violations.push_back(rule);
-  };
-  const auto require_positive = [&](double value, const char* rule) {
-    require(value > 0 && value < 1e6, rule);
-  };
-  require_positive(acceleration_noise, "acceleration_noise must be positive");
-  require_positive(climb_noise, "climb_noise must be positive");
-  require(turn_noise >= 0 && turn_noise < 1e3, "turn_noise must be 0 to 1000");
-  require_positive(turn_time_s, "turn_time_s must be positive");
-  require(sway_sigma_m >= 0 && sway_sigma_m < 1, "sway_sigma_m must be 0 to 1");
-  require(sway_frequency_hz > 0 && sway_frequency_hz < 100,
-          "sway_frequency_hz must be positive, below 100");
-  require(sway_damping > 0 && sway_damping < 1, "sway_damping must be between 0 and 1");
-  require_positive(start_speed_sigma_mps, "start_speed_sigma_mps must be positive");
-  require(start_turn_sigma_radps >= 0 && start_turn_sigma_radps < 1e3,
-          "start_turn_sigma_radps must be 0 to 1000");
-  require_positive(gate, "gate must be positive");
-  require(restart_count >= 1, "restart_count must be at least 1");
-  require_positive(max_speed_mps, "max_speed_mps must be positive");
-  require(confirm_count >= 1, "confirm_count must be at least 1");
-  require(predict_after_s >= 0, "predict_after_s must not be negative");
-  require(lost_after_s > predict_after_s && lost_after_s <= 60,
-          "lost_after_s must be longer than predict_after_s, 60 at most");
-  require_positive(lost_sigma_m, "lost_sigma_m must be positive");
-  require(history >= 2 && history <= 10000, "history must be 2 to 10000");
-  return violations;
-}
-
 TurnNoise TargetTrackerOptions::Noise() const {
   return {acceleration_noise,
           climb_noise,
           turn_noise,
           turn_time_s,
-          {sway_sigma_m, sway_frequency_hz, sway_damping}};
+          {sway_sigma_m, kSwayFrequency_hz, kSwayDamping}};
 }
 
 TargetTracker::TargetTracker(const TargetTrackerOptions& options)
@@ -135,14 +122,14 @@ MeasurementFate TargetTracker::Add(const TargetMeasurement& measurement) {
   const TurnState predicted = PredictFrom(entries_[index - 1], measurement.time);
   const double distance =
       SquaredDistance(predicted, measurement.position_in_world, measurement.covariance);
-  if (!(distance <= options_.gate)) return Reject(measurement, MeasurementFate::kFarFromTrack);
+  if (!(distance <= kGate)) return Reject(measurement, MeasurementFate::kFarFromTrack);
   Insert(index, measurement);
   return FilterFrom(index) ? MeasurementFate::kAccepted : Start(measurement);
 }
 
 MeasurementFate TargetTracker::Start(const TargetMeasurement& measurement) {
   constexpr double kSteepest = 0.1;  // slope of roads
-  const double speed = options_.start_speed_sigma_mps;
+  const double speed = kStartSpeedSigma_mps;
   const TurnState state =
       StartState(measurement.position_in_world, measurement.covariance,
                  {speed, speed, kSteepest * speed}, options_.start_turn_sigma_radps, noise_);
@@ -166,12 +153,12 @@ MeasurementFate TargetTracker::Reject(const TargetMeasurement& measurement, Meas
   };
   outliers_ = outlier_ && agree(*outlier_, measurement) ? outliers_ + 1 : 1;
   outlier_ = measurement;
-  return outliers_ >= options_.restart_count ? Start(measurement) : fate;
+  return outliers_ >= kRestartCount ? Start(measurement) : fate;
 }
 
 void TargetTracker::Insert(std::size_t index, const TargetMeasurement& measurement) {
   entries_.insert(entries_.begin() + static_cast<std::ptrdiff_t>(index), {measurement, {}, 0});
-  accepted_ = std::min(accepted_ + 1, options_.confirm_count);
+  accepted_ = std::min(accepted_ + 1, kConfirmCount);
   outlier_.reset();
   outliers_ = 0;
 }
@@ -224,9 +211,9 @@ TrackState TargetTracker::StateAt(Time time) const {
   const std::size_t count = CountUntil(time);
   if (count == 0) return TrackState::kSearching;
   if (!Predict(time)) return TrackState::kLost;
-  if (accepted_ < options_.confirm_count) return TrackState::kSearching;
+  if (accepted_ < kConfirmCount) return TrackState::kSearching;
   const double age_s = ToSeconds(time - entries_[count - 1].measurement.time);
-  return age_s <= options_.predict_after_s ? TrackState::kTracking : TrackState::kPredicting;
+  return age_s <= kPredictAfter_s ? TrackState::kTracking : TrackState::kPredicting;
 }
 
 std::optional<TargetEstimate> TargetTracker::Predict(Time time) const {
@@ -237,7 +224,7 @@ std::optional<TargetEstimate> TargetTracker::Predict(Time time) const {
   TargetEstimate estimate{time, PredictFrom(entry, time), entry.yaw_period};
   estimate.motion.covariance.topLeftCorner<3, 3>() += entry.measurement.shared_covariance;
   const bool is_known =
-      estimate.motion.mean.allFinite() && estimate.position_sigma_m() <= options_.lost_sigma_m;
+      estimate.motion.mean.allFinite() && estimate.position_sigma_m() <= kLostSigma_m;
   return is_known ? std::optional(estimate) : std::nullopt;
 }
 

@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/vision/tracking/turn_motion.h"
 
@@ -67,71 +68,35 @@ struct TargetEstimate {
 };
 
 struct TargetTrackerOptions {
-  // Motion of the target: see TurnNoise. The defaults suit a car at up to 40 km/h on curves.
   double acceleration_noise = 0.1;
   double climb_noise = 0.1;
   double turn_noise = 0.1;
   double turn_time_s = 5;
-  // Sway of the board on the vehicle's springs: see SwayMotion. A body rolls and pitches at 1 to 2
-  // Hz by some tenths of a degree.
   double sway_sigma_m = 0.01;
-  double sway_frequency_hz = 1.4;
-  double sway_damping = 0.3;
-  // Standard deviations of a new track: speed, turn rate and its change per second.
-  double start_speed_sigma_mps = 6;
   double start_turn_sigma_radps = 0.3;
-  // Squared Mahalanobis distance beyond which a measurement is not of the target. One true
-  // measurement in a thousand exceeds 16.3.
-  double gate = 16.3;
-  // Number of measurements in a row outside of the gate, each within reach of the one before at
-  // max_speed_mps, after which the track is considered wrong and a new one begins.
-  int restart_count = 5;
   double max_speed_mps = 15;
-  // Number of measurements that confirm a track; times without a measurement after which it is
-  // predicted, then lost; standard deviation of the position at which it is lost.
-  int confirm_count = 5;
-  double predict_after_s = 0.15;
   double lost_after_s = 3;
-  double lost_sigma_m = 3;
-  // Number of measurements that are remembered, so that late ones can be inserted.
-  int history = 64;
+  int history = 64;  // measurements that are remembered, so that late ones can be inserted
 
-  template <class Self, class Visitor>
-  static void Visit(Self& self, Visitor&& visitor) {
-    visitor("acceleration_noise", self.acceleration_noise, "m/s^2/sqrt(Hz)",
-            "horizontal acceleration that the turn does not explain");
-    visitor("climb_noise", self.climb_noise, "m/s^2/sqrt(Hz)", "vertical acceleration");
-    visitor(
-        "turn_noise", self.turn_noise, "rad/s^3/sqrt(Hz)",
-        "variation of the turn rate's change; 0, together with start_turn_sigma_radps: no turns");
-    visitor("turn_time_s", self.turn_time_s, "s",
-            "time constant with which a change of the turn rate decays");
-    visitor("sway_sigma_m", self.sway_sigma_m, "m",
-            "swaying of the board on the vehicle, standard deviation; 0: none");
-    visitor("sway_frequency_hz", self.sway_frequency_hz, "Hz", "frequency of the swaying");
-    visitor("sway_damping", self.sway_damping, "1",
-            "damping ratio of the swaying, between 0 and 1");
-    visitor("start_speed_sigma_mps", self.start_speed_sigma_mps, "m/s",
-            "speed of a new track, standard deviation");
-    visitor("start_turn_sigma_radps", self.start_turn_sigma_radps, "rad/s",
-            "turn rate of a new track, standard deviation");
-    visitor("gate", self.gate, "1",
-            "largest squared Mahalanobis distance of a measurement of the target");
-    visitor("restart_count", self.restart_count, "1",
-            "number of consecutive measurements outside of the gate that start a new track");
-    visitor("max_speed_mps", self.max_speed_mps, "m/s", "speed of the fastest target");
-    visitor("confirm_count", self.confirm_count, "1",
-            "number of measurements that confirm a track");
-    visitor("predict_after_s", self.predict_after_s, "s",
-            "time without a measurement after which the track is predicting");
-    visitor("lost_after_s", self.lost_after_s, "s",
-            "time without a measurement after which the track is lost");
-    visitor("lost_sigma_m", self.lost_sigma_m, "m",
-            "standard deviation of the position at which the track is lost");
-    visitor("history", self.history, "1",
-            "number of past measurements that are kept, so that late ones can be inserted");
+  static void Visit(auto& self, auto&& visit) {
+    visit("acceleration_noise", self.acceleration_noise, MoreThan(0),
+          "[m/s^2/sqrt(Hz)] horizontal acceleration that the turn does not explain");
+    visit("climb_noise", self.climb_noise, MoreThan(0), "[m/s^2/sqrt(Hz)] vertical acceleration");
+    visit("turn_noise", self.turn_noise, Range{0, 1e3, true, false},
+          "[rad/s^3/sqrt(Hz)] variation of the turn rate's change; 0, together with "
+          "start_turn_sigma_radps: no turns");
+    visit("turn_time_s", self.turn_time_s, MoreThan(0),
+          "time constant with which a change of the turn rate decays");
+    visit("sway_sigma_m", self.sway_sigma_m, Range{0, 1, true, false},
+          "swaying of the board on the vehicle, standard deviation; 0: none");
+    visit("start_turn_sigma_radps", self.start_turn_sigma_radps, Range{0, 1e3, true, false},
+          "turn rate of a new track, standard deviation");
+    visit("max_speed_mps", self.max_speed_mps, MoreThan(0), "speed of the fastest target");
+    visit("lost_after_s", self.lost_after_s, Range{0.2, 60},
+          "time without a measurement after which the track is lost");
+    visit.Gone({"sway_frequency_hz", "sway_damping", "start_speed_sigma_mps", "gate",
+                "restart_count", "confirm_count", "predict_after_s", "lost_sigma_m", "history"});
   }
-  std::vector<std::string> Validate() const;
 
   TurnNoise Noise() const;  // of the motion
 };

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/base/options.h"
 #include "kestrel/core/base/random.h"
 
 namespace kestrel {
@@ -384,10 +385,9 @@ TEST(TargetTracker, NeverReturnsWhatIsNotFinite) {
 
 TEST(TargetTracker, OptionsAreChecked) {
   TargetTrackerOptions options;
-  options.gate = 0;
+  options.max_speed_mps = 0;
   options.lost_after_s = 0.1;
-  options.history = 1;
-  EXPECT_EQ(options.Validate().size(), 3u);
+  EXPECT_EQ(ViolationsOf(options).size(), 2u);
   EXPECT_THROW(TargetTracker{options}, InputError);
 }
 

@@ -11,7 +11,7 @@
 namespace kestrel {
 
 // Returns the options that the page of a recording may change, with their values and the names of
-// `kestrel config`. They are limited to options that cost no memory and little time.
+// `kestrel config`: all but those of the target and those that cost memory.
 ConsoleOptionList ReplayOptions(const LandingPipelineOptions& options);
 ConsoleOptionList ReplayOptions(const HuntPipelineOptions& options);
 

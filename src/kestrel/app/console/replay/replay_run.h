@@ -52,8 +52,8 @@ class EarlierResults : public Vision {
   EarlierResults(const std::string& table, const OpenedSource& opened, const Options& options)
       : result_(table),
         clock_offset_(opened.calibration.clock_offset.value_or(Duration::zero())),
-        poses_(opened.calibration, static_cast<std::size_t>(options.pose_capacity),
-               DurationFromSeconds(options.pose_gap_s), Duration::zero(), {}) {}
+        poses_(opened.calibration, Options::kPoseCapacity, DurationFromSeconds(options.pose_gap_s),
+               Duration::zero(), Duration::zero()) {}
 
   void AddPose(const PoseSample& pose) override { poses_.Add(pose); }
   Duration pose_lead() const override { return clock_offset_; }

@@ -127,7 +127,7 @@ std::optional<bool> ObjectExaminer::IsOnGround(const Eigen::Vector3d& position,
   if (!Ground().is_known()) return std::nullopt;
   const auto on_ground = DistanceOnGround(position, object);
   return on_ground && std::abs(position.norm() - *on_ground) <=
-                          tolerance * *on_ground + detector_.options.ground_tolerance_m;
+                          tolerance * *on_ground + ObjectDetectorOptions::kGroundTolerance_m;
 }
 
 void ObjectExaminer::SetLocation(const Eigen::Vector3d& by_size, const ObjectClass& object,

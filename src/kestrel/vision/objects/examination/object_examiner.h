@@ -67,8 +67,6 @@ class ObjectExaminer {
                    ObjectDetection* detection, ObjectStage* reached);
   std::optional<Ellipse> StartOfDisc(const Segment& segment, const SegmentShape& shape);
   bool FitsDisc(const DiscOutline& outline, double radius_px, bool is_cut_off) const;
-  // Largest root mean square distance of the edge points from the outline of a disc, px.
-  double OutlineTolerance(double radius_px) const;
   bool IsFilledDisc(const Segment& segment, const Ellipse& ellipse) const;
   // 'position': by the disc's size.
   Outcome PlaceDisc(const Cone& cone, const Eigen::Vector3d& position,

@@ -47,6 +47,11 @@ double FilledShare(const Segment& segment, const Ellipse& ellipse, const cv::Siz
   return static_cast<double>(filled) / std::max(1, all);
 }
 
+double OutlineTolerance(double radius_px) {
+  return ObjectDetectorOptions::kOutlineTolerance * radius_px +
+         ObjectDetectorOptions::kOutlineTolerance_px;
+}
+
 }  // namespace
 
 ObjectExaminer::Outcome ObjectExaminer::TestDisc(const Segment& segment, const SegmentShape& shape,
@@ -79,11 +84,10 @@ ObjectExaminer::Outcome ObjectExaminer::TestDisc(const Segment& segment, const S
     position = distance * RayAt(ellipse->center);
   }
   // The uncertainty grows as less of the outline is seen.
-  const ObjectDetectorOptions& options = detector_.options;
   const double seen = 1 - outline->gap - outline->outside;
   const double less = 1 / (seen * seen);
-  SetLocation(position, object, less * options.center_sigma_px,
-              less * options.radius_sigma_px / radius_px, outcome, detection);
+  SetLocation(position, object, less * ObjectDetectorOptions::kCenterSigma_px,
+              less * ObjectDetectorOptions::kRadiusSigma_px / radius_px, outcome, detection);
   return outcome;
 }
 
@@ -100,14 +104,10 @@ std::optional<Ellipse> ObjectExaminer::StartOfDisc(const Segment& segment,
 
 bool ObjectExaminer::FitsDisc(const DiscOutline& outline, double radius_px, bool is_cut_off) const {
   const ObjectDetectorOptions& options = detector_.options;
-  return outline.gap <= (is_cut_off ? options.max_cut_off_gap : options.max_gap) &&
-         outline.outside <= options.max_outside && outline.fit_share >= options.min_outline_share &&
+  return outline.gap <= (is_cut_off ? ObjectDetectorOptions::kMaxCutOffGap : options.max_gap) &&
+         outline.outside <= ObjectDetectorOptions::kMaxOutside &&
+         outline.fit_share >= ObjectDetectorOptions::kMinOutlineShare &&
          outline.residual_px <= OutlineTolerance(radius_px);
-}
-
-double ObjectExaminer::OutlineTolerance(double radius_px) const {
-  const ObjectDetectorOptions& options = detector_.options;
-  return options.outline_tolerance * radius_px + options.outline_tolerance_px;
 }
 
 bool ObjectExaminer::IsFilledDisc(const Segment& segment, const Ellipse& ellipse) const {

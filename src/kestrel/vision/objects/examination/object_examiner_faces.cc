@@ -233,8 +233,8 @@ ObjectExaminer::Outcome ObjectExaminer::LocateFace(const std::array<Eigen::Vecto
              : std::pow(face->skew / kMaxSkew, 2) +
                    std::pow((side_ratio - 1) / (kMaxSideRatio - 1), 2);
   const double radius_px = 0.5 * detector_.focal_px * object.size_m / position.norm();
-  SetLocation(position, object, options.center_sigma_px, options.radius_sigma_px / radius_px,
-              outcome, detection);
+  SetLocation(position, object, ObjectDetectorOptions::kCenterSigma_px,
+              ObjectDetectorOptions::kRadiusSigma_px / radius_px, outcome, detection);
   return outcome;
 }
 
