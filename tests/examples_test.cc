@@ -27,7 +27,7 @@ TEST(ExamplesTest, ConfigurationsAreRead) {
   EXPECT_GE(files.size(), 3u);
   for (const std::string& file : files) {
     const KestrelOptions options = ReadKestrelOptions(file, {});
-    EXPECT_TRUE(options.Validate().empty()) << file;
+    EXPECT_TRUE(ViolationsOf(options).empty()) << file;
     EXPECT_NE(PrintOptions(options), PrintOptions(KestrelOptions())) << file << " changes nothing";
     EXPECT_THAT(ReadFile(file), ::testing::HasSubstr("KESTREL_SOURCE=")) << file;
   }

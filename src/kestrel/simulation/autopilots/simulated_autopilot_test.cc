@@ -11,6 +11,7 @@
 #include "kestrel/comms/mavlink/connection.h"
 #include "kestrel/comms/mavlink/socket_address.h"
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/base/options.h"
 #include "kestrel/simulation/autopilots/test_autopilot.h"
 
 namespace kestrel {
@@ -118,7 +119,7 @@ TEST(SimulatedAutopilotOptionsTest, NamesWhatIsWrong) {
   options.firmware = "inav";
   options.link.loss = 2;
   options.model.pilot.heading_deg = 1000;
-  EXPECT_THAT(options.Validate(),
+  EXPECT_THAT(ViolationsOf(options),
               testing::UnorderedElementsAre("firmware is 'inav', expected ardupilot or px4",
                                             "link.loss is 2, expected 0 to 1",
                                             "pilot.heading_deg is 1000, expected -360 to 360"));

@@ -12,6 +12,7 @@
 #include <opencv2/core.hpp>
 
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/base/options.h"
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/vision/landing/landing_pattern_detector.h"
 
@@ -239,7 +240,7 @@ TEST_F(SimulatedCameraTest, GivesFewerImagesWhenItIsSlow) {
 TEST(SimulatedCameraOptionsTest, NamesAFaultThatIsNone) {
   SimulatedCameraOptions options;
   options.fault.kind = "foggy";
-  EXPECT_THAT(options.Validate(),
+  EXPECT_THAT(ViolationsOf(options),
               testing::ElementsAre("fault.kind is 'foggy', expected none, frozen, black, bright, "
                                    "slow, stopped or beside"));
 }

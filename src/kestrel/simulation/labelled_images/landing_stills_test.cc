@@ -134,7 +134,7 @@ TEST(LandingStillMakerTest, RefusesBadOptionsInWords) {
   options.max_altitude_m = 1;
   options.max_tilt_deg = 85;
   options.pattern.ring_width_m = 0.6;
-  EXPECT_THAT(ErrorOf(options), HasSubstr("max_altitude_m is 1, expected at least min_altitude_m"));
+  EXPECT_THAT(ErrorOf(options), HasSubstr("max_altitude_m is 1, expected 2 or more"));
   EXPECT_THAT(ErrorOf(options), HasSubstr("max_tilt_deg is 85, expected 0 to 80"));
   EXPECT_THAT(ErrorOf(options), HasSubstr("pattern.ring_width_m is 0.6"));
 

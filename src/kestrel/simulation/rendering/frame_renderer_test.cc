@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "kestrel/core/base/options.h"
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/simulation/rendering/flight_camera.h"
 #include "kestrel/simulation/rendering/test_worlds.h"
@@ -187,7 +188,7 @@ TEST(FrameRendererTest, SkyHazeAndDarknessOutsideOfTheLens) {
 
 TEST(FrameRendererTest, RefusesBadOptionsInWords) {
   ShutterOptions options{.exposure_s = 0, .readout_s = -1, .rays_per_pixel = 65};
-  const auto violations = options.Validate();
+  const auto violations = ViolationsOf(options);
   ASSERT_EQ(violations.size(), 3u);
   EXPECT_EQ(violations[1], "readout_s is -1, expected 0 to 1");
 }

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "kestrel/core/base/options.h"
 #include "kestrel/core/geometry/angles.h"
 
 namespace kestrel {
@@ -94,7 +95,7 @@ TEST(VehicleMotionTest, HeavesAndRollsOnWaves) {
 TEST(VehicleMotionTest, RefusesBadOptionsInWords) {
   VehicleMotionOptions vehicle;
   vehicle.path = "spiral";
-  EXPECT_EQ(vehicle.Validate().at(0),
+  EXPECT_EQ(ViolationsOf(vehicle).at(0),
             "path is 'spiral', expected standing, straight, circle, figure8, lanes or stops");
 }
 

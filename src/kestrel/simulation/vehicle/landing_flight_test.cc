@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "kestrel/core/base/options.h"
+
 namespace kestrel {
 namespace {
 
@@ -20,7 +22,7 @@ TEST(LandingFlightTest, ApproachEndsWhereItShould) {
 TEST(LandingFlightTest, RefusesBadOptionsInWords) {
   LandingFlightOptions flight;
   flight.end_altitude_m = -1;
-  EXPECT_EQ(flight.Validate().at(0), "end_altitude_m is -1, expected 0.1 to 100");
+  EXPECT_EQ(ViolationsOf(flight).at(0), "end_altitude_m is -1, expected 0.1 to 100");
 }
 
 }  // namespace

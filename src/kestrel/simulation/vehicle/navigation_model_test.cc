@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "kestrel/core/base/options.h"
 #include "kestrel/simulation/vehicle/flight_time.h"
 
 namespace kestrel {
@@ -87,7 +88,7 @@ TEST(NavigationModelTest, ErrorsAreDrawnWithinTheirRange) {
     ASSERT_LE(offset, 0.3);
   }
   options.clock_offset_max_s = -0.2;
-  EXPECT_EQ(options.Validate().at(0), "clock_offset_max_s is -0.2, expected -0.1 to 10");
+  EXPECT_EQ(ViolationsOf(options).at(0), "clock_offset_max_s is -0.2, expected -0.1 to 10");
 }
 
 }  // namespace
