@@ -1,6 +1,6 @@
 # Accuracy and speed of the landing pattern detector (paper, sections 2.1 to 2.5).
 
-add_executable(kestrel_accuracy accuracy.cc landing_frames.cc landing_score.cc
+add_executable(kestrel_accuracy kestrel_accuracy.cc landing_frames.cc landing_score.cc
                                 landing_variants.cc)
 target_link_libraries(
   kestrel_accuracy PRIVATE kestrel::codec kestrel::landing kestrel::recording kestrel::labelled_images

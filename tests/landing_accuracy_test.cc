@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Limits for the landing detector, on few stills and on the data sets if they are there;
-// bench/accuracy.cc measures it in full.
+// bench/kestrel_accuracy.cc measures it in full.
 #include <string>
 #include <vector>
 
