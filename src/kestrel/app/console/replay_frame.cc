@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <variant>
 
 namespace kestrel {
 
@@ -33,9 +34,24 @@ ReplayFrame ReplayFrameOf(const HuntView& view, const HuntObservation& observati
   return frame;
 }
 
-ReplayFrame BrokenReplayFrame(ReplayFrame nothing, const BrokenFrame& broken) {
-  nothing.facts = {{"image", "unreadable: " + broken.fault}};
-  return nothing;
+ReplayFrame ReplayFrameOf(const TaskView& view, const Observation& observation) {
+  return std::visit(
+      [&]<class View>(const View& one) {
+        return ReplayFrameOf(one, std::get<typename View::Seen>(observation.seen));
+      },
+      view);
+}
+
+ReplayFrame BrokenReplayFrame(const TaskView& view, const BrokenFrame& broken) {
+  ReplayFrame frame = std::visit(
+      [&]<class View>(const View& one) {
+        typename View::Seen nothing;
+        nothing.time = broken.time;
+        return ReplayFrameOf(one, nothing);
+      },
+      view);
+  frame.facts = {{"image", "unreadable: " + broken.fault}};
+  return frame;
 }
 
 std::vector<OverlayShape> ShapesOf(const ReplayResult& first, const ReplayResult* second,

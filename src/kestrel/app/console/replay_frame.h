@@ -7,13 +7,12 @@
 #include <vector>
 
 #include "kestrel/app/console/console_feed.h"
-#include "kestrel/app/console/hunt_view.h"
-#include "kestrel/app/console/landing_view.h"
+#include "kestrel/app/console/task_view.h"
 #include "kestrel/flight/session/observation.h"
 
 namespace kestrel {
 
-// A frame of a recording as the page shows it, for landings and hunts alike.
+// A frame as the page shows it, of any task.
 struct ReplayFrame {
   Time time;
   FrameMark mark = FrameMark::kNothing;
@@ -29,10 +28,11 @@ struct ReplayFrame {
 // found, and kFalse when the track rejects the pattern.
 ReplayFrame ReplayFrameOf(const LandingView& view, const LandingObservation& observation);
 ReplayFrame ReplayFrameOf(const HuntView& view, const HuntObservation& observation);
+// 'observation': of the view's kind.
+ReplayFrame ReplayFrameOf(const TaskView& view, const Observation& observation);
 
-// Returns the frame of an image that cannot be read, which says so; 'nothing' is one in which
-// nothing was found.
-ReplayFrame BrokenReplayFrame(ReplayFrame nothing, const BrokenFrame& broken);
+// Returns the frame of an image that cannot be read, which says so.
+ReplayFrame BrokenReplayFrame(const TaskView& view, const BrokenFrame& broken);
 
 // An object of a hunt's map and the time at which the map gets it.
 struct MapEntry {

@@ -6,8 +6,7 @@
 #include <variant>
 
 #include "kestrel/app/console/channel_feed.h"
-#include "kestrel/app/console/hunt_view.h"
-#include "kestrel/app/console/landing_view.h"
+#include "kestrel/app/console/task_view.h"
 #include "kestrel/flight/session/asynchronous_sink.h"
 
 namespace kestrel {
@@ -18,8 +17,7 @@ namespace kestrel {
 class FlightLive : public ObservationSink {
  public:
   // 'max_image_rate_hz': limit for /camera/image; the other messages are made for each frame.
-  FlightLive(const CameraIntrinsics& camera, const std::variant<LandingView, HuntView>& view,
-             double max_image_rate_hz);
+  FlightLive(const CameraIntrinsics& camera, const TaskView& view, double max_image_rate_hz);
 
   // The channels for a WebServer; valid as long as this.
   ChannelFeed* channels() { return &feed_; }

@@ -6,8 +6,7 @@
 #include <variant>
 
 #include "kestrel/app/console/console_feed.h"
-#include "kestrel/app/console/hunt_view.h"
-#include "kestrel/app/console/landing_view.h"
+#include "kestrel/app/console/task_view.h"
 #include "kestrel/app/foxglove/camera_writer.h"
 #include "kestrel/app/foxglove/foxglove_messages.h"
 #include "kestrel/app/foxglove/foxglove_sink.h"
@@ -37,8 +36,7 @@ namespace kestrel {
 class ObservationWriter {
  public:
   // 'sink' outlives this. 'view': view of a landing or of a hunt.
-  ObservationWriter(FoxgloveSink* sink, const CameraIntrinsics& camera,
-                    std::variant<LandingView, HuntView> view);
+  ObservationWriter(FoxgloveSink* sink, const CameraIntrinsics& camera, TaskView view);
 
   // The observation must be of the view's kind. 'latency': from capture to the result, in flight.
   void Write(const Frame& frame, const LandingObservation& observation,
@@ -55,7 +53,7 @@ class ObservationWriter {
 
   FoxgloveSink* sink_;
   CameraWriter images_;
-  std::variant<LandingView, HuntView> view_;
+  TaskView view_;
   TrackState track_state_ = TrackState::kSearching;
 };
 

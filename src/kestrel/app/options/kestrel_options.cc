@@ -7,9 +7,7 @@
 namespace kestrel {
 
 std::vector<std::string> KestrelOptions::Validate() const {
-  std::vector<std::string> violations;
-  AddViolations("landing", landing.Validate(), &violations);
-  AddViolations("hunt", hunt.Validate(), &violations);
+  std::vector<std::string> violations = TaskOptions::Validate();
   AddViolations("fly", fly.Validate(), &violations);
   AddViolations("console", console.Validate(), &violations);
   AddViolations("team", team.Validate(), &violations);

@@ -8,15 +8,12 @@
 #include "kestrel/app/options/fly_options.h"
 #include "kestrel/comms/team/team_link.h"
 #include "kestrel/flight/ros/dds_options.h"
-#include "kestrel/vision/pipeline/hunt_pipeline.h"
-#include "kestrel/vision/pipeline/landing_pipeline.h"
+#include "kestrel/flight/session/task.h"
 
 namespace kestrel {
 
 // The options of all subcommands, as `kestrel config` prints and --config reads them.
-struct KestrelOptions {
-  LandingPipelineOptions landing;
-  HuntPipelineOptions hunt;
+struct KestrelOptions : TaskOptions {
   FlyOptions fly;
   ConsoleOptions console;
   TeamLinkOptions team;
@@ -24,8 +21,7 @@ struct KestrelOptions {
 
   template <class Self, class Visitor>
   static void Visit(Self& self, Visitor&& visitor) {
-    visitor.Group("landing", self.landing);
-    visitor.Group("hunt", self.hunt);
+    TaskOptions::Visit(self, visitor);
     visitor.Group("fly", self.fly);
     visitor.Group("console", self.console);
     visitor.Group("team", self.team);
