@@ -51,7 +51,7 @@ const doctorChecks = [
 const views = ["threshold 1/8", "threshold 1/4"];
 
 const options = [
-  { name: "landing.detector.min_quality", value: "0.6", unit: "1", meaning: "smallest probability that is accepted" },
+  { name: "landing.detector.min_quality", value: "0.6", unit: "1", meaning: "smallest accepted probability" },
   { name: "landing.still", value: "false", unit: "", meaning: "frames have nothing to do with each other" },
 ];
 

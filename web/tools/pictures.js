@@ -81,7 +81,7 @@ async function reach(state, server) {
 
 async function detectAgain(page) {
   await page.getByLabel("Change").selectOption("landing.detector.min_quality");
-  await page.getByLabel(/smallest probability/).fill("0.9");
+  await page.getByLabel(/smallest accepted probability/).fill("0.9");
   await page.getByRole("button", { name: "Run" }).click();
   await page.getByText("Second run (below)").waitFor();
 }

@@ -63,7 +63,7 @@ async function scrubRecording(t) {
   await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
   await isAt(page, /frame (2|3)\d of/);
   await page.getByRole("button", { name: "+1 frame" }).click();
-  await runAgain(page, "landing.detector.min_quality", /smallest probability/, "0.9");
+  await runAgain(page, "landing.detector.min_quality", /smallest accepted probability/, "0.9");
   await page.waitForTimeout(500);
   await page.evaluate(() => scrollTo(0, 0));
   await t.takePicture(page, "console_replay");
@@ -72,7 +72,7 @@ async function scrubRecording(t) {
 
 async function compareRuns(t) {
   const page = await openReplay(t, [simulateLanding(t)]);
-  await runAgain(page, "landing.detector.min_quality", /smallest probability/, "1");
+  await runAgain(page, "landing.detector.min_quality", /smallest accepted probability/, "1");
   await page.getByRole("slider").focus();
   await page.keyboard.press("Home");
   await page.keyboard.press("d");
