@@ -22,8 +22,7 @@ struct Point2 {  // px, 0 is the corner of the first pixel
   double x = 0;
   double y = 0;
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
+  static void Fields(auto& self, auto& visit) {
     visit(1, "x", self.x);
     visit(2, "y", self.y);
   }
@@ -35,8 +34,7 @@ struct Point3 {  // m
   double y = 0;
   double z = 0;
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
+  static void Fields(auto& self, auto& visit) {
     visit(1, "x", self.x);
     visit(2, "y", self.y);
     visit(3, "z", self.z);
@@ -49,10 +47,7 @@ struct Vector3 {
   double y = 0;
   double z = 0;
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
-    Point3::Fields(self, visit);
-  }
+  static void Fields(auto& self, auto& visit) { Point3::Fields(self, visit); }
 };
 
 struct Quaternion {
@@ -62,8 +57,7 @@ struct Quaternion {
   double z = 0;
   double w = 1;
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
+  static void Fields(auto& self, auto& visit) {
     Point3::Fields(self, visit);
     visit(4, "w", self.w);
   }
@@ -74,8 +68,7 @@ struct Pose {
   Vector3 position;
   Quaternion orientation;
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
+  static void Fields(auto& self, auto& visit) {
     visit(1, "position", self.position);
     visit(2, "orientation", self.orientation);
   }
@@ -88,8 +81,7 @@ struct Color {  // 0 to 1
   double b = 0;
   double a = 1;
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
+  static void Fields(auto& self, auto& visit) {
     visit(1, "r", self.r);
     visit(2, "g", self.g);
     visit(3, "b", self.b);
@@ -104,8 +96,7 @@ struct CompressedImage {
   ProtobufBytes data;
   std::string format;  // "jpeg"
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
+  static void Fields(auto& self, auto& visit) {
     visit(1, "timestamp", self.timestamp);
     visit(2, "data", self.data);
     visit(3, "format", self.format);
@@ -125,8 +116,7 @@ struct CameraCalibration {
   std::array<double, 9> r{};
   std::array<double, 12> p{};
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
+  static void Fields(auto& self, auto& visit) {
     visit(1, "timestamp", self.timestamp);
     visit(2, "width", self.width);
     visit(3, "height", self.height);
@@ -150,8 +140,7 @@ struct PointsAnnotation {
   Color fill_color;
   double thickness = 0;  // px
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
+  static void Fields(auto& self, auto& visit) {
     visit(1, "timestamp", self.timestamp);
     visit(2, "type", self.type);
     visit(3, "points", self.points);
@@ -170,8 +159,7 @@ struct TextAnnotation {
   Color text_color;
   Color background_color;
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
+  static void Fields(auto& self, auto& visit) {
     visit(1, "timestamp", self.timestamp);
     visit(2, "position", self.position);
     visit(3, "text", self.text);
@@ -186,8 +174,7 @@ struct ImageAnnotations {
   std::vector<PointsAnnotation> points;
   std::vector<TextAnnotation> texts;
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
+  static void Fields(auto& self, auto& visit) {
     visit(2, "points", self.points);
     visit(3, "texts", self.texts);
   }
@@ -201,8 +188,7 @@ struct FrameTransform {
   Vector3 translation;
   Quaternion rotation;
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
+  static void Fields(auto& self, auto& visit) {
     visit(1, "timestamp", self.timestamp);
     visit(2, "parent_frame_id", self.parent_frame_id);
     visit(3, "child_frame_id", self.child_frame_id);
@@ -215,10 +201,7 @@ struct FrameTransforms {
   static constexpr std::string_view kType = "foxglove.FrameTransforms";
   std::vector<FrameTransform> transforms;
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
-    visit(1, "transforms", self.transforms);
-  }
+  static void Fields(auto& self, auto& visit) { visit(1, "transforms", self.transforms); }
 };
 
 struct PoseInFrame {
@@ -227,8 +210,7 @@ struct PoseInFrame {
   std::string frame_id;
   Pose pose;
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
+  static void Fields(auto& self, auto& visit) {
     visit(1, "timestamp", self.timestamp);
     visit(2, "frame_id", self.frame_id);
     visit(3, "pose", self.pose);
@@ -241,8 +223,7 @@ struct SpherePrimitive {
   Vector3 size;  // diameters along its axes, m
   Color color;
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
+  static void Fields(auto& self, auto& visit) {
     visit(1, "pose", self.pose);
     visit(2, "size", self.size);
     visit(3, "color", self.color);
@@ -260,8 +241,7 @@ struct LinePrimitive {
   std::vector<Point3> points;
   Color color;
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
+  static void Fields(auto& self, auto& visit) {
     visit(1, "type", self.type);
     visit(2, "pose", self.pose);
     visit(3, "thickness", self.thickness);
@@ -280,8 +260,7 @@ struct TextPrimitive {
   Color color;
   std::string text;
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
+  static void Fields(auto& self, auto& visit) {
     visit(1, "pose", self.pose);
     visit(2, "billboard", self.billboard);
     visit(3, "font_size", self.font_size);
@@ -302,8 +281,7 @@ struct SceneEntity {
   std::vector<LinePrimitive> lines;
   std::vector<TextPrimitive> texts;
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
+  static void Fields(auto& self, auto& visit) {
     visit(1, "timestamp", self.timestamp);
     visit(2, "frame_id", self.frame_id);
     visit(3, "id", self.id);
@@ -318,10 +296,7 @@ struct SceneUpdate {
   static constexpr std::string_view kType = "foxglove.SceneUpdate";
   std::vector<SceneEntity> entities;
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
-    visit(2, "entities", self.entities);
-  }
+  static void Fields(auto& self, auto& visit) { visit(2, "entities", self.entities); }
 };
 
 enum class LogLevel { kUnknown, kDebug, kInfo, kWarning, kError, kFatal };
@@ -333,8 +308,7 @@ struct Log {
   std::string message;
   std::string name;  // name of the sender
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
+  static void Fields(auto& self, auto& visit) {
     visit(1, "timestamp", self.timestamp);
     visit(2, "level", self.level);
     visit(3, "message", self.message);
@@ -354,8 +328,7 @@ struct Detection {
   std::optional<Vector3> position_in_world;
   std::vector<double> covariance_in_world;
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
+  static void Fields(auto& self, auto& visit) {
     visit(1, "name", self.name);
     visit(2, "probability", self.probability);
     visit(3, "center", self.center);
@@ -375,8 +348,7 @@ struct Target {
   double turn_rate = 0;            // rad/s
   std::vector<double> covariance;  // of position and velocity: 6 x 6, row by row
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
+  static void Fields(auto& self, auto& visit) {
     visit(1, "position", self.position);
     visit(2, "velocity", self.velocity);
     visit(3, "heading", self.heading);
@@ -397,8 +369,7 @@ struct FrameResult {
   std::vector<Detection> detections;
   std::optional<Target> target;
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
+  static void Fields(auto& self, auto& visit) {
     visit(1, "timestamp", self.timestamp);
     visit(2, "frame", self.frame);
     visit(3, "detect_ms", self.detect_ms);

@@ -32,8 +32,7 @@ std::string FileOf(std::string_view type) {
 
 }  // namespace
 
-template <class Self, class Visitor>
-void ProtobufSchema::Field::Fields(Self& self, Visitor& visit) {
+void ProtobufSchema::Field::Fields(auto& self, auto& visit) {
   visit(1, "name", self.name);
   visit(3, "number", self.number);
   visit(4, "label", self.label);
@@ -46,8 +45,7 @@ struct ProtobufSchema::EnumValue {
   std::string name;
   int number = 0;
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
+  static void Fields(auto& self, auto& visit) {
     visit(1, "name", self.name);
     visit(2, "number", self.number);
   }
@@ -58,8 +56,7 @@ struct ProtobufSchema::EnumDescription {
   std::string name;
   std::vector<EnumValue> values;
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
+  static void Fields(auto& self, auto& visit) {
     visit(1, "name", self.name);
     visit(2, "value", self.values);
   }
@@ -71,8 +68,7 @@ struct ProtobufSchema::MessageDescription {
   std::vector<Field> fields;
   std::vector<EnumDescription> enums;
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
+  static void Fields(auto& self, auto& visit) {
     visit(1, "name", self.name);
     visit(2, "field", self.fields);
     visit(4, "enum_type", self.enums);
@@ -87,8 +83,7 @@ struct ProtobufSchema::FileDescription {
   MessageDescription message;
   std::string syntax;
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
+  static void Fields(auto& self, auto& visit) {
     visit(1, "name", self.name);
     visit(2, "package", self.package);
     visit(3, "dependency", self.needed_files);
@@ -101,10 +96,7 @@ struct ProtobufSchema::FileSet {
   static constexpr std::string_view kType = "google.protobuf.FileDescriptorSet";
   std::vector<ProtobufBytes> files;
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
-    visit(1, "file", self.files);
-  }
+  static void Fields(auto& self, auto& visit) { visit(1, "file", self.files); }
 };
 
 void ProtobufSchema::Description::Take(int number, const char* name, FieldType type) {

@@ -63,8 +63,7 @@ class ProtobufSchema {
     FieldType type = FieldType::kDouble;
     std::string type_name;  // ".package.Name", for messages and enumerations
 
-    template <class Self, class Visitor>
-    static void Fields(Self& self, Visitor& visit);
+    static void Fields(auto& self, auto& visit);
     static constexpr std::string_view kType = "google.protobuf.FieldDescriptorProto";
   };
   struct EnumValue;

@@ -19,7 +19,7 @@ namespace kestrel {
 // lists its fields once, with their numbers, by
 //
 //   static constexpr std::string_view kType = "package.Name";
-//   template <class Self, class Visitor> static void Fields(Self& self, Visitor& visit) {
+//   static void Fields(auto& self, auto& visit) {
 //     visit(1, "x", self.x);
 //   }
 //
@@ -37,8 +37,7 @@ struct TimestampMessage {
   std::int64_t seconds = 0;
   int nanos = 0;  // 0 to 999,999,999
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
+  static void Fields(auto& self, auto& visit) {
     visit(1, "seconds", self.seconds);
     visit(2, "nanos", self.nanos);
   }
@@ -48,8 +47,7 @@ struct DurationMessage {
   std::int64_t seconds = 0;
   int nanos = 0;
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
+  static void Fields(auto& self, auto& visit) {
     visit(1, "seconds", self.seconds);
     visit(2, "nanos", self.nanos);
   }

@@ -23,10 +23,7 @@ struct Inner {
   static constexpr std::string_view kType = "test.Inner";
   int a = 0;
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
-    visit(1, "a", self.a);
-  }
+  static void Fields(auto& self, auto& visit) { visit(1, "a", self.a); }
 };
 
 struct Outer {
@@ -39,8 +36,7 @@ struct Outer {
   std::array<double, 2> pair{};
   std::uint32_t fixed = 0;
 
-  template <class Self, class Visitor>
-  static void Fields(Self& self, Visitor& visit) {
+  static void Fields(auto& self, auto& visit) {
     visit(1, "time", self.time);
     visit(2, "kind", self.kind);
     visit(3, "text", self.text);

@@ -17,7 +17,7 @@ namespace kestrel {
 // lists its fields once, in the order of their serialization, by
 //
 //   static constexpr std::string_view kType = "package/Name";
-//   template <class Self, class Wire> static void Fields(Self& self, Wire& wire) {
+//   static void Fields(auto& self, auto& wire) {
 //     wire("x", self.x);
 //   }
 //
@@ -52,8 +52,7 @@ struct TimeMessage {
   std::int32_t sec = 0;
   std::uint32_t nanosec = 0;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("sec", self.sec);
     wire("nanosec", self.nanosec);
   }
@@ -65,8 +64,7 @@ struct HeaderMessage {
   Time stamp;
   std::string frame_id;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire.OfRos1("seq", self.sequence);
     wire("stamp", self.stamp);
     wire("frame_id", self.frame_id);
@@ -83,8 +81,7 @@ struct ImageMessage {
   std::uint32_t step = 0;  // bytes per row
   std::string_view data;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("header", self.header);
     wire("height", self.height);
     wire("width", self.width);
@@ -101,8 +98,7 @@ struct CompressedImageMessage {
   std::string format;  // "jpeg", "bgr8; jpeg compressed bgr8", ...
   std::string_view data;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("header", self.header);
     wire("format", self.format);
     wire("data", self.data);
@@ -117,8 +113,7 @@ struct RegionOfInterestMessage {
   std::uint32_t width = 0;
   bool do_rectify = false;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("x_offset", self.x_offset);
     wire("y_offset", self.y_offset);
     wire("height", self.height);
@@ -141,8 +136,7 @@ struct CameraInfoMessage {
   std::uint32_t binning_y = 0;
   RegionOfInterestMessage roi;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("header", self.header);
     wire("height", self.height);
     wire("width", self.width);
@@ -163,8 +157,7 @@ struct PointMessage {
   double y = 0;
   double z = 0;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("x", self.x);
     wire("y", self.y);
     wire("z", self.z);
@@ -177,10 +170,7 @@ struct Vector3Message {
   double y = 0;
   double z = 0;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
-    PointMessage::Fields(self, wire);
-  }
+  static void Fields(auto& self, auto& wire) { PointMessage::Fields(self, wire); }
 };
 
 struct QuaternionMessage {
@@ -190,8 +180,7 @@ struct QuaternionMessage {
   double z = 0;
   double w = 1;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("x", self.x);
     wire("y", self.y);
     wire("z", self.z);
@@ -204,8 +193,7 @@ struct PoseMessage {
   PointMessage position;
   QuaternionMessage orientation;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("position", self.position);
     wire("orientation", self.orientation);
   }
@@ -216,8 +204,7 @@ struct TransformMessage {
   Vector3Message translation;
   QuaternionMessage rotation;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("translation", self.translation);
     wire("rotation", self.rotation);
   }
@@ -228,8 +215,7 @@ struct TwistMessage {
   Vector3Message linear;   // m/s
   Vector3Message angular;  // rad/s
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("linear", self.linear);
     wire("angular", self.angular);
   }
@@ -240,8 +226,7 @@ struct PoseWithCovarianceMessage {
   PoseMessage pose;
   std::array<double, 36> covariance{};  // x, y, z, rotations about x, y, z; row by row
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("pose", self.pose);
     wire("covariance", self.covariance);
   }
@@ -252,8 +237,7 @@ struct TwistWithCovarianceMessage {
   TwistMessage twist;
   std::array<double, 36> covariance{};
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("twist", self.twist);
     wire("covariance", self.covariance);
   }
@@ -264,8 +248,7 @@ struct PoseStampedMessage {
   HeaderMessage header;
   PoseMessage pose;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("header", self.header);
     wire("pose", self.pose);
   }
@@ -276,8 +259,7 @@ struct PoseWithCovarianceStampedMessage {
   HeaderMessage header;
   PoseWithCovarianceMessage pose;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("header", self.header);
     wire("pose", self.pose);
   }
@@ -289,8 +271,7 @@ struct TransformStampedMessage {
   std::string child_frame_id;
   TransformMessage transform;  // pose of the child in the header's frame
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("header", self.header);
     wire("child_frame_id", self.child_frame_id);
     wire("transform", self.transform);
@@ -301,10 +282,7 @@ struct TfMessage {
   static constexpr std::string_view kType = "tf2_msgs/TFMessage";
   std::vector<TransformStampedMessage> transforms;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
-    wire("transforms", self.transforms);
-  }
+  static void Fields(auto& self, auto& wire) { wire("transforms", self.transforms); }
 };
 
 struct OdometryMessage {
@@ -314,8 +292,7 @@ struct OdometryMessage {
   PoseWithCovarianceMessage pose;
   TwistWithCovarianceMessage twist;  // in the child's frame
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("header", self.header);
     wire("child_frame_id", self.child_frame_id);
     wire("pose", self.pose);

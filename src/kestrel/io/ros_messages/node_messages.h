@@ -22,10 +22,7 @@ struct GidMessage {
       kSize == kGidSize ? "rmw_dds_common/Gid" : "rmw_dds_common_humble/Gid";
   std::array<char, kSize> data{};
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
-    wire("data", self.data);
-  }
+  static void Fields(auto& self, auto& wire) { wire("data", self.data); }
 };
 
 template <std::size_t kSize>
@@ -38,8 +35,7 @@ struct NodeEntitiesMessage {
   std::vector<GidMessage<kSize>> readers;
   std::vector<GidMessage<kSize>> writers;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("node_namespace", self.name_space);
     wire("node_name", self.name);
     wire("reader_gid_seq", self.readers);
@@ -55,8 +51,7 @@ struct ParticipantEntitiesMessage {
   GidMessage<kSize> participant;
   std::vector<NodeEntitiesMessage<kSize>> nodes;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("gid", self.participant);
     wire("node_entities_info_seq", self.nodes);
   }

@@ -17,8 +17,7 @@ struct PathMessage {
   HeaderMessage header;
   std::vector<PoseStampedMessage> poses;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("header", self.header);
     wire("poses", self.poses);
   }
@@ -31,8 +30,7 @@ struct ColorMessage {  // 0 to 1
   float b = 0;
   float a = 1;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("r", self.r);
     wire("g", self.g);
     wire("b", self.b);
@@ -45,10 +43,7 @@ struct RosDurationMessage {
   std::int32_t sec = 0;
   std::uint32_t nanosec = 0;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
-    TimeMessage::Fields(self, wire);
-  }
+  static void Fields(auto& self, auto& wire) { TimeMessage::Fields(self, wire); }
 };
 
 struct UvCoordinateMessage {
@@ -56,8 +51,7 @@ struct UvCoordinateMessage {
   float u = 0;
   float v = 0;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("u", self.u);
     wire("v", self.v);
   }
@@ -68,8 +62,7 @@ struct MeshFileMessage {
   std::string filename;
   std::string_view data;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("filename", self.filename);
     wire("data", self.data);
   }
@@ -105,8 +98,7 @@ struct MarkerMessage {
   MeshFileMessage mesh_file;
   bool mesh_use_embedded_materials = false;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("header", self.header);
     wire("ns", self.name_space);
     wire("id", self.id);
@@ -133,10 +125,7 @@ struct MarkerArrayMessage {
   static constexpr std::string_view kType = "visualization_msgs/MarkerArray";
   std::vector<MarkerMessage> markers;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
-    wire("markers", self.markers);
-  }
+  static void Fields(auto& self, auto& wire) { wire("markers", self.markers); }
 };
 
 struct KeyValueMessage {
@@ -144,8 +133,7 @@ struct KeyValueMessage {
   std::string key;
   std::string value;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("key", self.key);
     wire("value", self.value);
   }
@@ -163,8 +151,7 @@ struct DiagnosticStatusMessage {
   std::string hardware_id;
   std::vector<KeyValueMessage> values;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("level", self.level);
     wire("name", self.name);
     wire("message", self.message);
@@ -178,8 +165,7 @@ struct DiagnosticArrayMessage {
   HeaderMessage header;
   std::vector<DiagnosticStatusMessage> status;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("header", self.header);
     wire("status", self.status);
   }
@@ -190,8 +176,7 @@ struct ObjectHypothesisMessage {
   std::string class_id;  // name of the class
   double score = 0;      // 0 to 1
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("class_id", self.class_id);
     wire("score", self.score);
   }
@@ -202,8 +187,7 @@ struct ObjectHypothesisWithPoseMessage {
   ObjectHypothesisMessage hypothesis;
   PoseWithCovarianceMessage pose;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("hypothesis", self.hypothesis);
     wire("pose", self.pose);
   }
@@ -214,8 +198,7 @@ struct BoundingBox3DMessage {
   PoseMessage center;
   Vector3Message size;  // m
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("center", self.center);
     wire("size", self.size);
   }
@@ -228,8 +211,7 @@ struct Detection3DMessage {
   BoundingBox3DMessage box;
   std::string id;  // the same from frame to frame
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("header", self.header);
     wire("results", self.results);
     wire("bbox", self.box);
@@ -242,8 +224,7 @@ struct Detection3DArrayMessage {
   HeaderMessage header;
   std::vector<Detection3DMessage> detections;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("header", self.header);
     wire("detections", self.detections);
   }

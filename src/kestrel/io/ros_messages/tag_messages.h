@@ -18,8 +18,7 @@ struct ImagePointMessage {  // px
   double x = 0;
   double y = 0;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("x", self.x);
     wire("y", self.y);
   }
@@ -36,8 +35,7 @@ struct TagMessage {
   std::array<ImagePointMessage, 4> corners;  // from the lower left, anticlockwise
   std::array<double, 9> homography{};        // from -1 to 1, y down, to the image; row by row
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("family", self.family);
     wire("id", self.id);
     wire("hamming", self.hamming);
@@ -54,8 +52,7 @@ struct TagArrayMessage {
   HeaderMessage header;
   std::vector<TagMessage> detections;
 
-  template <class Self, class Wire>
-  static void Fields(Self& self, Wire& wire) {
+  static void Fields(auto& self, auto& wire) {
     wire("header", self.header);
     wire("detections", self.detections);
   }
