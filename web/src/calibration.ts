@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the server says of a calibration, as src/kestrel/app/console/messages/calibration_json.cc writes it, and
-// what the page makes of it.
+// The state of a calibration that the server sends, as src/kestrel/app/console/messages/calibration_json.cc
+// writes it, and its presentation in the page.
 
 /** A quantity before and after; null where it is not known, a sigma of 0 where it was held. */
 export interface CalibrationNumber {

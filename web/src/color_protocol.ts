@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the server says of colours and is asked for, as src/kestrel/app/console/messages/color_json.h and
-// color_request.h have it.
+// The state of the colours that the server sends, and the requests for it, as
+// src/kestrel/app/console/messages/color_json.h and color_request.h define them.
 
 /** A Gaussian of a colour's mixture; hue in degrees, saturation 0 to 1. */
 export interface ColorComponent {

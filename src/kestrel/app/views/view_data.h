@@ -13,7 +13,7 @@
 
 namespace kestrel {
 
-// What a viewer shows of an observation, whatever the task.
+// The data that viewers show of an observation, the same for all tasks.
 
 // Kinds of shapes over the image; a viewer switches each kind on and off. kTruth: the known truth.
 // kSecond: all that a second run found.

@@ -34,7 +34,7 @@ class ViewerHub::Viewer final : public WebConversation {
   ViewerFlow flow_;
 };
 
-// By the session id a returning viewer knows whether this is the same run of the program.
+// The time of the start is the session id: a viewer that returns recognizes a new run by it.
 ViewerHub::ViewerHub(ChannelFeed* feed, const std::string& name, int capacity)
     : feed_(feed),
       server_info_(ServerInfoJson(name, std::to_string(ToNanoseconds(Now())))),

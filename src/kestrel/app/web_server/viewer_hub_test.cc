@@ -125,7 +125,7 @@ TEST_F(ViewerHubTest, AskingForMoreThanToLookIsAnswered) {
   EXPECT_EQ(Json::parse(*viewer.Read())["op"], "status");
 }
 
-TEST_F(ViewerHubTest, WhatIsNotOfTheProtocolEndsTheConnection) {
+TEST_F(ViewerHubTest, ClosesConnectionAfterInvalidMessage) {
   Serve(AnyPort());
   for (const std::string& text :
        {std::string("{}"), std::string("garbage"), std::string(20000, ' '),
@@ -144,7 +144,7 @@ TEST_F(ViewerHubTest, WhatIsNotOfTheProtocolEndsTheConnection) {
   EXPECT_GE(server_->counters().refused, 5u);
 }
 
-TEST_F(ViewerHubTest, NothingToSubscribeToIsSaid) {
+TEST_F(ViewerHubTest, RefusesViewersWithoutChannels) {
   server_.emplace(ServeConsole(AnyPort(), &feed_, {}));
   EXPECT_FALSE(LetsIn(""));
 }

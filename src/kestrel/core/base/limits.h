@@ -29,7 +29,7 @@ struct OneOf {
   std::vector<std::string_view> words;
 };
 
-// What a value may be. NaN and infinity are beyond all limits.
+// The values that a field may have. NaN and infinity are beyond all limits.
 using Limits = std::variant<std::monostate, Range, Metres, OneOf>;
 
 // Returns the limits in words: "0.5 to 30", "more than 0", "png or jpg"; empty where there are

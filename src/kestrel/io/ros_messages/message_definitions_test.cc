@@ -12,7 +12,7 @@
 namespace kestrel {
 namespace {
 
-// What `rosmsg md5` prints in ROS 1 Noetic.
+// The checksums are those that `rosmsg md5` prints in ROS 1 Noetic.
 TEST(MessageChecksum, IsThatOfRos1) {
   const std::pair<std::string_view, std::string_view> known[] = {
       {"sensor_msgs/Image", "060021388200f6f0f447d0fcd9c64743"},
