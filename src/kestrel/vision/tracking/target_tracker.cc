@@ -183,7 +183,7 @@ bool TargetTracker::FilterFrom(std::size_t index) {
 }
 
 void TargetTracker::UpdateYaw(Entry* entry) {
-  constexpr double kGate = 16;  // four standard deviations; beyond, the yaw was mistaken
+  constexpr double kYawGate = 16;  // four standard deviations; beyond, the yaw was mistaken
   const TargetMeasurement& measurement = entry->measurement;
   if (!measurement.yaw) return;
   // A pad that looks the same less often says which of the turns so far was the right one.
@@ -193,7 +193,7 @@ void TargetTracker::UpdateYaw(Entry* entry) {
   }
   entry->yaw_period = std::max(entry->yaw_period, measurement.yaw_period);
   entry->filtered = UpdateByYaw(entry->filtered, *measurement.yaw, measurement.yaw_variance,
-                                measurement.yaw_period, kGate);
+                                measurement.yaw_period, kYawGate);
 }
 
 std::size_t TargetTracker::CountUntil(Time time) const {
