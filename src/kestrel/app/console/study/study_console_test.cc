@@ -51,7 +51,7 @@ class StudyConsoleTest : public testing::Test {
   std::thread thread_;
 };
 
-TEST_F(StudyConsoleTest, SendsTheTableWithTheWorstFirst) {
+TEST_F(StudyConsoleTest, SendsTableWithWorstFirst) {
   TestSocket socket(port());
   const nlohmann::json study = socket.Await("study");
   EXPECT_EQ(study["variants"], (nlohmann::json{"usual", "strict"}));
@@ -67,7 +67,7 @@ TEST_F(StudyConsoleTest, SendsTheTableWithTheWorstFirst) {
   EXPECT_EQ(rows[2]["recording"], "calm");
 }
 
-TEST_F(StudyConsoleTest, ComparesTheOtherWayRound) {
+TEST_F(StudyConsoleTest, ComparesInReverse) {
   TestSocket socket(port());
   ASSERT_EQ(socket.Await("study")["before"], 0);
   socket.Send(R"({"command": "compare", "settings": ["9", "0"]})");  // there is no such variant
@@ -78,7 +78,7 @@ TEST_F(StudyConsoleTest, ComparesTheOtherWayRound) {
   EXPECT_EQ(study["rows"][0]["recording"], "calm");
 }
 
-TEST_F(StudyConsoleTest, SaysWhyARecordingCannotBeOpened) {
+TEST_F(StudyConsoleTest, ReportsWhyRecordingCannotBeOpened) {
   TestSocket socket(port());
   socket.Await("study");
   socket.Send(R"({"command": "open", "value": 99})");  // there is no such row
@@ -93,7 +93,7 @@ TEST_F(StudyConsoleTest, SaysWhyARecordingCannotBeOpened) {
   EXPECT_EQ(browser.Send(browser.Get("/export/frame-1.png")).result_int(), 404u);
 }
 
-TEST_F(StudyConsoleTest, SaysWhenTheResultsAreGone) {
+TEST_F(StudyConsoleTest, ReportsMissingResults) {
   TestSocket socket(port());
   socket.Await("study");
   study_.Run("DROP TABLE bin");
