@@ -46,7 +46,7 @@ Reading Read(const std::string& log) {
   return reading;
 }
 
-TEST(TelemetryLogTest, GivesPacketsWithTheirTimes) {
+TEST(TelemetryLogTest, ReadsPacketsWithTimes) {
   const Reading reading = Read(ThreeHeartbeats());
   EXPECT_THAT(reading.modes, ElementsAre(0, 1, 2));
   EXPECT_THAT(reading.times_us,
@@ -55,7 +55,7 @@ TEST(TelemetryLogTest, GivesPacketsWithTheirTimes) {
   EXPECT_THAT(Read("").modes, IsEmpty());
 }
 
-TEST(TelemetryLogTest, GivesWhatIsBeforeACut) {
+TEST(TelemetryLogTest, ReadsPacketsBeforeTruncation) {
   const std::string log = ThreeHeartbeats();
   const std::size_t record = log.size() / 3;
   for (std::size_t missing = 1; missing < record; ++missing) {
@@ -65,7 +65,7 @@ TEST(TelemetryLogTest, GivesWhatIsBeforeACut) {
   }
 }
 
-TEST(TelemetryLogTest, GoesOnAfterDamage) {
+TEST(TelemetryLogTest, ContinuesAfterDamage) {
   const std::string whole = ThreeHeartbeats();
   const std::size_t record = whole.size() / 3;
   constexpr std::size_t kTimeSize = 8;
