@@ -352,7 +352,7 @@ const BrokenBag kBrokenBags[] = {
      "'compression_format' is 'a?b', expected zstd"},
 };
 
-TEST(BrokenBags, AreSaidInOneLine) {
+TEST(BrokenBags, AreReportedInOneLine) {
   for (const BrokenBag& broken : kBrokenBags) {
     const TestFolder folder;
     const std::string path = broken.make(folder);

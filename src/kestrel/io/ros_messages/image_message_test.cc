@@ -29,7 +29,7 @@ struct Coloured {
 
 class EveryEncoding : public ::testing::TestWithParam<Coloured> {};
 
-TEST_P(EveryEncoding, GivesTheColour) {
+TEST_P(EveryEncoding, GivesColour) {
   const auto& [encoding, channels, bytes, tolerance] = GetParam();
   cv::Mat pixels(6, 8 * channels, CV_8UC1);
   const int period = 2 * channels;
@@ -63,7 +63,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Coloured{"yuv422_yuy2", 2, {71, 195, 71, 100}, 4}),
     [](const auto& coloured) { return coloured.param.encoding; });
 
-TEST(DecodeImage, TakesRowsThatAreFilledUp) {
+TEST(DecodeImage, AcceptsPaddedRows) {
   const cv::Mat wide(4, 16, CV_8UC1, cv::Scalar(9));
   ImageMessage message = BagImageMessage(wide, Time());
   message.width = 10;
@@ -72,7 +72,7 @@ TEST(DecodeImage, TakesRowsThatAreFilledUp) {
   EXPECT_EQ(cv::countNonZero(image != 9), 0);
 }
 
-TEST(DecodeImage, SaysWhatIsWrong) {
+TEST(DecodeImage, ReportsFaultyMessages) {
   const cv::Mat image(4, 16, CV_8UC1, cv::Scalar(9));
   const ImageMessage good = BagImageMessage(image, Time());
   const auto error_of = [](const ImageMessage& message) {
