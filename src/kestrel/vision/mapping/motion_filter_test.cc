@@ -93,7 +93,7 @@ int FirstSaid(const std::vector<MappedObject>& said) {
   return first == said.end() ? 0 : 1 + static_cast<int>(first - said.begin());
 }
 
-TEST(MotionFilter, WhatStandsNeverMoves) {
+TEST(MotionFilter, StandingObjectNeverMoves) {
   for (int seed = 1; seed <= kSeeds; ++seed) {
     Random random(seed);
     const auto said = Watch(Stand, {.error = Drift(&random)}, 2000, &random);
@@ -103,7 +103,7 @@ TEST(MotionFilter, WhatStandsNeverMoves) {
   }
 }
 
-TEST(MotionFilter, AWrongClockDoesNotMoveWhatStands) {
+TEST(MotionFilter, WrongClockDoesNotMoveStandingObject) {
   for (int seed = 1; seed <= kSeeds; ++seed) {
     Random random(seed);
     const Path drift = Drift(&random);
@@ -114,7 +114,7 @@ TEST(MotionFilter, AWrongClockDoesNotMoveWhatStands) {
   }
 }
 
-TEST(MotionFilter, OneWrongDetectionDoesNotMoveWhatStands) {
+TEST(MotionFilter, SingleOutlierDoesNotMoveStandingObject) {
   Random random(1);
   const Path jump = [](double time_s) {
     return Vector3d(std::abs(time_s - 5) < 0.01 ? 0.5 : 0, 0, 0);
@@ -122,7 +122,7 @@ TEST(MotionFilter, OneWrongDetectionDoesNotMoveWhatStands) {
   EXPECT_EQ(FirstSaid(Watch(Stand, {.error = jump}, 100, &random)), 0);
 }
 
-TEST(MotionFilter, WhatMovesIsSaidToMoveWithItsVelocity) {
+TEST(MotionFilter, DetectsMovingObjectAndItsVelocity) {
   struct Case {
     double speed_mps;
     int sightings;  // latest sighting at which it must be reported as moving
@@ -140,7 +140,7 @@ TEST(MotionFilter, WhatMovesIsSaidToMoveWithItsVelocity) {
   }
 }
 
-TEST(MotionFilter, VelocityIsKnownAfterTenSightings) {
+TEST(MotionFilter, EstimatesVelocityAfterTenSightings) {
   for (const double speed_mps : {0.6, 1.4, 2.0}) {
     double squares = 0;
     for (int seed = 1; seed <= kSeeds; ++seed) {
@@ -153,7 +153,7 @@ TEST(MotionFilter, VelocityIsKnownAfterTenSightings) {
   }
 }
 
-TEST(MotionFilter, WhatStopsStandsWhereItStopped) {
+TEST(MotionFilter, StoppedObjectStandsWhereItStopped) {
   constexpr double kStop_s = 20;
   for (int seed = 1; seed <= kSeeds; ++seed) {
     Random random(seed);
@@ -166,7 +166,7 @@ TEST(MotionFilter, WhatStopsStandsWhereItStopped) {
   }
 }
 
-TEST(MotionFilter, WhatBeginsToDriveIsSaidToMove) {
+TEST(MotionFilter, DetectsObjectThatStartsMoving) {
   constexpr int kStands = 1000;
   for (int seed = 1; seed <= kSeeds; ++seed) {
     Random random(seed);
