@@ -15,7 +15,7 @@ namespace kestrel {
 // Errors of a row of the track in the world's frame, estimate minus truth.
 struct TrackErrors {
   Time time;
-  double altitude_m = 0;  // of the camera above the pattern, at the last image before
+  double altitude_m = 0;  // height of the camera above the pattern in the last image before 'time'
   Eigen::Vector3d position;
   Eigen::Vector3d velocity;
   double position_nees = 0;  // with the one standard deviation that holds for all axes

@@ -71,7 +71,7 @@ class CameraConsole {
   LensPage lens_;
   LiveSource* source_;  // null: to be opened
   Time next_attempt_{};
-  std::string fault_;   // of the camera; empty: none
+  std::string fault_;   // fault of the camera; empty: none
   ViewStatus told_;     // the last status that the page got
   ConsoleFrame frame_;  // the newest
   Time measured_{}, aged_{};

@@ -17,9 +17,9 @@ struct ConsoleLens {
   struct Estimate {
     double focal_px = 0;
     double focal_sigma_px = 0;  // standard deviation
-    double rms_px = 0;          // of the residuals
+    double rms_px = 0;          // root mean square of the residuals
     std::size_t views = 0;      // that it is made of
-    std::string model;          // of the distortion
+    std::string model;          // distortion model
     std::vector<std::string> warnings;
   };
 
