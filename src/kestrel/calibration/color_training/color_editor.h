@@ -45,7 +45,7 @@ class ColorEditor {
   // For a colour of the model; throw InputError when it has none with this name.
   ColorScores Scores(const std::string& color) const;
   std::vector<std::string> Warnings(const std::string& color) const;
-  HueSaturationHistogram Histogram(const std::string& color) const;  // of its marked pixels
+  HueSaturationHistogram Histogram(const std::string& color) const;  // its marked pixels
 
   // Inputs of ScoreColor besides model and grid, for callers that score in a thread of their own.
   std::vector<FrameMarks> MarksFor(const std::string& color) const { return pixels_.Of(color); }

@@ -216,7 +216,7 @@ bool IsAmong(const Found& object, const std::vector<Found>& others) {
 
 struct Agreement {
   int built_in = 0;  // objects that the built-in model finds
-  int both = 0;      // of them, also found by the taught model
+  int both = 0;      // those among them that the taught model finds, too
   int more = 0;      // found by the taught model only
 };
 

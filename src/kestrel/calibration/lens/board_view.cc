@@ -18,7 +18,7 @@ namespace kestrel {
 namespace {
 
 constexpr std::size_t kLeastCorners = 8;
-constexpr double kLeastSpread = 0.03;  // of the corners in the image, of its width
+constexpr double kLeastSpread = 0.03;  // spread of the corners in the image, share of its width
 
 struct BoardCorner {
   Eigen::Vector2d on_board;
@@ -160,14 +160,14 @@ std::vector<cv::Point2f> FindSquareCorners(const cv::Mat& image, const cv::Size&
   cv::Mat small = image;
   if (scale > 1) cv::resize(image, small, {}, 1 / scale, 1 / scale, cv::INTER_AREA);
   if (!cv::findChessboardCornersSB(small, corners, pixels, cv::CALIB_CB_NORMALIZE_IMAGE)) return {};
-  const cv::Point2f middle(0.5F, 0.5F);  // of a pixel
+  const cv::Point2f middle(0.5F, 0.5F);  // middle of a pixel
   for (cv::Point2f& pixel : pixels) pixel = (pixel + middle) * scale - middle;
   return pixels;
 }
 
 std::vector<BoardCorner> FindChessboard(const cv::Mat& image, const LensBoard& board) {
   std::vector<cv::Point2f> pixels = FindSquareCorners(image, {board.columns, board.rows});
-  constexpr double kReach = 0.4;  // of a square
+  constexpr double kReach = 0.4;  // share of a square
   if (!pixels.empty()) Refine(image, kReach * LeastSpacing(pixels, board.columns), &pixels);
   return Paired(board.Corners(), pixels);
 }
@@ -221,7 +221,7 @@ std::vector<BoardCorner> FindSquares(const cv::Mat& image, const LensBoard& boar
   TagFinder finder(board.Tags(), camera);
   SeenTags seen = finder.Find(image);
   KeepPlane(&seen);
-  double side_px = std::numeric_limits<double>::infinity();  // of the smallest marker
+  double side_px = std::numeric_limits<double>::infinity();  // side of the smallest marker
   for (const auto& [id, tag] : seen) side_px = std::min(side_px, tag.side_px);
   const double reach_px = 0.4 * side_px * (board.side_m - board.marker_m) / board.marker_m;
   std::vector<Eigen::Vector2d> on_board;

@@ -26,7 +26,7 @@ constexpr std::size_t kFewViews = 40;  // enough to find more views with
 // the second it is not a good one.
 constexpr double kMaxFocalSigma = 0.05;
 constexpr double kGoodFocalSigma = 0.01;
-constexpr double kMaxPrincipalSigma = 0.01;  // of the image's width
+constexpr double kMaxPrincipalSigma = 0.01;  // share of the image's width
 constexpr double kLeastReach = 0.35;         // least good reach, in halves of the diagonal
 constexpr double kLevelDeg = 12;             // views with less tilt face the pattern
 InputError CannotTell(const std::string& why) {

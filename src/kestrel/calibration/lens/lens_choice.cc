@@ -12,8 +12,8 @@
 namespace kestrel {
 namespace {
 
-constexpr double kLeastSigmaPx = 0.02;  // of an edge
-constexpr double kOutlier = 4;          // of an edge, in standard deviations
+constexpr double kLeastSigmaPx = 0.02;  // least standard deviation of an edge
+constexpr double kOutlier = 4;          // limit for an edge, in standard deviations
 constexpr double kOutlierView = 3;      // relative to the error of the median view
 // Lenses of a pinhole model show nothing farther from their axis, in practice.
 constexpr double kMaxPinholeAngle = Radians(80);

@@ -17,7 +17,7 @@ namespace {
 // pixel, in widths of the image per second.
 constexpr double kStill = 0.05;
 constexpr Duration kLongestGap = std::chrono::seconds(1);  // between two sights of one movement
-constexpr double kLeastDifference = 0.12;                  // of a view from all others
+constexpr double kLeastDifference = 0.12;  // least difference of a view from all others
 constexpr double kLeastTilt = Radians(15);
 // Share of the image's width or height that the board fills.
 constexpr double kNearShare = 0.6;
