@@ -42,7 +42,7 @@ class FlightGuard {
   void TakeMode(bool is_guided, Time now);
   void TakeArmed(bool is_armed) { is_armed_ = is_armed; }
   void TakeVelocity(const Eigen::Vector3d& velocity, Time now);  // ENU, m/s
-  void TakeRefusal();                                            // of a mode
+  void TakeRefusal();                                            // the autopilot refused a mode
 
   // Call it every 20 ms at most.
   GuardAction Update(Time now);

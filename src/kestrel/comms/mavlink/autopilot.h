@@ -77,7 +77,7 @@ struct AutopilotEvent {
 
 // Counts of received packets that were not used, by reason.
 struct AutopilotCounters {
-  std::uint64_t lost_packets = 0;  // of the autopilot, by its sequence numbers
+  std::uint64_t lost_packets = 0;  // packets of the autopilot missing by its sequence numbers
   std::uint64_t other_systems = 0;
   std::uint64_t own_ids = 0;
   std::uint64_t target_echoes = 0;
@@ -138,7 +138,7 @@ class Autopilot {
   const AutopilotStatus& status() const { return status_; }
   std::optional<AutopilotVersion> version() const { return status_.version(); }
   std::optional<AutopilotRange> range() const { return status_.range(); }
-  std::optional<GlobalPosition> origin() const { return status_.origin(); }  // of the local frame
+  std::optional<GlobalPosition> origin() const { return status_.origin(); }  // local frame
   std::optional<GlobalPosition> home() const { return status_.home(); }
   std::optional<AutopilotBattery> battery() const { return status_.battery(); }
   // True when the autopilot trusts its own attitude, velocity and position; nothing when it does

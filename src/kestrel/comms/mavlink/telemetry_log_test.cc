@@ -39,7 +39,7 @@ Reading Read(const std::string& log) {
   reading.skipped =
       mavlink::ReadTelemetryLog({bytes, log.size()}, [&](const Packet& packet, std::int64_t time) {
         const auto heartbeat = packet.As<mavlink::Heartbeat>();
-        if (!heartbeat) return;  // of a damaged id: nobody knows its checksum
+        if (!heartbeat) return;  // the id is damaged: its checksum cannot be checked
         reading.modes.push_back(heartbeat->custom_mode);
         reading.times_us.push_back(time);
       });
