@@ -419,7 +419,8 @@ CameraCalibration ReadChain(const Entry& root, const std::vector<std::string>& n
   CameraCalibration calibration =
       ReadCamera(root.Get({name.c_str()}, "the camera's calibration"), teller);
   calibration.name = name;
-  for (const std::string& other : names) root.Find({other.c_str()});  // of no concern
+  // The other cameras' keys count as used.
+  for (const std::string& other : names) root.Find({other.c_str()});
   TellUnusedKeys(root, teller);
   return calibration;
 }

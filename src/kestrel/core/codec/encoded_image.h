@@ -15,7 +15,7 @@ struct EncodedImage {
   std::string_view bytes;
   const std::string& name;  // for messages
   std::size_t max_pixels;
-  std::size_t page = 0;  // of a TIFF
+  std::size_t page = 0;  // page in a TIFF
 };
 
 // Throws InputError with the image's name followed by 'fault'.
