@@ -127,7 +127,7 @@ void Silence(DoctorObservations* all) {
 
 void MoveTarget(DoctorObservations* all) { all->use.target_mps = 4.2; }
 
-const Eigen::Vector3d kAxis = Eigen::Vector3d::UnitZ();  // of the camera
+const Eigen::Vector3d kAxis = Eigen::Vector3d::UnitZ();  // optical axis of the camera
 
 std::vector<Fault> CameraFaults() {
   return {

@@ -44,7 +44,7 @@ Finding SilentLine(const std::string& check, const LinkObservations& link) {
 
 Finding CheckStream(const std::string& check, int messages, double listened_s, double age_s,
                     double asked_hz, const std::string& missing_advice) {
-  constexpr double kEnough = 0.6;  // of the requested rate
+  constexpr double kEnough = 0.6;  // share of the requested rate
   constexpr double kLeast_hz = 10;
   constexpr double kOld_s = 1;
   const double rate_hz = listened_s > 0 ? messages / listened_s : 0;

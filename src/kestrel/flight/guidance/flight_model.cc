@@ -24,12 +24,12 @@ constexpr double kGap_s = 0.25;  // samples before a longer gap are of no use
 // Deviations from the model (gusts above all) last this long: measurements within are not
 // independent.
 constexpr double kCorrelation_s = 0.5;
-constexpr double kWeight = kLearnEvery * kSample_s / kCorrelation_s;  // of one measurement
+constexpr double kWeight = kLearnEvery * kSample_s / kCorrelation_s;  // weight of one measurement
 constexpr double kNoise_mps = 0.6;
-constexpr double kDelaySigma_s = 0.03;  // of the assumed delay
+constexpr double kDelaySigma_s = 0.03;  // uncertainty of the assumed delay
 constexpr double kAirMemory_s = 20;
 constexpr double kAirNoise = 0.3;      // m/s^2
-constexpr double kMaxAirSigma = 0.06;  // of the drag, 1/s
+constexpr double kMaxAirSigma = 0.06;  // largest usable uncertainty of the drag, 1/s
 
 // Limits of the learning. A slack above the first is a limit of the autopilot, not its answer, if
 // the velocity still approaches the command by more than the last (m/s^2) or if the slack is above

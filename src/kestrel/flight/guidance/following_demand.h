@@ -18,7 +18,7 @@ struct FollowingDemand {
   double speed_mps = 0, max_speed_mps = 0;
   double climb_mps = 0, max_climb_mps = 0;
 
-  double lean_share() const;  // of the acceleration at the largest lean
+  double lean_share() const;  // share of the acceleration at the largest lean
   double speed_share() const;
   double climb_share() const;
   // True when the UAV cannot follow however it flies.

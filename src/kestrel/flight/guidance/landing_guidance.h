@@ -108,7 +108,7 @@ class LandingGuidance {
   struct Situation {
     Eigen::Vector3d feet;
     Eigen::Vector3d velocity;
-    double height_m = 0;  // of the feet above the target
+    double height_m = 0;  // height of the feet above the target
     double off_m = 0;     // horizontal distance from the target
     double slip_mps = 0;  // horizontal speed relative to the target
     bool is_in_sight = false;

@@ -42,7 +42,7 @@ TEST(LandingMessages, TrackHasCovariancesInItsFrames) {
   EXPECT_EQ(pose(0, 0), 1);
   EXPECT_EQ(pose(2, 2), 3);
   EXPECT_GT(pose(3, 3), 3);                             // roll is not known
-  EXPECT_NEAR(pose(5, 5), std::pow(0.2 / 2, 2), 1e-9);  // of the velocity's direction
+  EXPECT_NEAR(pose(5, 5), std::pow(0.2 / 2, 2), 1e-9);  // variance of the velocity's direction
   EXPECT_NEAR(twist(0, 0), 0.01, 1e-9);                 // along
   EXPECT_NEAR(twist(1, 1), 0.04, 1e-9);                 // across
   EXPECT_NEAR(twist(5, 5), 0.16, 1e-9);
