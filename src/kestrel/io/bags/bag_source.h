@@ -64,7 +64,7 @@ class BagSource : public FrameSource {
 
   std::vector<ReadFrame> waiting_;  // in order of time
   bool has_ended_ = false;
-  Time newest_;  // of all that have been read
+  Time newest_;  // newest time that has been read
   std::optional<Time> last_time_;
   std::size_t repeated_ = 0;  // or too late
 };

@@ -23,7 +23,7 @@ const cv::Vec3b kBlueish(200, 60, 20);  // in BGR
 struct Coloured {
   std::string encoding;
   int channels;
-  std::vector<int> bytes;  // of two pixels in a row; for Bayer's patterns of two rows
+  std::vector<int> bytes;  // bytes of two pixels in a row; for Bayer patterns of two rows
   int tolerance;
 };
 

@@ -9,7 +9,7 @@
 namespace kestrel {
 namespace {
 
-constexpr std::size_t kHeadBytes = 16;  // of a box: its size and its type
+constexpr std::size_t kHeadBytes = 16;  // head of a box: its size and its type
 
 class BoxedFile {
  public:
