@@ -66,7 +66,7 @@ TEST(Px4LandingTest, LandsOnStandingPattern) {
   TestAutopilot autopilot(AutopilotFirmware::kPx4, {}, TestVehicle("standing", 0));
   const SitlResult result = Land(&autopilot, [&] { return autopilot.Px4TargetMessage(); });
   ASSERT_TRUE(result.contact);
-  EXPECT_LT(result.offset_m(), 0.06);  // of the feet; it brings the body there, which leans
+  EXPECT_LT(result.offset_m(), 0.06);  // offset of the feet; PX4 brings the leaning body there
   EXPECT_TRUE(result.is_disarmed);
 }
 
@@ -152,7 +152,7 @@ TEST(ArduPilotLandingTest, OscillatesWithUnconfiguredLag) {
     int count = 0;
     autopilot.Run(20, [&] {
       late.push_back(autopilot.ArduPilotTargetMessage());
-      constexpr std::size_t kDelay = 10;  // of 20 ms
+      constexpr std::size_t kDelay = 10;  // messages, 20 ms apart
       if (late.size() > kDelay) autopilot.Tell(late[late.size() - 1 - kDelay]);
       if (autopilot.now < kTestStart + std::chrono::seconds(10)) return;
       sum += autopilot.HorizontalError() * autopilot.HorizontalError();

@@ -25,7 +25,7 @@ constexpr double kSlowest_s = 0.5;  // longest time between two set-points of a 
 // MC_YAW_P and MC_YAWRATE_MAX as they come.
 constexpr double kPx4YawGain = 2.8;
 constexpr double kPx4Turn = Radians(200);
-constexpr double kReaction_s = 0.3;  // of its failsafe, after the time-out (measured)
+constexpr double kReaction_s = 0.3;  // delay of its failsafe after the time-out (measured)
 
 }  // namespace
 
@@ -98,7 +98,7 @@ FlightCommand Px4Offboard::Fly(const FlightState& state) {
 
 // P, I and D, as an acceleration; the integral stops at the tilt limit.
 Vector3d Px4Offboard::ControlVelocity(const FlightState& state, const Vector3d& velocity) {
-  constexpr double kFilter_s = 0.03;  // of the derivative
+  constexpr double kFilter_s = 0.03;  // time constant for the derivative
   const auto gains = [this](const char* horizontal, const char* vertical) {
     return Vector3d(parameters_[horizontal], parameters_[horizontal], parameters_[vertical]);
   };

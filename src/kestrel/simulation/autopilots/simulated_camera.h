@@ -91,7 +91,7 @@ class SimulatedCamera {
  private:
   // A pose with its motion during the exposure of one image.
   struct Snapshot {
-    double time_s = 0;  // of the scene
+    double time_s = 0;  // time in the scene
     RigidTransform world_from_body;
     BodyMotion motion;
   };

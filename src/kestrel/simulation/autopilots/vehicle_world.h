@@ -68,7 +68,7 @@ class VehicleWorld {
   double SceneTime(Time time) const { return ToSeconds(time - start_); }
 
   RigidTransform PatternAt(Time time) const;    // world_from_pattern
-  Eigen::Vector3d VelocityAt(Time time) const;  // of the pattern's centre in the world, m/s
+  Eigen::Vector3d VelocityAt(Time time) const;  // pattern's centre in the world, m/s
 
   // True when a point of the pattern's plane (in the pattern's frame) is on the board.
   bool IsOnBoard(const Eigen::Vector3d& point_in_pattern) const;

@@ -143,7 +143,7 @@ TEST(LandingStillMakerTest, RefusesInvalidOptions) {
   EXPECT_THAT(ErrorOf(too_high), HasSubstr("no pose at an altitude of 100.00 m"));
 }
 
-constexpr int kStills = 6;  // of each condition
+constexpr int kStills = 6;  // stills per condition
 
 struct MeanLevels {
   double ink = 0, white = 0;
