@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 using Path = std::function<Vector3d(double time_s)>;
 
 constexpr double kPeriod_s = 0.1;
-constexpr double kSigma_m = 0.035;  // of a detection from 6 m, as estimated by the pipeline
+constexpr double kSigma_m = 0.035;  // error of a detection from 6 m, as estimated by the pipeline
 constexpr int kSeeds = 20;
 
 // Errors that sightings at one time share, and the clock shift that the map is told.

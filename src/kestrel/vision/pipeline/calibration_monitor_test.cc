@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 // Views through a lens, each from its own side unless 'turn' is 0. A view determines two of four
 // numbers: each combines the focal length with a part of the principal point and the distortion.
 struct Views {
-  Eigen::Vector4d error = Eigen::Vector4d::Zero();  // of the calibration
+  Eigen::Vector4d error = Eigen::Vector4d::Zero();  // error of the calibration
   double outliers = 0;                              // share of the views that are completely wrong
   double turn = 0.4;                                // rad
 

@@ -74,7 +74,7 @@ class HuntPipeline::Impl {
   std::optional<double> altitude_m_;
   HuntObservation observation_;
   GroundHeightEstimator ground_;
-  std::vector<GroundHeight> ground_sightings_;  // of the current frame
+  std::vector<GroundHeight> ground_sightings_;  // sightings of the current frame
   std::vector<TrackedObject> track_;
   bool saw_all_ = true;  // the last frame was searched completely
   ObjectMap map_;

@@ -13,7 +13,7 @@ namespace kestrel {
 
 // Told knowledge about a view of the pattern, from the navigation or from the user.
 struct ToldView {
-  std::optional<double> altitude_m;             // of the camera above the pattern
+  std::optional<double> altitude_m;             // height of the camera above the pattern
   std::optional<Eigen::Vector3d> up_in_camera;  // unit vector away from the ground
 };
 

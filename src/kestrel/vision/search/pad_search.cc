@@ -11,7 +11,7 @@
 namespace kestrel {
 namespace {
 
-constexpr double kSigmas = 3;  // of the expected place that are searched
+constexpr double kSigmas = 3;  // size of the searched area around the expected place
 // Largest shift of a pad that is followed, to either side: so many pixels, or steps if that is
 // more.
 constexpr double kMostShiftPx = 30;

@@ -23,8 +23,8 @@ namespace kestrel {
 struct PadSearchModels {
   const CameraModel& camera;
   const PadAlignment& alignment;
-  double radius_m;         // of the pad
-  double level_sigma_deg;  // of its tilt from level
+  double radius_m;         // radius of the pad
+  double level_sigma_deg;  // standard deviation of its tilt from level
   // The part of the image that is searched is so much larger than the pad where it is expected:
   // lenses magnify towards the edge, and thresholds look at boxes around a pixel.
   double part_factor;

@@ -99,7 +99,7 @@ TEST_F(PatternLocatorTest, CovarianceMatchesErrors) {
       const auto error = PoseError(location->camera_from_pattern, truth);
       sum += error.dot(location->covariance.ldlt().solve(error)) / 6;
     }
-    const double ratio = std::sqrt(sum / kTrials);  // of errors and standard deviations
+    const double ratio = std::sqrt(sum / kTrials);  // ratio of errors to standard deviations
     EXPECT_GT(ratio, 0.85) << distance;
     EXPECT_LT(ratio, 1.2) << distance;
   }
@@ -229,7 +229,7 @@ TEST_F(CalibrationEvidenceTest, EstimatesWrongFocalLengthWithinSigma) {
       const double error = (evidence.log_focal + std::log(factor)) / evidence.log_focal_sigma;
       squares += error * error;
     }
-    const double ratio = std::sqrt(squares / kTrials);  // of errors and standard deviations
+    const double ratio = std::sqrt(squares / kTrials);  // ratio of errors to standard deviations
     // The true principal point is exactly the calibrated one, which the standard deviation ignores.
     EXPECT_LT(ratio, 1.8) << factor;
   }

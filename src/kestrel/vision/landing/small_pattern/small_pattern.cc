@@ -133,9 +133,9 @@ struct SmallPatternFitter::System {
   Eigen::Matrix<double, kUnknowns, kUnknowns> h;
   Eigen::Matrix<double, kUnknowns, 1> b;
   double count;  // weighted number of pixels
-  double sum;    // of the gray values, without highlights
+  double sum;    // sum of the gray values without highlights
   double sum_squares;
-  double squares;  // of the residuals, without highlights
+  double squares;  // sum of the squared residuals without highlights
 
   double variance() const { return squares / std::max(1.0, count - kUnknowns); }
   // Share of the image's variance, without its noise, that the print does not explain.

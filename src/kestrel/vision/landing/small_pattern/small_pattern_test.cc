@@ -127,7 +127,7 @@ TEST_F(SmallPatternTest, OtherFiguresInRingFitWorse) {
 TEST_F(SmallPatternTest, CovarianceMatchesErrors) {
   struct Case {
     double noise;         // gray values
-    double lowest_ratio;  // of errors and standard deviations
+    double lowest_ratio;  // ratio of errors to standard deviations
   };
   // With little noise the error of the model, which the covariance includes, is the larger part.
   for (const Case& one : {Case{6, 1. / 3}, Case{20, 0.8}}) {

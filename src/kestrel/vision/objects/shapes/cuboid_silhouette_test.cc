@@ -11,7 +11,7 @@ namespace kestrel {
 namespace {
 
 constexpr double kHalf = 0.02;
-constexpr double kShrinking = 1 / (1 + 2 * kHalf);  // of the lower face of a cube
+constexpr double kShrinking = 1 / (1 + 2 * kHalf);  // scale of a cube's lower face in the image
 const Eigen::Vector2d kTopCenter(0.5, -0.3);
 
 std::vector<Eigen::Vector2d> UpperFace(double yaw) {
