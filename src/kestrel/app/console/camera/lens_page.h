@@ -18,7 +18,7 @@
 namespace kestrel {
 
 // The part of the page that calibrates the lens of a live camera: it takes views of the board by
-// itself, says what to show next, and saves the result. All functions are called by one thread,
+// itself, advises what to show next, and saves the result. All functions are called by one thread,
 // which never waits for the search of the board or the estimation.
 class LensPage {
  public:
