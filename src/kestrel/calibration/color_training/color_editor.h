@@ -52,7 +52,7 @@ class ColorEditor {
   std::size_t IndexOf(const std::string& color) const;
 
   // Returns the marks of a frame's pixels, CV_8UC1: labels as in the grid, background where nothing
-  // is marked, ambiguous where the mark says none of the colours. Empty when the frame has no
+  // is marked, ambiguous where the mark excludes all colours. Empty when the frame has no
   // marks.
   cv::Mat Marks(std::size_t frame) const;
 

@@ -77,7 +77,7 @@ class TagFinder {
   }
 
  private:
-  // The corners are the quad's; which of them is the first, the match's pose tells.
+  // Takes the corners of the quad; the match's pose determines which of them is the first.
   void Add(const TagMatch& match, const TagQuad& quad, SeenTags* seen) const {
     SeenTag one{match.tag, {}, quad.side_px};
     std::array<Eigen::Vector2d, 4> of_quad, of_tag;
@@ -198,7 +198,7 @@ std::vector<BoardCorner> FindAprilGrid(const cv::Mat& image, const LensBoard& bo
   return corners;
 }
 
-// The place of a corner of squares as the markers beside it tell; NaN where there is none.
+// The place of a corner of squares by the markers beside it; NaN where there is none.
 cv::Point2f PlaceByMarkers(const SeenTags& seen, const Eigen::Vector2d& corner, double side_m) {
   cv::Point2f sum(0, 0);
   int count = 0;
@@ -272,7 +272,7 @@ std::vector<BoardCorner> FindCorners(const cv::Mat& image, const LensBoard& boar
 }
 
 // Returns the pose of a plane by the rays to its points: the homography, made a rotation. Nothing
-// when the points do not tell it.
+// when the points do not determine it.
 std::optional<RigidTransform> PoseOf(const LensView& view, const CameraModel& lens) {
   double size = 0;
   for (const LensEdge& edge : view.edges) size = std::max(size, edge.on_print.norm());
@@ -325,7 +325,7 @@ bool AreSpread(const std::vector<BoardCorner>& corners, int width_px) {
   if (corners.size() < kLeastCorners) return false;
   std::vector<cv::Point2f> pixels;
   for (const BoardCorner& corner : corners) pixels.push_back(corner.pixel);
-  const cv::Size2f size = cv::minAreaRect(pixels).size;  // corners in a line tell no pose
+  const cv::Size2f size = cv::minAreaRect(pixels).size;  // corners in a line determine no pose
   return std::min(size.width, size.height) > kLeastSpread * width_px;
 }
 

@@ -40,7 +40,7 @@ struct LensBoard {
 // Parses "chessboard:9x6:0.025" (inner corners, square in m), "charuco:7x5:0.04:0.03" (squares,
 // square and marker in m; ":DICT_5X5_100" or ":aruco_5x5_100" at the end: another dictionary than
 // aruco_4x4_50) and "aprilgrid:6x6:0.088:0.3" (tags, tag in m, gap over tag). Throws InputError
-// that says what was expected.
+// with what was expected.
 LensBoard ParseLensBoard(const std::string& text);
 
 }  // namespace kestrel

@@ -94,8 +94,8 @@ void LensGuide::Count(const LensView& view, const CameraIntrinsics& camera) {
   variety_.bottom += out.y() < -least;
 }
 
-// Returns the missing view that would tell the most, first the places in the image; empty when none
-// is missing.
+// Returns the missing view with the most information, first the places in the image; empty when
+// none is missing.
 std::string LensGuide::Missing() const {
   const std::vector<std::string> empty = variety_.coverage.EmptyParts();
   if (!empty.empty()) return "bring the board to the " + empty.front() + " of the image";

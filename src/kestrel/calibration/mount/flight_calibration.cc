@@ -337,7 +337,7 @@ std::vector<TargetSighting> WithPoses(const std::vector<TargetSighting>& sightin
   return kept;
 }
 
-// The poses that a history accepts, smoothed: a UAV moves more evenly than its navigation says.
+// The poses that a history accepts, smoothed: a UAV moves more evenly than its navigation reports.
 PoseHistory HistoryOf(const std::vector<PoseSample>& samples) {
   PoseHistory history(samples.size(), kMaxGap);
   std::vector<PoseSample> valid;

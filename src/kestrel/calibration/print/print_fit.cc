@@ -206,7 +206,7 @@ class LineFit {
                                nullptr, state_.data());
     };
     hold(kZoom, std::log(lens_.focal_px / start_.camera.fx_px), lens_.zoom_sigma);
-    // A view straight from above says nothing of the zoom, and the search would run away.
+    // A view straight from above does not determine the zoom, and the search would diverge.
     const double assumed = std::log(lens_.focal_px / start_.camera.fx_px);
     problem.SetParameterLowerBound(state_.data(), kZoom, assumed - kMaxZoom);
     problem.SetParameterUpperBound(state_.data(), kZoom, assumed + kMaxZoom);
