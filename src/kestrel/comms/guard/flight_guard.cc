@@ -13,7 +13,7 @@ constexpr Duration kAskPeriod = std::chrono::milliseconds(300);
 // Shorter than the shortest time after which PX4 takes a stream of set-points for broken off.
 constexpr Duration kPause = std::chrono::milliseconds(250);
 // PX4's Hold and ArduCopter's BRAKE brake more softly than a set-point, and BRAKE lets a UAV that
-// sinks sink on for seconds: they are asked for once the UAV stands, or after so long.
+// sinks sink on for seconds: they are requested once the UAV stands, or after this time.
 constexpr Duration kLongestStop = std::chrono::seconds(3);
 constexpr double kStands_mps = 0.4;
 constexpr Duration kVelocityAge = std::chrono::milliseconds(300);  // an older one is not used

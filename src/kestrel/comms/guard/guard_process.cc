@@ -137,7 +137,7 @@ void GuardProcess::TakeLife(const GuardLife& life) {
   SendTo(program_, GuardMessage::kAnswer, answer);
 }
 
-// Reads a packet of the line: what the autopilot says of itself.
+// Reads a packet of the line: the state of the autopilot.
 void GuardProcess::Read(const mavlink::Packet& packet) {
   was_mavlink_ |= packet.is_known;
   if (packet.system != life_.autopilot_system || packet.component != life_.autopilot_component) {

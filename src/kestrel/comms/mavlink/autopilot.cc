@@ -20,7 +20,7 @@ constexpr double kStatusRate_hz = 2;
 constexpr double kTruePoseRate_hz = 100;
 // After so long without a heartbeat the autopilot is away.
 constexpr double kAwayAfter_s = 3;
-// An older position does not tell where the vehicle is now.
+// An older position does not show where the vehicle is now.
 constexpr double kPositionAge_s = 0.5;
 
 using std::chrono::seconds;

@@ -159,7 +159,7 @@ class Autopilot {
 
   // Requests this mode until an answer comes, which an event reports; the reported mode shows
   // whether it was entered. Stops at once when the autopilot enters another mode: somebody else
-  // wants that one. False: an autopilot of this kind cannot be asked.
+  // wants that one. False: this kind of autopilot takes no such request.
   bool RequestMode(FlightMode mode);
   // Stops the motors at once, also in flight.
   void DisarmByForce();

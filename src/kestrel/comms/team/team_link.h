@@ -41,7 +41,7 @@ struct TeamLinkOptions {
 };
 
 // A UAV's part in its team, by DDS: it sends its map, receives those of the others, claims an
-// object if the options say so, and writes the map of the whole team. One thread at a time.
+// object if the options request it, and writes the map of the whole team. One thread at a time.
 class TeamLink {
  public:
   using Say = std::function<void(const std::string&)>;
