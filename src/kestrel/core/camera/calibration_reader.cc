@@ -334,7 +334,7 @@ std::optional<CameraCalibration> ReadLens(const Entry& camera) {
   return std::nullopt;
 }
 
-// Keys that say nothing about lens, mount and clock, as PlainKey has them.
+// Keys unrelated to lens, mount and clock, as PlainKey has them.
 bool IsIrrelevant(const std::string& key) {
   static const std::set<std::string> kKeys{
       // Kestrel, EuRoC

@@ -21,7 +21,7 @@ struct EncodedImage {
 // Throws InputError with the image's name followed by 'fault'.
 [[noreturn]] void FailToDecode(const EncodedImage& image, std::string_view fault);
 
-// Throws InputError which says that the bytes end too early.
+// Throws InputError: the bytes end too early.
 [[noreturn]] void FailAsCutOff(const EncodedImage& image);
 
 // Returns the pixels that a decoder fills. Throws InputError when there are none, when there are
