@@ -46,7 +46,7 @@ struct FrameSample {
 struct CameraObservations {
   std::string open_error;       // why it could not be opened; empty: it could be
   bool has_other_size = false;  // the reason was the size of its images
-  bool is_on_ground = false;    // the UAV stands, by what its autopilot says
+  bool is_on_ground = false;    // the autopilot reports that the UAV stands
   std::string error;            // its last error
   double duration_s = 0;        // time for which it was watched
   int width_px = 0;             // width of its images; 0: there were none

@@ -29,7 +29,7 @@ struct FollowingDemand {
 };
 
 // Watches what the target's motion and the wind demand. The demand of a curve is kept for a while
-// after it: a figure of eight asks for it again and again.
+// after it: a figure of eight demands it again and again.
 class DemandWatch {
  public:
   explicit DemandWatch(const FlightLimitsOptions& limits) : limits_(limits) {}
