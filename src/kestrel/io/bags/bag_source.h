@@ -21,7 +21,7 @@ namespace kestrel {
 // "camera/image_raw/1403636579763555584".
 class BagSource : public FrameSource {
  public:
-  // Throws InputError that says what is wrong with the bag: broken, no images, several cameras, no
+  // Throws InputError with the fault of the bag: broken, no images, several cameras, no
   // stamps.
   BagSource(const std::string& path, BagChoice choice);
 

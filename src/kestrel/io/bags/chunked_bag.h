@@ -50,7 +50,7 @@ class ChunkedBag : public BagReader {
   bool IsWanted(std::size_t topic) const { return is_wanted_[topic]; }
 
   // Returns the records of a chunk, decompressed if necessary; valid until the next call. Throws
-  // InputError when they cannot be decompressed, whatever the checksum says.
+  // InputError when they cannot be decompressed, even if the checksum is right.
   ByteSource* OpenChunk(const Chunk& chunk);
 
   // Returns the index of the topic with this name and type; adds it when it is new.

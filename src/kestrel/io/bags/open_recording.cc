@@ -23,7 +23,7 @@ CameraIntrinsics AssumeLens(RecordingChoice choice, std::string* first_image) {
   return AssumedLens(first.image.cols, first.image.rows, fov_deg);
 }
 
-// Says what is assumed of the lens, and how to know it.
+// Reports the assumed lens, and how to calibrate it.
 void TellAssumption(const RecordingChoice& choice) {
   if (!choice.bag.tell) return;
   choice.bag.tell(
