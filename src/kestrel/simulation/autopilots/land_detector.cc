@@ -43,7 +43,7 @@ void LandDetector::ObserveAcceleration(const FlightState& state) {
 }
 
 // update_land_detector of ArduCopter: rotors at their lower limit, with the mix that favours the
-// throttle; no large lean asked for, in any mode; no acceleration, and no fast climb. A horizontal
+// throttle; no large lean commanded, in any mode; no acceleration, and no fast climb. A horizontal
 // speed does not matter.
 bool LandDetector::ArduPilotSettles(const FlightState& state, const FlightCommand& command) const {
   constexpr double kLean_deg = 15;

@@ -52,8 +52,8 @@ struct SimulatedCameraOptions {
 };
 
 // A live camera that is rendered: the view from the UAV over a vehicle that drives in real time.
-// The UAV is where the world's simulated autopilot truly is; with another autopilot where its
-// reported pose, extrapolated to the image, says.
+// The UAV is where the world's simulated autopilot truly is; with another autopilot at its
+// reported pose, extrapolated to the image.
 class SimulatedCamera {
  public:
   // The world must outlive this. The first image is taken at 'start' on the local clock. Throws

@@ -58,7 +58,7 @@ VehicleWorldOptions ReadVehicleWorld(const std::string& scenario,
 // options and the seed determine its scene. Thread-safe.
 class VehicleWorld {
  public:
-  // Time 0 of the scene is at 'start' on the local clock, unless the options say when. Throws
+  // Time 0 of the scene is at 'start' on the local clock, unless the options set it. Throws
   // InputError when the options are not valid.
   VehicleWorld(const VehicleWorldOptions& options, Time start, std::uint64_t seed);
   VehicleWorld(const VehicleWorld&) = delete;  // the scene's motions refer to it

@@ -111,8 +111,8 @@ class LandingStillMaker {
   // Throws InputError when no pose within the options shows enough of the pattern.
   LandingStill MakePattern(std::uint64_t seed) const;
 
-  // Makes a still with one to five look-alikes of random kinds, visible and large as the options
-  // say. Throws InputError when none can be placed.
+  // Makes a still with one to five look-alikes of random kinds, visible and large as set in the
+  // options. Throws InputError when none can be placed.
   LookalikeStill MakeLookalikes(std::uint64_t seed) const;
 
   // The same without the images, which are left empty: fast.
