@@ -7,7 +7,7 @@ namespace kestrel {
 namespace {
 
 // A predicted ring up to this factor below the limit of small rings is still tested by its edges
-// first, which tell more than the fit as a whole. Areas seem larger by this factor.
+// first, which give more information than the fit as a whole. Areas seem larger by this factor.
 constexpr double kNearlyLarge = 1.1;
 
 RingSize SizeOf(const SearchStep& step) {

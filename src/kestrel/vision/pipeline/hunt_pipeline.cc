@@ -15,7 +15,7 @@
 namespace kestrel {
 namespace {
 
-// Standard deviations for a flight with a told altitude and without an attitude.
+// Standard deviations for a flight with a given altitude and without an attitude.
 constexpr double kTilt_deg = 5;
 constexpr double kAltitudeShare = 0.05;
 
@@ -23,8 +23,8 @@ constexpr double kAltitudeShare = 0.05;
 // deviation, share of the height.
 constexpr double kSizeShare = 0.02;
 
-// The told ground is no evidence against objects that contradict it. An object that shows where the
-// ground is must therefore have a clear shape and enough pixels.
+// The given ground is no evidence against objects that contradict it. An object that shows where
+// the ground is must therefore have a clear shape and enough pixels.
 constexpr double kMaxMisfit = 0.75;
 constexpr int kMinPixels = 150;
 
@@ -51,7 +51,7 @@ class HuntPipeline::Impl {
   std::optional<GroundHeight> ground_contradiction() const { return ground_.Contradiction(); }
 
  private:
-  // The told heights of camera and ground, in the world or, with an altitude, in a world whose z =
+  // The given heights of camera and ground, in the world or, with an altitude, in a world whose z =
   // 0 is the ground.
   struct ToldHeights {
     double camera_m;
@@ -151,7 +151,7 @@ void HuntPipeline::Impl::Detect(const cv::Mat& image) {
   if (told) UpdateGround(*told);
 }
 
-// Objects that agree on another height of the ground overrule the told height.
+// Objects that agree on another height of the ground overrule the given height.
 void HuntPipeline::Impl::UpdateGround(const ToldHeights& told) {
   ObjectReport& report = observation_.report;
   const auto ground_by = [&](const HeightBySize& height, double share) {
@@ -165,7 +165,7 @@ void HuntPipeline::Impl::UpdateGround(const ToldHeights& told) {
       ground_sightings_.push_back(ground_by(*detection.height, kSizeShare));
     }
   }
-  // For independent frames and for a flight with only a told altitude.
+  // For independent frames and for a flight with only a given altitude.
   if (options_.still || !observation_.world_from_camera) ground_.ForgetSightings();
   ground_.Update(told.ground, ground_sightings_);
   const double tolerance = options_.detector.ground_tolerance / 3;

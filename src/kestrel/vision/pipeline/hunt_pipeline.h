@@ -113,7 +113,7 @@ class HuntPipeline {
   const ObjectMap& map() const;
   const HuntPipelineOptions& options() const;
 
-  // Returns how much higher the ground is, by the size of the objects, than told (by the options'
+  // Returns how much higher the ground is, by the size of the objects, than given (by the options'
   // height with the navigation's poses, or by the altitude); nothing as long as they agree.
   std::optional<GroundHeight> ground_contradiction() const;
 

@@ -190,7 +190,7 @@ void LandingPipeline::Impl::Detect(const cv::Mat& image, LandingObservation* obs
   if (!options_.still) AddErrorOfFocalLength(&*detection);
 }
 
-// Returns by how much (m) the told altitude is too large, as far as the detections contradict it.
+// Returns by how much (m) the given altitude is too large, as far as the detections contradict it.
 double LandingPipeline::Impl::AltitudeExcess() const {
   if (options_.still) return 0;
   const auto excess = contradictions_.Altitude();
@@ -323,7 +323,7 @@ void LandingPipeline::Impl::Remember(const LandingObservation& observation) {
   if (detection->heading_symmetry == 0) return;
   last_->rotation_in_camera = pose.rotation;
   if (!observation.world_from_camera || !is_track_trusted_) return;
-  // The ring alone does not tell the heading that its tags have told before.
+  // The ring alone does not determine the heading that its tags gave before.
   if (heading_ && heading_->symmetry < detection->heading_symmetry) return;
   heading_ = {observation.time, observation.world_from_camera->rotation * pose.rotation,
               detection->id, detection->heading_symmetry};

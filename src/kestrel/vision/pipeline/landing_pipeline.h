@@ -148,7 +148,7 @@ class LandingPipeline {
   // not throw, and does not allocate once it has warmed up.
   LandingObservation Process(const cv::Mat& image, Time time);
 
-  // Contradictions between the told height and attitude and the detections.
+  // Contradictions between the detections and the given height and attitude.
   const ToldContradictions& contradictions() const;
 
   // Evidence of the detections about the calibration.

@@ -33,7 +33,7 @@ double AngleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-// Returns the smaller of the differences of both mirror poses from what is told.
+// Returns the smaller of the differences of both mirror poses from the given view.
 template <class DifferenceOf>
 double LeastDifference(const LandingDetection& seen, const DifferenceOf& difference_of) {
   const double value = difference_of(seen.camera_from_pattern);

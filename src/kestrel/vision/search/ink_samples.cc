@@ -68,7 +68,7 @@ InkAgreement InkSamples::Compare(std::span<const float> gray, double area_px2,
   std::array<int, kMostParts> seen{}, right{};
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     if (std::isnan(largest[i])) continue;
-    // In one light with it: where the edge of a shadow runs, the others say little.
+    // In one light with it: at the edge of a shadow the others are no reference.
     const bool agrees = largest[i] / usual > kLeast;
     if (!agrees && dim == DimSample::kUnknown && largest[i] > kLeastDimContrast) continue;
     const std::size_t part = samples_[i].part;

@@ -30,8 +30,8 @@ struct PadPart {
   double stroke_m = 0;  // width of its thinnest strokes: of a tag, the side of its cells
   std::vector<PadEdge> edges{};
 
-  // Returns the width of a stroke in the image across its shorter direction, px, as far as distance
-  // and slant tell. 0 when the face is turned away.
+  // Returns the width of a stroke in the image across its shorter direction, px, by distance
+  // and slant. 0 when the face is turned away.
   double StrokePx(const CameraModel& camera, const RigidTransform& camera_from_pad) const;
 };
 

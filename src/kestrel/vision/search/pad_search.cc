@@ -16,7 +16,7 @@ constexpr double kSigmas = 3;  // size of the searched area around the expected 
 // more.
 constexpr double kMostShiftPx = 30;
 constexpr int kMostShiftSteps = 10;
-constexpr double kMirrorCost = 4.5;  // below it the image cannot tell two poses apart: 3 sigma
+constexpr double kMirrorCost = 4.5;  // below it the image cannot distinguish two poses: 3 sigma
 constexpr double kMisfitBoundPx = 1;
 
 }  // namespace

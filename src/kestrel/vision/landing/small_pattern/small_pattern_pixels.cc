@@ -118,7 +118,7 @@ void SmallPatternFitter::KeepPixelsOfPrint(const cv::Mat& image, const RigidTran
   workspace->count = count;
 }
 
-// One-sided differences suffice: they only say how far the blur reaches.
+// One-sided differences suffice: they only determine how far the blur reaches.
 void SmallPatternFitter::DifferentiateRays(SmallPatternWorkspace* workspace) const {
   SmallPatternWorkspace::Pixels& pixels = workspace->pixels;
   const std::size_t count = workspace->count;
