@@ -107,7 +107,7 @@ TEST(CompareMap, ReportsMissingAndFalseObjects) {
   }
   const Time later = FrameTime(0) + DurationFromSeconds(2);
   const std::vector<MapRow> rows = {
-      {1, "red", "cuboid", SaidDigit{6, 0.5}, {0.3, 0.4, 0}, {0, 0, 0}, FrameTime(0)},
+      {1, "red", "cuboid", ReportedDigit{6, 0.5}, {0.3, 0.4, 0}, {0, 0, 0}, FrameTime(0)},
       {2, "yellow", "cuboid", {}, {2, 2, 0}, {0, 1, 0.5}, later},
       {3, "red", "disc", {}, {9, 9, 0}, {0, 0, 0}, FrameTime(0)}};
   const auto map = CompareMap(kObjects, sightings, comparisons, rows);

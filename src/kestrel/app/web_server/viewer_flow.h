@@ -34,7 +34,7 @@ class ViewerFlow {
   void Offer(const ChannelMessage& message);
   void Say(std::string text);  // 'text': JSON
   // Reports to the viewer how many messages were dropped since the last report, if any.
-  void SayLosses();
+  void ReportLosses();
 
   // Returns the message to be sent next; nothing when none waits.
   std::optional<WebMessage> Pop();

@@ -68,13 +68,13 @@ TEST_F(ViewerFlowTest, DropsImagesFirstOnSlowConnection) {
     flow_.Offer(Message(kResults, i));
   }
   EXPECT_THAT(PopAll(), testing::ElementsAre("1", "2", "3", "3"));
-  flow_.SayLosses();
+  flow_.ReportLosses();
   EXPECT_THAT(PopAll(), testing::ElementsAre(HasSubstr("2 images and 0 messages left out")));
   for (int i = 1; i <= 5; ++i) flow_.Offer(Message(kResults, i));
   EXPECT_THAT(PopAll(), testing::ElementsAre("3", "4", "5"));
-  flow_.SayLosses();
+  flow_.ReportLosses();
   EXPECT_THAT(PopAll(), testing::ElementsAre(HasSubstr("0 images and 2 messages left out")));
-  flow_.SayLosses();
+  flow_.ReportLosses();
   EXPECT_FALSE(flow_.Pop());
 }
 

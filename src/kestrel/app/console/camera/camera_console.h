@@ -63,8 +63,8 @@ class CameraConsole {
   void Take(const Frame& frame);
   void AddSample(const cv::Mat& gray);
   void SetFault(const std::string& fault);
-  void TellState();
-  void TellAge();
+  void ReportState();
+  void ReportAge();
 
   Camera camera_;
   ConsoleFeed feed_;

@@ -52,7 +52,7 @@ class StudyConsole {
   void StartFirstRun(const StudyRow& row);
   void FollowFirstRun();
   void StartReplay(ReplayResult first);
-  void TellReplay(StudyReplayState state, const std::string& error = "");
+  void ReportReplay(StudyReplayState state, const std::string& error = "");
 
   StudyResults results_;
   std::vector<StudyVariant> variants_;

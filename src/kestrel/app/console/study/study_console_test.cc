@@ -15,7 +15,8 @@
 namespace kestrel {
 namespace {
 
-// The page of a study of three flights of which none can be opened; opening tells which was asked.
+// The page of a study of three flights of which none can be opened; the error names the requested
+// one.
 class StudyConsoleTest : public testing::Test {
  protected:
   StudyConsoleTest() {
