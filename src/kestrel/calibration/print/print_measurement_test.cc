@@ -80,7 +80,7 @@ TEST(PrintMeasurementTest, MeasuresPrintsOfOtherDimensions) {
   }
 }
 
-// Such a photograph says nothing of the focal length.
+// Such a photograph does not determine the focal length.
 TEST(PrintMeasurementTest, MeasuresPrintSeenFromStraightAbove) {
   const LandingPattern print = Configured().pattern;
   for (const double distance_m : {1.2, 2.0, 3.0}) {
