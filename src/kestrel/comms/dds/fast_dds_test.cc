@@ -154,7 +154,7 @@ TEST(FastDds, ListsNode) {
 }
 
 // As docs.ros.org has it: a subscriber hears a publisher that offers at least what it requests.
-// Kestrel offers no deadline and no lease, and asks for none.
+// Kestrel offers no deadline and no lease, and requests none.
 struct QosPair {
   const char* what;
   Ros2Qos own;

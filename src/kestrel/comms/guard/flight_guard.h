@@ -59,7 +59,7 @@ class FlightGuard {
   GuardAction Work(Time now);
   SetPoint Stop(Time now);
   std::optional<Eigen::Vector3d> Velocity(Time now) const;
-  std::optional<FlightMode> ModeToAsk(Time now) const;
+  std::optional<FlightMode> ModeToRequest(Time now) const;
   GuardAction HandBack(const char* text, Time now);
 
   Duration patience_;
@@ -71,9 +71,9 @@ class FlightGuard {
   bool has_taken_over_ = false;
   bool is_guided_ = true;  // true when guidance flies, until the autopilot reports otherwise
   bool is_armed_ = true;
-  Time mode_told_{};
+  Time mode_reported_{};
   Eigen::Vector3d velocity_{0, 0, 0};
-  std::optional<Time> velocity_told_;
+  std::optional<Time> velocity_reported_;
   std::optional<SetPoint> stop_;  // the last one
   bool is_refused_ = false;       // the mode wanted first
   Time since_{};                  // beginning of the state

@@ -56,12 +56,12 @@ GuardProcess::GuardProcess(int program, const std::string& url, Duration patienc
 }
 
 void GuardProcess::OpenLine() {
-  for (bool has_told = false; !line_;) {
+  for (bool has_reported = false; !line_;) {
     try {
       line_ = OpenTransport(url_);
     } catch (const InputError&) {
       if (MarkWork(url_.text).is_open()) throw;
-      if (!std::exchange(has_told, true)) SendTo(program_, GuardMessage::kWaits);
+      if (!std::exchange(has_reported, true)) SendTo(program_, GuardMessage::kWaits);
       if (ReceiveFrom(program_, buffer_).is_end) throw;
       std::this_thread::sleep_for(kTick);
     }

@@ -423,7 +423,8 @@ TEST_F(AutopilotTest, ReportsTruePoseOfSimulation) {
   EXPECT_NEAR(ToSeconds(now_ - true_poses_[0].time), 0.002, 0.001);
 }
 
-// SIM_STATE has no time of its own, and on a link with varying delay its arrival says little.
+// SIM_STATE has no time of its own, and on a link with varying delay its arrival time is
+// inaccurate.
 TEST_F(AutopilotTest, TimesTruePoseBySurroundingAttitudes) {
   AutopilotOptions options;
   options.wants_true_pose = true;

@@ -84,7 +84,7 @@ bool StreamRequests::Next(Time now, Request* request) {
   return false;
 }
 
-void StreamRequests::AskAgain() {
+void StreamRequests::RequestAgain() {
   for (Stream& stream : streams_) {
     stream.requests = 0;
     stream.has_come = false;

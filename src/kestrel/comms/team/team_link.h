@@ -84,7 +84,7 @@ class TeamLink {
   TeamView View() { return ViewTeam(member_, Now(), &fusion_); }
   void ChooseAgain();
   std::vector<std::optional<Claim>> Claims() const;
-  void SayWhoIsAwaited() const;
+  void ReportAwaited() const;
 
   TeamLinkOptions options_;
   TeamMember member_;
