@@ -367,7 +367,7 @@ struct Teller {
   const std::function<void(const std::string&)>& tell;
 };
 
-void TellUnusedKeys(const Entry& map, const Teller& teller) {
+void ReportUnusedKeys(const Entry& map, const Teller& teller) {
   constexpr std::size_t kMost = 8;
   std::vector<std::string> unused = UnusedKeys(map);
   if (unused.empty() || !teller.tell) return;
@@ -390,7 +390,7 @@ CameraCalibration ReadCamera(const Entry& camera, const Teller& teller) {
   if (const std::optional<Entry> name = camera.Find({"camera_name"})) {
     calibration->name = name->Text();
   }
-  TellUnusedKeys(camera, teller);
+  ReportUnusedKeys(camera, teller);
   return *calibration;
 }
 
@@ -421,7 +421,7 @@ CameraCalibration ReadChain(const Entry& root, const std::vector<std::string>& n
   calibration.name = name;
   // The other cameras' keys count as used.
   for (const std::string& other : names) root.Find({other.c_str()});
-  TellUnusedKeys(root, teller);
+  ReportUnusedKeys(root, teller);
   return calibration;
 }
 

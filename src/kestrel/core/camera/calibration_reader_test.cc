@@ -129,7 +129,7 @@ std::string Refusal(const std::string& text, const std::string& camera = "") {
   return "";
 }
 
-// Returns what is told of a text that is read.
+// Returns the message about a text that is read.
 std::string ToldOf(const std::string& text) {
   std::string told;
   ParseCalibration(text, "lens.yaml", "", [&](const std::string& line) { told += line; });

@@ -219,7 +219,7 @@ TEST(PoseHistory, AccelerationIsChangeOfReportedVelocity) {
     history.Add(sample);
   }
   EXPECT_NEAR(history.Acceleration().x(), -3, 1e-9);
-  history.Add(Sample(1.02, 0));  // tells no motion
+  history.Add(Sample(1.02, 0));  // no motion given
   EXPECT_EQ(history.Acceleration(), Eigen::Vector3d(0, 0, 0));
 }
 
