@@ -12,7 +12,7 @@
 namespace kestrel {
 namespace {
 
-// The files by which a Raspberry Pi tells its state.
+// The files in which a Raspberry Pi reports its state.
 class ComputerChecksTest : public ::testing::Test {
  protected:
   void Write(const std::string& name, const std::string& text) const {

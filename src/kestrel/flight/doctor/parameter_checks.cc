@@ -251,9 +251,9 @@ struct LossTimeout {
 void CheckLossTimeout(const LossTimeout& timeout, ParameterRules* rules) {
   constexpr double kWanted_s = 0.3;
   constexpr double kMetres = 0.6;  // beyond it a UAV that descends hits the ground
-  const double told_s = rules->Find(timeout.name).value_or(0);
-  rules->Want(timeout.name, told_s > kMetres ? Verdict::kWrong : Verdict::kDoubtful,
-              {kWanted_s, told_s < timeout.shortest_s
+  const double configured_s = rules->Find(timeout.name).value_or(0);
+  rules->Want(timeout.name, configured_s > kMetres ? Verdict::kWrong : Verdict::kDoubtful,
+              {kWanted_s, configured_s < timeout.shortest_s
                               ? "it stops whenever the link is slow"
                               : "so long the last velocity and acceleration are flown on when "
                                 "set-points stop"},

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 constexpr double kHeightGain = 1;  // climb rate per metre below the wanted height
 constexpr double kResting_mps =
     0.25;  // a UAV that sinks more slowly than this on command to descend rests
-constexpr double kToldDown_mps = 0.3;
+constexpr double kCommandedDown_mps = 0.3;
 constexpr double kMaxClosing_mps = 1;  // if it moves faster over the target it does not descend
 // Offset, in cones, at which following ends, and at which the last bit ends.
 constexpr double kFollowCones = 4;
@@ -422,9 +422,9 @@ void LandingGuidance::ChooseDescent(const GuidanceInput& input, const Situation&
 // reports it.
 bool LandingGuidance::FindContact(const GuidanceInput& input, const Situation& now) {
   // A UAV without a command to descend may hover near the deck.
-  const bool is_told_down = sent_ && sent_->velocity.z() < -kToldDown_mps;
+  const bool is_commanded_down = sent_ && sent_->velocity.z() < -kCommandedDown_mps;
   std::optional<ContactDetector::Deck> deck;
-  if (input.target && is_told_down) {
+  if (input.target && is_commanded_down) {
     deck = ContactDetector::Deck{input.target->motion.position(), input.target->motion.velocity()};
   }
   const bool was_in_contact = phase_ == GuidancePhase::kLanded;

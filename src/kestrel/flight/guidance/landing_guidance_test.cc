@@ -55,7 +55,7 @@ struct Autopilot {
   TestUavOptions uav;
 };
 
-// Autopilots that differ in everything that guidance is not told.
+// Autopilots that differ in everything that guidance does not know.
 TEST(LandingGuidanceTest, LandsWithDifferentAutopilots) {
   TestUavOptions stiff;
   stiff.compensates_drag = true;

@@ -34,7 +34,7 @@ TargetEstimate Pad(double yaw, double period, double turn_rate = 0) {
   return target;
 }
 
-// A nose that does at once what it is told, over a pad that turns at a rate.
+// A nose that follows its commands at once, over a pad that turns at a rate.
 struct Nose {
   double yaw = 0;
   double time_s = 0;

@@ -74,7 +74,7 @@ class TagMessagesTest : public ::testing::Test {
   const RigidTransform pose_ = BoardBelow(2.5, {0.2, -0.1}, Radians(50), {0.2, -0.1, 0});
 };
 
-// Messages for listeners have what libapriltag says of the same image.
+// Messages for listeners match libapriltag's results for the same image.
 TEST_F(TagMessagesTest, CornersAndHomographyMatchLibapriltag) {
   const TagBoard board = BoardOf({7});
   const cv::Mat image = ImageOf(board);
