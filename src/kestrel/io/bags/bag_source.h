@@ -37,7 +37,7 @@ class BagSource : public FrameSource {
  private:
   std::string NameOf(std::size_t topic) const;
   void Tell(const std::string& text) const;
-  void TellWhatIsMissing() const;
+  void ReportMissing() const;
   void ReadCameraInfo();
   std::string ReadFirstImages();
   // An image of the bag; one that cannot be read has a fault in its place.

@@ -80,7 +80,7 @@ std::string WrongCamera(const TestFolder& folder, const Change& change) {
   return folder / "flight.mcap";
 }
 
-// Returns a bag whose header says that it is encrypted, as `rosbag encrypt` does.
+// Returns a bag whose header declares it encrypted, as `rosbag encrypt` does.
 std::string EncryptedBag(const TestFolder& folder) {
   std::string header;
   PutText("op=\3", &header);

@@ -182,7 +182,7 @@ std::string WithoutChecksums(std::string bytes) {
   return bytes;
 }
 
-// Replaces the footer by one that says that there is no summary.
+// Replaces the footer by one that declares no summary.
 std::string WithoutSummary(std::string bytes) {
   constexpr std::size_t kFooterAndMagic = 20 + 8;
   return bytes.replace(bytes.size() - kFooterAndMagic, 8, 8, '\0');

@@ -33,7 +33,7 @@ class VideoDecoder {
 
  private:
   GstSamplePointer Pull();
-  std::size_t AskForCount() const;
+  std::size_t RequestCount() const;
 
   GstElementPointer pipeline_;
   GstElementPointer sink_;

@@ -147,7 +147,7 @@ TEST(VideoSource, ReadsVariableRateAndLateStartCompletely) {
     TestFolder::CutOff(file, 0.98);
     EXPECT_THAT(InputErrorOf([&] { FramesOf(file); }), HasSubstr(file)) << muxer << ", cut";
   }
-  // The container tells of 30 frames a second; a third of them is not there.
+  // The container declares 30 frames a second; a third of them is missing.
   const std::string file = folder / "changes.mkv";
   MakeFile(picture + "framerate=30/1 ! jpegenc ! identity drop-probability=0.3 ! matroskamux ! " +
            "filesink location=" + file);
