@@ -55,7 +55,7 @@ class Px4Target {
   bool is_filtering_ = false;
   std::int64_t fused_us_ = 0;
   int outliers_ = 0;  // in a row
-  std::int64_t told_old_us_ = 0;
+  std::int64_t reported_old_us_ = 0;
 };
 
 }  // namespace kestrel

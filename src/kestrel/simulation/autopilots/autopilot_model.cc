@@ -140,7 +140,7 @@ void AutopilotModel::Step(Time now) {
 void AutopilotModel::StepOnce(Time now) {
   const FlightCommand command = Fly();
   uav_.Step(now, command, is_armed_);
-  world_.TellPose(uav_.pose());
+  world_.ReportPose(uav_.pose());
   ObserveFlight(now);
   landing_->Estimate(state_);
   detector_.Observe(state_, command);

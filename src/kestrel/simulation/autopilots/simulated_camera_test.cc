@@ -142,7 +142,7 @@ TEST_F(SimulatedCameraTest, UsesTruePosesWhenReportedOnesAreWrong) {
   const Vector3d start = world_.PatternAt(kStart).translation + Vector3d(-0.2, 0.3, 3);
   for (int i = 0; i < 25; ++i) {
     const PoseSample pose = PoseOver(start, kStart + i * 20ms);
-    world_.TellPose(pose);
+    world_.ReportPose(pose);
     reported.AddPose(pose);
     informed.AddPose(PoseOver(start + Vector3d(5, 0, 0), kStart + (i - 10) * 20ms));
   }

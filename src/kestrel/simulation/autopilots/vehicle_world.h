@@ -80,7 +80,7 @@ class VehicleWorld {
   // they take no time. One listener at a time; nothing: none.
   using PoseListener = std::function<void(const PoseSample& pose)>;
   void ListenToPoses(PoseListener listener);
-  void TellPose(const PoseSample& pose);
+  void ReportPose(const PoseSample& pose);
 
   const LandingScene& scene() const { return scene_; }
   const VehicleWorldOptions& options() const { return options_; }
