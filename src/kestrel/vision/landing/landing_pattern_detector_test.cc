@@ -178,8 +178,8 @@ TEST_F(LandingPatternDetectorTest, RejectsOtherSigns) {
   EXPECT_LE(taken, 2);
 }
 
-// Rings of 44 px, 6 to 15 px high and blurred: too few pixels across to tell every letter from a
-// cross.
+// Rings of 44 px, 6 to 15 px high and blurred: too few pixels across to distinguish every letter
+// from a cross.
 TEST_F(LandingPatternDetectorTest, RejectsLettersInFlatRings) {
   constexpr int kImages = 150;
   Random random(12);

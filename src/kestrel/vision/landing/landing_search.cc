@@ -130,8 +130,8 @@ void LandingSearch::TestCrosses(std::size_t pass) {
 }
 
 bool LandingSearch::IsOutOfTime() const {
-  const double told_ms = models_.options.max_search_ms;
-  const double limit_ms = told_ms > 0 ? told_ms : hint_.max_search_ms;
+  const double configured_ms = models_.options.max_search_ms;
+  const double limit_ms = configured_ms > 0 ? configured_ms : hint_.max_search_ms;
   if (limit_ms == 0) return false;
   const std::chrono::duration<double, std::milli> spent = models_.now() - start_;
   return spent.count() > limit_ms;

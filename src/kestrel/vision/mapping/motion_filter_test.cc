@@ -23,7 +23,7 @@ constexpr double kPeriod_s = 0.1;
 constexpr double kSigma_m = 0.035;  // error of a detection from 6 m, as estimated by the pipeline
 constexpr int kSeeds = 20;
 
-// Errors that sightings at one time share, and the clock shift that the map is told.
+// Errors that sightings at one time share, and the clock shift that the map is given.
 struct SharedError {
   Path error = [](double /*time_s*/) { return Vector3d(0, 0, 0); };
   Path clock_shift = [](double /*time_s*/) { return Vector3d(0, 0, 0); };

@@ -53,14 +53,14 @@ class HuntPipeline::Impl {
  private:
   // The given heights of camera and ground, in the world or, with an altitude, in a world whose z =
   // 0 is the ground.
-  struct ToldHeights {
+  struct GivenHeights {
     double camera_m;
     GroundHeight ground;
   };
-  std::optional<ToldHeights> HeightsTold() const;
+  std::optional<GivenHeights> FindGivenHeights() const;
 
   void Detect(const cv::Mat& image);
-  void UpdateGround(const ToldHeights& told);
+  void UpdateGround(const GivenHeights& told);
   void LocateInWorld();
   void UpdateMap();
   void RememberForTracking();
@@ -110,20 +110,20 @@ const HuntObservation& HuntPipeline::Impl::Process(const cv::Mat& image, Time ti
   return observation_;
 }
 
-std::optional<HuntPipeline::Impl::ToldHeights> HuntPipeline::Impl::HeightsTold() const {
+std::optional<HuntPipeline::Impl::GivenHeights> HuntPipeline::Impl::FindGivenHeights() const {
   if (const auto& world_from_camera = observation_.world_from_camera) {
-    return ToldHeights{
+    return GivenHeights{
         world_from_camera->translation.z(),
         {options_.ground_height_m, std::hypot(options_.pose_sigma_m, options_.ground_sigma_m)}};
   }
   if (!altitude_m_) return std::nullopt;
-  return ToldHeights{*altitude_m_,
-                     {0, std::hypot(kAltitudeShare * *altitude_m_, options_.ground_sigma_m)}};
+  return GivenHeights{*altitude_m_,
+                      {0, std::hypot(kAltitudeShare * *altitude_m_, options_.ground_sigma_m)}};
 }
 
 void HuntPipeline::Impl::Detect(const cv::Mat& image) {
   ObjectHint hint;
-  std::optional<ToldHeights> told = HeightsTold();
+  std::optional<GivenHeights> told = FindGivenHeights();
   if (const auto& world_from_camera = observation_.world_from_camera) {
     hint.up_in_camera = world_from_camera->rotation.conjugate() * Eigen::Vector3d::UnitZ();
     hint.up_sigma_rad = Radians(options_.attitude_sigma_deg);
@@ -152,7 +152,7 @@ void HuntPipeline::Impl::Detect(const cv::Mat& image) {
 }
 
 // Objects that agree on another height of the ground overrule the given height.
-void HuntPipeline::Impl::UpdateGround(const ToldHeights& told) {
+void HuntPipeline::Impl::UpdateGround(const GivenHeights& told) {
   ObjectReport& report = observation_.report;
   const auto ground_by = [&](const HeightBySize& height, double share) {
     return GroundHeight{told.camera_m - height.camera_height_m,

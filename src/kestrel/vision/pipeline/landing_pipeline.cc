@@ -76,7 +76,7 @@ class LandingPipeline::Impl {
 
   void Detect(const cv::Mat& image, LandingObservation* observation);
   void LookForOthers(const cv::Mat& image, LandingObservation* observation);
-  ToldView WhatIsTold(const LandingObservation& observation) const;
+  GivenView GivenViewOf(const LandingObservation& observation) const;
   double AltitudeExcess() const;
   void AddErrorOfFocalLength(LandingDetection* detection) const;
   void AddTrack(const LandingObservation& observation, LandingHint* hint) const;
@@ -168,7 +168,7 @@ LandingObservation LandingPipeline::Impl::Process(const cv::Mat& image, Time tim
 }
 
 void LandingPipeline::Impl::Detect(const cv::Mat& image, LandingObservation* observation) {
-  const ToldView told = WhatIsTold(*observation);
+  const GivenView told = GivenViewOf(*observation);
   LandingHint hint;
   const double excess_m = AltitudeExcess();
   if (told.altitude_m > excess_m) hint.altitude_m = *told.altitude_m - excess_m;
@@ -206,10 +206,10 @@ void LandingPipeline::Impl::AddErrorOfFocalLength(LandingDetection* detection) c
   detection->covariance.topLeftCorner<3, 3>() += error_m * error_m.transpose();
 }
 
-ToldView LandingPipeline::Impl::WhatIsTold(const LandingObservation& observation) const {
+GivenView LandingPipeline::Impl::GivenViewOf(const LandingObservation& observation) const {
   const auto& world_from_camera = observation.world_from_camera;
   if (!world_from_camera) return {altitude_m_, {}};
-  ToldView told;
+  GivenView told;
   if (options_.altitude_hint) {
     told.altitude_m = world_from_camera->translation.z() - options_.target_height_m;
   }

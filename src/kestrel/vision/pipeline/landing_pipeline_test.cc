@@ -249,7 +249,7 @@ TEST_F(LandingPipelineTest, WrongTrackDoesNotHidePattern) {
   }
 }
 
-// A standing pattern in 12 frames, with a told altitude that contradicts the view.
+// A standing pattern in 12 frames, with a given altitude that contradicts the view.
 TEST_F(LandingPipelineTest, WrongNavigationAltitudeIsReportedAndHidesNothing) {
   options_.target_height_m = 0.5;
   for (const double excess_m : {0.0, 10.0, 500.0, -10.0}) {

@@ -70,7 +70,7 @@ std::optional<Contradiction> ToldContradictions::Latest::Median() const {
   return Contradiction{value, std::hypot(sigma, scatter / std::sqrt(count)), count};
 }
 
-void ToldContradictions::Add(const ToldView& told, const LandingDetection& seen) {
+void ToldContradictions::Add(const GivenView& told, const LandingDetection& seen) {
   // Without an attitude the pattern is assumed to be level.
   const auto up_by = [&](const RigidTransform& pose) {
     return told.up_in_camera.value_or(Normal(pose));

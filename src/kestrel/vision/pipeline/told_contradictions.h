@@ -12,7 +12,7 @@
 namespace kestrel {
 
 // Knowledge about a view of the pattern, given by the navigation or by the user.
-struct ToldView {
+struct GivenView {
   std::optional<double> altitude_m;             // height of the camera above the pattern
   std::optional<Eigen::Vector3d> up_in_camera;  // unit vector away from the ground
 };
@@ -28,7 +28,7 @@ struct Contradiction {
 // detection count: agreement with one of them is no contradiction.
 class ToldContradictions {
  public:
-  void Add(const ToldView& told, const LandingDetection& seen);
+  void Add(const GivenView& told, const LandingDetection& seen);
 
   // Returns by how much (m) the given altitude is larger than the seen one. Nothing where they
   // agree, where too little was seen, or where the attitude is wrong, because the altitude depends

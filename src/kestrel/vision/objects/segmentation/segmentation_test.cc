@@ -25,7 +25,7 @@ const ColorGrid& Grid() {
   return grid;
 }
 
-// Area, bounding box and colour: enough to tell segments apart.
+// Area, bounding box and colour: enough to distinguish segments.
 using Key = std::tuple<std::size_t, int, int, int, int, int>;
 
 std::set<Key> FindAll(const cv::Mat& image, int step, std::size_t min_pixels) {
