@@ -22,7 +22,7 @@ std::vector<std::string> ExampleConfigurations() {
   return files;
 }
 
-TEST(ExamplesTest, ConfigurationsAreRead) {
+TEST(ExamplesTest, ConfigurationsAreReadable) {
   const std::vector<std::string> files = ExampleConfigurations();
   EXPECT_GE(files.size(), 3u);
   for (const std::string& file : files) {
@@ -34,7 +34,7 @@ TEST(ExamplesTest, ConfigurationsAreRead) {
 }
 
 // The variables that the unit expands are in its environment file, and that file names an example.
-TEST(ExamplesTest, TheUnitAndItsEnvironmentAgree) {
+TEST(ExamplesTest, UnitAndEnvironmentFileAgree) {
   const std::string unit = ReadFile(kExamples + "/kestrel-fly.service");
   const std::string environment = ReadFile(kExamples + "/kestrel-fly.env");
   const std::regex variable("KESTREL_[A-Z]+");
@@ -55,7 +55,7 @@ TEST(ExamplesTest, TheUnitAndItsEnvironmentAgree) {
 class ExampleCommandTest : public CommandTest {};
 
 // The options of the unit's command exist: the command fails only because of the camera.
-TEST_F(ExampleCommandTest, TheUnitsCommandIsUnderstood) {
+TEST_F(ExampleCommandTest, CommandOfUnitIsValid) {
   const Outcome outcome = Run("fly /dev/video987 --camera " + folder_ / "none.yaml" + " --config " +
                               kExamples + "/usb_global_shutter.yaml --autopilot " +
                               "serial:///dev/ttyAMA0:921600 --record " + folder_ / "r");

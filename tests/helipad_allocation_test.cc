@@ -10,7 +10,7 @@
 namespace kestrel {
 namespace {
 
-TEST(HelipadAllocationTest, NoneAfterTheFirstFrame) {
+TEST(HelipadAllocationTest, AllocatesNothingAfterFirstFrame) {
   const CameraModel camera(PaperCamera());
   const HelipadDetectorOptions options;
   const HelipadDetector detector(camera, options);

@@ -27,7 +27,7 @@ std::string DataFolder(const std::string& name) {
 
 bool IsThere(const std::string& name) { return std::filesystem::exists(DataFolder(name)); }
 
-TEST(HuntRealTest, DiscsAreFoundAndNothingElse) {
+TEST(HuntRealTest, FindsDiscsAndNothingElse) {
   if (!IsThere("hunt_real")) GTEST_SKIP() << kNoRealFrames;
   const RealFrameScore score = ScoreRealFrame(DataFolder("hunt_real"));
   int found = 0;
@@ -46,7 +46,7 @@ class HuntHardTest : public testing::TestWithParam<const char*> {
   std::string Name() const { return std::string("hunt_hard/") + GetParam(); }
 };
 
-TEST_P(HuntHardTest, EveryWantedObjectIsFoundAndNothingElse) {
+TEST_P(HuntHardTest, FindsEveryWantedObjectAndNothingElse) {
   if (!IsThere(Name())) GTEST_SKIP() << kNoRealFrames;
   std::vector<double> center_errors_px, depth_errors;
   for (const ObjectComparison& c : ScoreHunt(DataFolder(Name())).comparisons) {
@@ -60,7 +60,7 @@ TEST_P(HuntHardTest, EveryWantedObjectIsFoundAndNothingElse) {
   EXPECT_LE(Median(depth_errors), 0.015);
 }
 
-TEST_P(HuntHardTest, DigitsAreRight) {
+TEST_P(HuntHardTest, ReadsDigitsCorrectly) {
   if (!IsThere(Name())) GTEST_SKIP() << kNoRealFrames;
   const DigitScore digits = ScoreHunt(DataFolder(Name())).digits;
   EXPECT_GE(digits.right, 0.9 * digits.count);
@@ -104,7 +104,7 @@ ObjectModel TaughtModel(const std::string& folder) {
   return editor.model();
 }
 
-TEST(TaughtModelTest, TenStrokesFindWhatTheBuiltInModelFindsAndNothingElse) {
+TEST(TaughtModelTest, TenStrokesMatchBuiltInModelAndFindNothingElse) {
   const std::string name = "hunt_hard/discs";
   if (!IsThere(name)) GTEST_SKIP() << kNoRealFrames;
   const auto found = [&](const ObjectModel& model) {

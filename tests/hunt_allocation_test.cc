@@ -43,9 +43,9 @@ void ExpectNoneAfterWarmUp(const HuntPipelineOptions& options) {
   }
 }
 
-TEST(HuntAllocationTest, NoneInCompleteSearch) { ExpectNoneAfterWarmUp({}); }
+TEST(HuntAllocationTest, AllocatesNothingInCompleteSearch) { ExpectNoneAfterWarmUp({}); }
 
-TEST(HuntAllocationTest, NoneWhenTracking) {
+TEST(HuntAllocationTest, AllocatesNothingWhenTracking) {
   HuntPipelineOptions options;
   options.track_count = 2;
   ExpectNoneAfterWarmUp(options);

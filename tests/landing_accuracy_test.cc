@@ -29,7 +29,7 @@ LandingTally ScoreSets(const std::vector<LandingFrameSet>& sets, HintOf hint) {
 
 class LandingStillsTest : public testing::TestWithParam<std::size_t> {};
 
-TEST_P(LandingStillsTest, PatternIsFoundWhereItIs) {
+TEST_P(LandingStillsTest, FindsPatternAtItsPlace) {
   constexpr double kMinFoundShare[] = {0.85, 0.85, 0.9, 0.9, 0.85};
   constexpr int kStills = 40;
   const AltitudeBin& bin = kAltitudeBins[GetParam()];
@@ -53,7 +53,7 @@ INSTANTIATE_TEST_SUITE_P(Altitudes, LandingStillsTest,
                            return "UpTo" + std::to_string(static_cast<int>(bin.max_m)) + "m";
                          });
 
-TEST(LandingLookalikesTest, AreNotTakenForThePattern) {
+TEST(LandingLookalikesTest, AreNotTakenForPattern) {
   constexpr int kStills = 60;
   LandingStillOptions options;
   options.min_altitude_m = 0.35;
@@ -67,7 +67,7 @@ TEST(LandingLookalikesTest, AreNotTakenForThePattern) {
   }
 }
 
-TEST(LandingRealTest, PatternIsFoundWhereItIs) {
+TEST(LandingRealTest, FindsPatternAtItsPlace) {
   const std::vector<LandingFrameSet> sets = ReadLandingReal(KESTREL_DATA_DIR);
   if (sets.empty()) GTEST_SKIP() << kNoRealFrames;
   const LandingTally tally = ScoreSets(sets, NoHint);
@@ -82,7 +82,7 @@ TEST(LandingRealTest, PatternIsFoundWhereItIs) {
 
 class LandingHardTest : public testing::TestWithParam<HintOf> {};
 
-TEST_P(LandingHardTest, PatternIsFoundWhereItIs) {
+TEST_P(LandingHardTest, FindsPatternAtItsPlace) {
   const std::vector<LandingFrameSet> sets = ReadLandingHard(KESTREL_DATA_DIR);
   if (sets.empty()) GTEST_SKIP() << kNoRealFrames;
   const LandingTally tally = ScoreSets(sets, GetParam());

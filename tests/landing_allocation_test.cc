@@ -75,26 +75,26 @@ void ExpectNoAllocationAfterWarmUp(const std::vector<Shot>& shots) {
   }
 }
 
-TEST(LandingAllocationTest, NoneWithoutHint) {
+TEST(LandingAllocationTest, AllocatesNothingWithoutHint) {
   ExpectNoAllocationAfterWarmUp(ShotsOfPattern(/*with_hint=*/false));
 }
 
-TEST(LandingAllocationTest, NoneWithHint) {
+TEST(LandingAllocationTest, AllocatesNothingWithHint) {
   ExpectNoAllocationAfterWarmUp(ShotsOfPattern(/*with_hint=*/true));
 }
 
-TEST(LandingAllocationTest, NoneWithoutPattern) {
+TEST(LandingAllocationTest, AllocatesNothingWithoutPattern) {
   ExpectNoAllocationAfterWarmUp(ShotsOfLookalikes());
 }
 
 // A hint that comes late, like a tracker's, meets a workspace that has warmed up without it.
-TEST(LandingAllocationTest, NoneWhenTheHintComesLate) {
+TEST(LandingAllocationTest, AllocatesNothingWithLateHint) {
   std::vector<Shot> shots = ShotsOfPattern(/*with_hint=*/true);
   for (int i = 0; i < kWarmUpFrames; ++i) shots[i].hint = {};
   ExpectNoAllocationAfterWarmUp(shots);
 }
 
-TEST(TrackerAllocationTest, NoneAfterConstruction) {
+TEST(TrackerAllocationTest, AllocatesNothingAfterConstruction) {
   TargetTracker tracker({});
   const int count = CountAllocations([&] {
     for (int i = 0; i < 500; ++i) {

@@ -37,7 +37,7 @@ void ExpectAsGood(std::string_view what, const LandingTally& tally, const Landin
   EXPECT_LE(tally.wrong, right.wrong + 1) << name;
 }
 
-TEST(LandingRobustnessTest, AWrongCalibrationCostsLittle) {
+TEST(LandingRobustnessTest, WrongCalibrationCostsLittle) {
   const LandingFrameSet stills = RenderStills(kStillsPerAltitude, PrintErrors().front(), kThreads);
   LandingTally right;
   for (const CalibrationError& error : CalibrationErrors()) {
@@ -50,7 +50,7 @@ TEST(LandingRobustnessTest, AWrongCalibrationCostsLittle) {
   }
 }
 
-TEST(LandingRobustnessTest, AWrongHintCostsNothing) {
+TEST(LandingRobustnessTest, WrongHintCostsNothing) {
   const LandingFrameSet stills = RenderStills(kStillsPerAltitude, PrintErrors().front(), kThreads);
   LandingTally right;
   for (const ToldHint& told : ToldHints()) {
@@ -60,7 +60,7 @@ TEST(LandingRobustnessTest, AWrongHintCostsNothing) {
   }
 }
 
-TEST(LandingRobustnessTest, APrintThatIsNotFlatCostsLittle) {
+TEST(LandingRobustnessTest, UnevenPrintCostsLittle) {
   LandingTally flat;
   for (const PrintError& print : PrintErrors()) {
     const LandingFrameSet stills = RenderStills(kStillsPerAltitude, print, kThreads);
@@ -72,7 +72,7 @@ TEST(LandingRobustnessTest, APrintThatIsNotFlatCostsLittle) {
 
 // Near the pattern a wrong focal length distorts the pose. The edges show it, and the covariance
 // grows.
-TEST(LandingRobustnessTest, TheCovarianceKnowsOfAWrongFocalLength) {
+TEST(LandingRobustnessTest, CovarianceGrowsWithWrongFocalLength) {
   constexpr std::size_t kStills = 30;
   constexpr double kMaxDistance_m = 1.2;
   constexpr double kDegreesOfFreedom = 3;

@@ -10,7 +10,7 @@
 namespace kestrel {
 namespace {
 
-TEST(TagAllocationTest, NoneAfterTheFirstFrame) {
+TEST(TagAllocationTest, AllocatesNothingAfterFirstFrame) {
   const CameraModel camera(PaperCamera());
   const TagBoard board{{BoardTag()}};
   const TagBoardDetector detector(camera, board, {});

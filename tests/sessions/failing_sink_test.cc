@@ -128,7 +128,7 @@ INSTANTIATE_TEST_SUITE_P(Sinks, Throwing,
                          ::testing::Values(ThrowingSink::kFrame, ThrowingSink::kReport,
                                            ThrowingSink::kEvent, ThrowingSink::kEnd));
 
-TEST_F(FailingSink, TheOnlySinkThrowsAndTheSummarySaysIt) {
+TEST_F(FailingSink, SummaryReportsThatOnlySinkThrows) {
   ThrowingSink sink(ThrowingSink::kFrame);
   DrawnCamera camera(kSessionFrames, PatternImage, 3);
   LiveSession session(LandingParts(&camera, &sink), SessionOptions());
@@ -137,14 +137,14 @@ TEST_F(FailingSink, TheOnlySinkThrowsAndTheSummarySaysIt) {
   EXPECT_THAT(session.Summary(), HasSubstr("has failed: the sink is broken"));
 }
 
-TEST_F(FailingSink, TheCallersFunctionThrows) {
+TEST_F(FailingSink, SessionRethrowsErrorOfCaller) {
   DrawnCamera camera(kSessionFrames, PatternImage, 3);
   LiveSession session(LandingParts(&camera, &sinks_), SessionOptions());
   EXPECT_THROW(session.Run([]() -> bool { throw std::runtime_error("no more"); }),
                std::runtime_error);
 }
 
-TEST_F(FailingSink, AWriterThrows) {
+TEST_F(FailingSink, SurvivesThrowingWriter) {
   std::size_t dropped = 0;
   AsynchronousSinkOptions options{.thread_name = "broken", .tell = {}};
   options.tell = [this](const std::string& error) { Say("broken: " + error); };
@@ -157,7 +157,7 @@ TEST_F(FailingSink, AWriterThrows) {
 }
 
 // Without a limit the end would wait for all that waits: 8 frames, 8 s.
-TEST_F(FailingSink, AWriterStalls) {
+TEST_F(FailingSink, SurvivesStalledWriter) {
   std::size_t dropped = 0;
   std::size_t written = 0;
   sinks_.Add(std::make_unique<AsynchronousSink>(
@@ -176,7 +176,7 @@ TEST_F(FailingSink, AWriterStalls) {
   EXPECT_EQ(written + dropped, processed_) << "each frame is written or counted";
 }
 
-TEST_F(FailingSink, TheDiskOfAnMcapFileIsFull) {
+TEST_F(FailingSink, SurvivesFullDiskOfMcapFile) {
   sinks_.Add(OpenMcapSink("/dev/full", /*replace=*/true, SmallCamera().intrinsics,
                           ViewOf(SmallCamera(), LandingPipelineOptions()),
                           [this](const std::string& text) { Say(text); }));
@@ -185,7 +185,7 @@ TEST_F(FailingSink, TheDiskOfAnMcapFileIsFull) {
   EXPECT_THAT(Told(), HasSubstr("/dev/full: cannot be written: the flight goes on without it"));
 }
 
-TEST_F(FailingSink, TheDiskOfARecordingFails) {
+TEST_F(FailingSink, SurvivesFailingDiskOfRecording) {
   LiveSessionParts parts;
   parts.record = folder_ / "flight";
   // At once, as the recorder goes on writing into it.
@@ -196,7 +196,7 @@ TEST_F(FailingSink, TheDiskOfARecordingFails) {
 }
 
 // A limit on the size of files simulates the full disk.
-TEST_F(FailingSink, TheDiskOfTheTablesIsFull) {
+TEST_F(FailingSink, SurvivesFullDiskOfTables) {
   LiveSessionParts parts;
   parts.output = folder_ / "tables";
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);
@@ -214,7 +214,7 @@ TEST_F(FailingSink, TheDiskOfTheTablesIsFull) {
   EXPECT_THAT(Told(), HasSubstr("the results cannot be written any more"));
 }
 
-TEST_F(FailingSink, ABrowserVanishes) {
+TEST_F(FailingSink, SurvivesVanishedBrowser) {
   FlightConsole* const console = sinks_.Add(std::make_unique<FlightConsole>(
       AnyPort(), "a flight", ViewOf(SmallCamera(), LandingPipelineOptions()),
       FlightExamination(SmallCamera(), ".", 0)));
@@ -229,7 +229,7 @@ TEST_F(FailingSink, ABrowserVanishes) {
   EXPECT_TRUE(staying.Next("sample"));
 }
 
-TEST_F(FailingSink, APeerOfRosVanishes) {
+TEST_F(FailingSink, SurvivesVanishedRosPeer) {
   const int domain = TestDomain();
   if (!Ros2Node::Knows(Detection3DArrayMessage::kType)) GTEST_SKIP() << "this build has no DDS";
   auto peer = std::make_unique<Ros2Node>(domain, Ros2NodeOptions{"peer"});

@@ -37,7 +37,7 @@ std::string EventsWithTagOf(double size_m) {
   return witness.seen().events;
 }
 
-TEST(GuidedSession, SearchesWhereThePadIsSeen) {
+TEST(GuidedSession, LimitsSearchToSightRange) {
   // The camera's focal length is 150 px; a tag with its margin takes 20 px, 10 cells of 8 in its
   // size.
   const std::string small = EventsWithTagOf(0.8);
@@ -101,7 +101,7 @@ float HeartbeatInterval(bool guides) {
 }
 
 // A pilot who takes the UAV back waits no longer than that.
-TEST(GuidedSession, AsksForTheModeTwentyTimesASecond) {
+TEST(GuidedSession, RequestsHeartbeatsAtTwentyHertz) {
   EXPECT_EQ(HeartbeatInterval(/*guides=*/true), 50000);
   EXPECT_EQ(HeartbeatInterval(/*guides=*/false), 0);
 }

@@ -140,7 +140,7 @@ std::size_t LeftOutByMcap(const std::string& events) {
   return at == std::string::npos ? 0 : std::stoul(events.substr(at + said.size()));
 }
 
-TEST(WholeSession, IsStartedAndStoppedSeveralTimes) {
+TEST(WholeSession, StartsAndStopsSeveralTimes) {
   constexpr int kFrames = 3000;  // half a minute; it is stopped before
   const TestFolder folder;
   const int domain = TestDomain();
@@ -179,7 +179,7 @@ TEST(WholeSession, IsStartedAndStoppedSeveralTimes) {
   EXPECT_TRUE(listener.HasHeard());
 }
 
-TEST(WholeSession, MayBeStoppedAtOnce) {
+TEST(WholeSession, StopsAtOnce) {
   const TestFolder folder;
   const int domain = TestDomain();
   for (int round = 0; round < 5; ++round) {
@@ -193,7 +193,7 @@ TEST(WholeSession, MayBeStoppedAtOnce) {
   }
 }
 
-TEST(WholeSession, ChangedOptionsHoldFromTheNextFrameOn) {
+TEST(WholeSession, AppliesChangedOptionsFromNextFrame) {
   DrawnCamera camera(100, PatternImage, 3);
   Witness witness;
   LiveSession session(LandingParts(&camera, &witness), SessionOptions());
@@ -251,7 +251,7 @@ class TeamUav {
   std::optional<LiveSession> session_;
 };
 
-TEST(WholeSession, ATeamSharesItsMap) {
+TEST(WholeSession, TeamSharesMap) {
   const int domain = TestDomain();
   if (!Ros2Node::Knows("tf2_msgs/TFMessage")) GTEST_SKIP() << "this build has no DDS";
   TeamUav a("a", domain);

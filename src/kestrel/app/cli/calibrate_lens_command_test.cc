@@ -37,7 +37,7 @@ class CalibrateLensCommandTest : public CommandTest {
   }
 };
 
-TEST_F(CalibrateLensCommandTest, AChessboardTellsTheLens) {
+TEST_F(CalibrateLensCommandTest, CalibratesLensFromChessboardViews) {
   const CameraModel truth({400, 300, 330, 330, 203, 147, DistortionModel::kNone, {}});
   const std::string board = "chessboard:8x5:0.03";
   for (const LensImage& view : RenderBoard(truth, ParseLensBoard(board), 24, 0.6, 2)) {
@@ -51,7 +51,7 @@ TEST_F(CalibrateLensCommandTest, AChessboardTellsTheLens) {
                    "expected chessboard:COLUMNSxROWS:SQUARE");
 }
 
-TEST_F(CalibrateLensCommandTest, FindsTheFisheyeFromNothingButImages) {
+TEST_F(CalibrateLensCommandTest, CalibratesFisheyeFromImagesAlone) {
   const CameraIntrinsics truth = PaperCamera();
   const std::string views = folder_ / "views";
   Succeed("simulate landing --scenario stills --seed 8 --set frames=60 --output " + views +
@@ -82,12 +82,12 @@ TEST_F(CalibrateLensCommandTest, FindsTheFisheyeFromNothingButImages) {
       ReadCalibration(camera).body_from_camera->rotation.isApprox(own.body_from_camera->rotation));
 }
 
-TEST_F(CalibrateLensCommandTest, RefusesLevelViewsAndSaysToTilt) {
+TEST_F(CalibrateLensCommandTest, RefusesLevelViewsAndAdvisesToTilt) {
   WriteLevelViews();
   ExpectInputError("calibrate lens " + (folder_ / "level"), "tilt the camera");
 }
 
-TEST_F(CalibrateLensCommandTest, SaysWhatIsWrongWithTheImages) {
+TEST_F(CalibrateLensCommandTest, ReportsUnusableImages) {
   for (int i = 0; i < 9; ++i) {
     WriteTestImage(folder_, fmt::format("gray/{}.png", i), cv::Mat(240, 320, CV_8UC1, 90));
   }
@@ -97,7 +97,7 @@ TEST_F(CalibrateLensCommandTest, SaysWhatIsWrongWithTheImages) {
   ExpectInputError("calibrate lens " + (folder_ / "nothing"), "nothing");
 }
 
-TEST_F(CalibrateLensCommandTest, WrongUsageIsStatusTwo) {
+TEST_F(CalibrateLensCommandTest, ExitsWithStatusTwoOnWrongUsage) {
   for (const char* arguments : {"calibrate lens", "calibrate lens a.png --model omni"}) {
     EXPECT_EQ(Run(arguments).status, 2) << arguments;
   }

@@ -24,7 +24,7 @@ class ConsoleCommandTest : public CommandTest {
   }
 };
 
-TEST_F(ConsoleCommandTest, AFlightIsSeen) {
+TEST_F(ConsoleCommandTest, ShowsFlight) {
   RunningCommand fly(
       "fly sim:standing --autopilot sim:px4 --console 127.0.0.1:0 --set fly.sim_camera.scale=0.4",
       folder_);
@@ -46,7 +46,7 @@ TEST_F(ConsoleCommandTest, AFlightIsSeen) {
   EXPECT_EQ(fly.End(), 0) << fly.Log();
 }
 
-TEST_F(ConsoleCommandTest, ACameraIsShownWithoutCalibrationAndAutopilot) {
+TEST_F(ConsoleCommandTest, ShowsCameraWithoutCalibrationAndAutopilot) {
   for (const char* camera : {"'videotestsrc is-live=true ! video/x-raw,width=320,height=240'",
                              "sim:standing --set fly.sim_camera.scale=0.4"}) {
     RunningCommand console(fmt::format("console {} --address 127.0.0.1:0", camera), folder_);
@@ -59,7 +59,7 @@ TEST_F(ConsoleCommandTest, ACameraIsShownWithoutCalibrationAndAutopilot) {
   }
 }
 
-TEST_F(ConsoleCommandTest, AFlightsSettingsAreSaved) {
+TEST_F(ConsoleCommandTest, SavesFlightSettings) {
   const std::string config = folder_.Write(
       "kestrel.yaml", "# ours\nfly:\n  sim_camera:\n    scale: 0.4\nlanding:\n  still: false\n");
   const auto answer = [](TestSocket* socket, const std::string& setting) {
@@ -88,7 +88,7 @@ TEST_F(ConsoleCommandTest, AFlightsSettingsAreSaved) {
   EXPECT_THAT(settings["error"].get<std::string>(), HasSubstr("the UAV is armed"));
 }
 
-TEST_F(ConsoleCommandTest, AFlightWithoutACalibrationShowsAndRecords) {
+TEST_F(ConsoleCommandTest, ShowsAndRecordsFlightWithoutCalibration) {
   const std::string kept = folder_ / "kept";
   RunningCommand fly(
       "fly 'videotestsrc is-live=true ! video/x-raw,width=320,height=240' --console 127.0.0.1:0"
@@ -108,7 +108,7 @@ TEST_F(ConsoleCommandTest, AFlightWithoutACalibrationShowsAndRecords) {
   EXPECT_FALSE(std::filesystem::is_empty(kept));
 }
 
-TEST_F(ConsoleCommandTest, MissingCameraIsReportedAndOpenedAgain) {
+TEST_F(ConsoleCommandTest, ReportsMissingCameraAndReopensIt) {
   RunningCommand console("console /dev/video63 --address 127.0.0.1:0", folder_);
   TestSocket socket(console.Port());
   nlohmann::json status = socket.Await("status");
@@ -118,7 +118,7 @@ TEST_F(ConsoleCommandTest, MissingCameraIsReportedAndOpenedAgain) {
   EXPECT_THAT(console.Log(), HasSubstr("kestrel: trying again: there is no /dev/video63, "));
 }
 
-TEST_F(ConsoleCommandTest, AFlightIsRecordedWhenThePageAsks) {
+TEST_F(ConsoleCommandTest, RecordsFlightOnRequestOfPage) {
   const std::string kept = folder_ / "kept";
   RunningCommand fly(
       "fly sim:standing --autopilot sim:px4 --console 127.0.0.1:0"
@@ -152,7 +152,7 @@ TEST_F(ConsoleCommandTest, AFlightIsRecordedWhenThePageAsks) {
   EXPECT_EQ(snapshots, 1);
 }
 
-TEST_F(ConsoleCommandTest, ARecordingIsReplayed) {
+TEST_F(ConsoleCommandTest, ReplaysRecording) {
   RunningCommand console("console " + Recording() + " --address 127.0.0.1:0", folder_);
   const int port = console.Port();
   ExpectPage(port);
@@ -178,7 +178,7 @@ TEST_F(ConsoleCommandTest, ARecordingIsReplayed) {
   EXPECT_EQ(console.End(), 0) << console.Log();
 }
 
-TEST_F(ConsoleCommandTest, ColoursAreTaughtAndSaved) {
+TEST_F(ConsoleCommandTest, TeachesAndSavesColours) {
   const std::string hunt =
       Simulate("hunt", "--seed 4 --set frames=2 --set shutter.rays_per_pixel=1");
   const std::string taught = folder_ / "taught";
@@ -203,7 +203,7 @@ TEST_F(ConsoleCommandTest, ColoursAreTaughtAndSaved) {
   Succeed("hunt " + hunt + " --model " + taught + "/objects.yaml");
 }
 
-TEST_F(ConsoleCommandTest, ColoursAreTaughtInFlightAndAfterIt) {
+TEST_F(ConsoleCommandTest, TeachesColoursDuringAndAfterFlight) {
   const std::string hunt =
       Simulate("hunt", "--seed 4 --set frames=2 --set shutter.rays_per_pixel=1");
   const std::string kept = folder_ / "kept";
@@ -244,7 +244,7 @@ TEST_F(ConsoleCommandTest, ColoursAreTaughtInFlightAndAfterIt) {
   EXPECT_EQ(console.End(), 0) << console.Log();
 }
 
-TEST_F(ConsoleCommandTest, APageCalibratesAsTheCommandAndReplacesNothing) {
+TEST_F(ConsoleCommandTest, PageCalibratesLikeCommandAndReplacesNothing) {
   const std::string flight =
       Simulate("landing", "--scenario aggressive --seed 11 --set frames=60 --set rate_hz=15");
   const std::string saved = folder_ / "saved";
@@ -277,7 +277,7 @@ TEST_F(ConsoleCommandTest, APageCalibratesAsTheCommandAndReplacesNothing) {
   EXPECT_EQ(browser.Send(browser.Get("/export/calibration-1.yaml")).body(), ReadFile(by_command));
 }
 
-TEST_F(ConsoleCommandTest, ABagIsPlayedAndRefusedInTheWordsOfTheCommand) {
+TEST_F(ConsoleCommandTest, PlaysBagAndRefusesItWithErrorOfCommand) {
   const std::string bag = folder_ / "flight.mcap";
   Succeed("convert " + Recording() + " " + bag);
   RunningCommand console("console " + bag + " --topic /camera/image_raw --address 127.0.0.1:0",
@@ -303,7 +303,7 @@ TEST_F(ConsoleCommandTest, ABagIsPlayedAndRefusedInTheWordsOfTheCommand) {
   ExpectInputError("console " + bag + " --topic /up", "flight.mcap: has no topic /up");
 }
 
-TEST_F(ConsoleCommandTest, AResultIsShownOverItsRecording) {
+TEST_F(ConsoleCommandTest, ShowsResultOverItsRecording) {
   const std::string flight = Recording();
   const std::string result = folder_ / "result";
   Succeed("land " + flight + " --output " + result);
@@ -328,7 +328,7 @@ TEST_F(ConsoleCommandTest, AResultIsShownOverItsRecording) {
   ExpectInputError("console " + flight + " " + result + " " + result, "is a second result");
 }
 
-TEST_F(ConsoleCommandTest, FaultsAreNamed) {
+TEST_F(ConsoleCommandTest, ReportsFaults) {
   const std::string fly = "fly sim:standing --autopilot sim:px4 --console ";
   ExpectInputError(fly + "8080", "--console '8080': expected ADDRESS:PORT");
   ExpectInputError(fly + "192.0.2.1:8080 --set console.token=0123456789abcdef",

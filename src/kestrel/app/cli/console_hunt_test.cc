@@ -28,7 +28,7 @@ class ConsoleHuntTest : public CommandTest {
   }
 };
 
-TEST_F(ConsoleHuntTest, AHuntIsReplayedAndRunAgain) {
+TEST_F(ConsoleHuntTest, ReplaysHuntAndRunsItAgain) {
   const std::string flight = Recording();
   RunningCommand console("console --hunt " + flight + " --address 127.0.0.1:0", folder_);
   const int port = console.Port();
@@ -69,7 +69,7 @@ TEST_F(ConsoleHuntTest, AHuntIsReplayedAndRunAgain) {
   EXPECT_EQ(console.End(), 0) << console.Log();
 }
 
-TEST_F(ConsoleHuntTest, AResultIsShownOverItsRecording) {
+TEST_F(ConsoleHuntTest, ShowsResultOverItsRecording) {
   const std::string flight = Recording();
   const std::string result = folder_ / "result";
   Succeed("hunt " + flight + " --output " + result);
@@ -92,7 +92,7 @@ TEST_F(ConsoleHuntTest, AResultIsShownOverItsRecording) {
   EXPECT_THAT(empty.err, HasSubstr("has no row of the recording's frame at"));
 }
 
-TEST_F(ConsoleHuntTest, AClipIsGivenAway) {
+TEST_F(ConsoleHuntTest, ExportsClip) {
   RunningCommand console("console --hunt " + Recording() + " --address 127.0.0.1:0", folder_);
   const int port = console.Port();
   TestSocket socket(port);

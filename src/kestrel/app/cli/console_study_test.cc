@@ -23,7 +23,7 @@ nlohmann::json OpenFirstRow(TestSocket* socket) {
   return replay;
 }
 
-TEST_F(ConsoleStudyTest, ARowIsReplayedWithBothConfigurationsAtItsWorstFrame) {
+TEST_F(ConsoleStudyTest, ReplaysRowWithBothConfigurationsAtWorstFrame) {
   const std::string flight =
       Simulate("landing", "--scenario calm --seed 2 --set frames=10 --set rate_hz=10");
   const std::string table = ReadFile(flight + "/mav0/cam0/data.csv");
@@ -47,7 +47,7 @@ TEST_F(ConsoleStudyTest, ARowIsReplayedWithBothConfigurationsAtItsWorstFrame) {
   EXPECT_EQ(console.End(), 0) << console.Log();
 }
 
-TEST_F(ConsoleStudyTest, ARecordingThatIsElsewhereIsSaid) {
+TEST_F(ConsoleStudyTest, ReportsRecordingOnAnotherHost) {
   const TestStudy study(folder_);
   study.AddDone("calm", "usual", 10, 0, "sftp://nas/calm");
   RunningCommand console("console " + study.path() + " --address 127.0.0.1:0", folder_);
@@ -58,7 +58,7 @@ TEST_F(ConsoleStudyTest, ARecordingThatIsElsewhereIsSaid) {
   EXPECT_EQ(console.End(), 0) << console.Log();
 }
 
-TEST_F(ConsoleStudyTest, WhatIsNoStudyIsOneClearLine) {
+TEST_F(ConsoleStudyTest, RefusesNonStudyInOneLine) {
   const std::string folder = folder_ / "study";
   folder_.Write("study/study.db", "");
   ExpectInputError("console " + folder,

@@ -54,7 +54,7 @@ class ConvertCommandTest : public CommandTest {
   }
 };
 
-TEST_F(ConvertCommandTest, LandFindsInABagWhatItFindsInTheRecording) {
+TEST_F(ConvertCommandTest, LandGivesSameResultForBagAndRecording) {
   const std::string flight = Simulate("landing", kLanding);
   const std::string detections = Result("land", flight, "landing_detections.csv");
   const std::string track = Result("land", flight, "landing_track.csv");
@@ -77,7 +77,7 @@ TEST_F(ConvertCommandTest, LandFindsInABagWhatItFindsInTheRecording) {
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("cut.mcap: was not closed"), HasSubstr("2 frames")));
 }
 
-TEST_F(ConvertCommandTest, HuntFindsInABagWhatItFindsInTheRecording) {
+TEST_F(ConvertCommandTest, HuntGivesSameResultForBagAndRecording) {
   const std::string flight =
       Simulate("hunt", "--scenario descend --seed 2 --set frames=3 --set rate_hz=2");
   const std::string detections = Result("hunt", flight, "object_detections.csv");
@@ -86,7 +86,7 @@ TEST_F(ConvertCommandTest, HuntFindsInABagWhatItFindsInTheRecording) {
   EXPECT_EQ(ReadFile(bag + ".hunt/object_map.csv"), ReadFile(flight + ".hunt/object_map.csv"));
 }
 
-TEST_F(ConvertCommandTest, CalibrateFindsInABagWhatItFindsInTheRecording) {
+TEST_F(ConvertCommandTest, CalibrateGivesSameResultForBagAndRecording) {
   const std::string flight =
       Simulate("landing", "--scenario aggressive --seed 11 --set frames=60 --set rate_hz=15");
   const std::string bag = folder_ / "flight.mcap";
@@ -111,7 +111,7 @@ TEST_F(ConvertCommandTest, CalibrateFindsInABagWhatItFindsInTheRecording) {
   ExpectInputError("calibrate lens " + bag + " --topic /up", "flight.mcap: has no topic /up");
 }
 
-TEST_F(ConvertCommandTest, WritesFoxglovesMessages) {
+TEST_F(ConvertCommandTest, WritesFoxgloveMessages) {
   const std::string flight = Simulate("landing", kLanding);
   const auto messages = ReadMessages(Convert(flight, "flight.mcap --foxglove"));
   ASSERT_EQ(messages.at("/camera/image").size(), 3u);
@@ -140,7 +140,7 @@ TEST_F(ConvertCommandTest, WritesFoxglovesMessages) {
                    "flight.bag: expected a name that ends in .mcap");
 }
 
-TEST_F(ConvertCommandTest, FaultsAreNamed) {
+TEST_F(ConvertCommandTest, ReportsFaults) {
   const std::string flight = Simulate("landing", kLanding);
   const std::string bag = Convert(flight, "flight.bag");
   const std::string convert = "convert " + flight + " ";

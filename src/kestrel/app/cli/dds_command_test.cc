@@ -35,7 +35,7 @@ class DdsCommandTest : public CommandTest {
   int domain_ = TestDomain();
 };
 
-TEST_F(DdsCommandTest, LandTellsRos2WhatItFinds) {
+TEST_F(DdsCommandTest, LandPublishesResultsToRos2) {
   if (!HasDds()) GTEST_SKIP() << "no DDS";
   const std::string flight = WriteFlight();
   RosListener listener(domain_, {{"/pad/detections", Detection3DArrayMessage::kType},
@@ -63,7 +63,7 @@ TEST_F(DdsCommandTest, LandTellsRos2WhatItFinds) {
   EXPECT_EQ(heard.at("/tf").size(), 20u);  // the UAV and the pattern
 }
 
-TEST_F(DdsCommandTest, FlySeesWhatASystemOfRos2Publishes) {
+TEST_F(DdsCommandTest, FlyReceivesTopicsOfRos2System) {
   if (!HasDds()) GTEST_SKIP() << "no DDS";
   const std::string flight = WriteFlight();
   const RosSystem system(domain_, flight);
@@ -92,7 +92,7 @@ TEST_F(DdsCommandTest, FlySeesWhatASystemOfRos2Publishes) {
   EXPECT_EQ(track.header.frame_id, "odom");
 }
 
-TEST_F(DdsCommandTest, FaultsOfTheArgumentsAreNamedWithAndWithoutDds) {
+TEST_F(DdsCommandTest, ReportsArgumentFaultsWithAndWithoutDds) {
   ExpectInputError("fly --dds mine --force dds:/deep", "--dds 'mine'");
   ExpectInputError("fly --dds 300 --force dds:/deep", "0 to 232");
   ExpectInputError("land --dds 300 --force nothing", "nothing");

@@ -48,7 +48,7 @@ class DoctorCommandTest : public CommandTest {
   }
 };
 
-TEST_F(DoctorCommandTest, AGoodSetupIsGood) {
+TEST_F(DoctorCommandTest, PassesGoodSetup) {
   for (const std::string firmware : {"ardupilot", "px4"}) {
     const Outcome outcome = Look("--json --autopilot sim:" + firmware);
     EXPECT_THAT(Checks(outcome, "wrong"), IsEmpty()) << outcome.out;
@@ -61,7 +61,7 @@ TEST_F(DoctorCommandTest, AGoodSetupIsGood) {
   }
 }
 
-TEST_F(DoctorCommandTest, FaultsOfParametersAreNamed) {
+TEST_F(DoctorCommandTest, ReportsParameterFaults) {
   const Outcome ardupilot = Look(
       "--json --guide --moving --autopilot sim:ardupilot"
       " --set fly.sim_autopilot.parameters=PLND_TYPE=0,GUID_TIMEOUT=5");
@@ -80,7 +80,7 @@ TEST_F(DoctorCommandTest, FaultsOfParametersAreNamed) {
       << px4.out;
 }
 
-TEST_F(DoctorCommandTest, ACalibrationOfAnotherSizeOrLensIsNamed) {
+TEST_F(DoctorCommandTest, ReportsCalibrationOfAnotherSizeOrLens) {
   const auto camera = [&](int width, int height, double focal) {
     return folder_.Write("camera.yaml",
                          fmt::format("camera_model: pinhole\n"
@@ -99,7 +99,7 @@ TEST_F(DoctorCommandTest, ACalibrationOfAnotherSizeOrLensIsNamed) {
   EXPECT_THAT(Checks(other, "wrong"), Contains("calibration by the pattern")) << other.out;
 }
 
-TEST_F(DoctorCommandTest, AMountThatIsTurnedIsNamed) {
+TEST_F(DoctorCommandTest, ReportsRotatedMount) {
   CameraCalibration calibration;
   // The simulated camera: half of the paper's.
   calibration.intrinsics = PaperCamera();
@@ -120,7 +120,7 @@ TEST_F(DoctorCommandTest, AMountThatIsTurnedIsNamed) {
   EXPECT_THAT(outcome.out, HasSubstr("turned by 90 deg"));
 }
 
-TEST_F(DoctorCommandTest, WhatCannotBeOpenedIsNamed) {
+TEST_F(DoctorCommandTest, ReportsUnavailableCameraAndAutopilot) {
   const Outcome outcome =
       Run("doctor /dev/no_such_camera --camera " + folder_.Write("camera.yaml", "") +
           " --autopilot serial:///dev/no_such_line:57600 --duration 1");
@@ -130,7 +130,7 @@ TEST_F(DoctorCommandTest, WhatCannotBeOpenedIsNamed) {
               HasSubstr("wrong"));
 }
 
-TEST_F(DoctorCommandTest, FixesWhatTheUserAgreesTo) {
+TEST_F(DoctorCommandTest, AppliesFixesTheUserConfirms) {
   const std::string broken =
       "--fix --autopilot sim:ardupilot"
       " --set fly.sim_autopilot.parameters=PLND_TYPE=2,PLND_YAW_ALIGN=9000"
@@ -145,7 +145,7 @@ TEST_F(DoctorCommandTest, FixesWhatTheUserAgreesTo) {
   EXPECT_EQ(refused.status, 1);
 }
 
-TEST_F(DoctorCommandTest, ExplainsWithoutAnything) {
+TEST_F(DoctorCommandTest, ExplainsWithoutCameraAndAutopilot) {
   const Outcome outcome = Succeed("doctor --explain");
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("ArduPilot thinks: 10.13 north, 22.23 east"),
                                  HasSubstr("PX4 (VTE_EN 0) thinks: 10.13 north, 22.23 east"),

@@ -53,7 +53,7 @@ class FlyCommandTest : public CommandTest {
   }
 };
 
-TEST_F(FlyCommandTest, ASimulatedArduPilotLandsByWhatItIsTold) {
+TEST_F(FlyCommandTest, SimulatedArduPilotLandsByTargetMessages) {
   const std::string flight = folder_ / "flight";
   const Outcome outcome =
       Succeed("fly sim:standing --autopilot sim:ardupilot --record " + flight + " --output " +
@@ -70,7 +70,7 @@ TEST_F(FlyCommandTest, ASimulatedArduPilotLandsByWhatItIsTold) {
   Succeed("evaluate " + flight + " " + folder_ / "again");
 }
 
-TEST_F(FlyCommandTest, ASimulatedPx4LandsByBothProfiles) {
+TEST_F(FlyCommandTest, SimulatedPx4LandsByBothProfiles) {
   for (const std::string arguments :
        {"px4", "px4-vte --set fly.sim_autopilot.parameters=VTE_EN=1"}) {
     const Outcome outcome =
@@ -79,7 +79,7 @@ TEST_F(FlyCommandTest, ASimulatedPx4LandsByBothProfiles) {
   }
 }
 
-TEST_F(FlyCommandTest, GuidesASimulatedPx4OntoACar) {
+TEST_F(FlyCommandTest, GuidesSimulatedPx4OntoCar) {
   const Outcome outcome =
       Succeed(std::string("fly sim:figure8 --autopilot sim:px4 --guide") + kNear);
   EXPECT_LT(MissOf(outcome), 0.5) << outcome.err;
@@ -87,14 +87,14 @@ TEST_F(FlyCommandTest, GuidesASimulatedPx4OntoACar) {
 }
 
 // ArduPilot's own landing trails behind what drives in a curve.
-TEST_F(FlyCommandTest, LandedBesideThePatternIsNoSuccess) {
+TEST_F(FlyCommandTest, LandingBesidePatternIsNoSuccess) {
   const Outcome outcome = Run(std::string("fly sim:figure8 --autopilot sim:ardupilot") + kNear);
   EXPECT_EQ(outcome.status, 4) << outcome.err;
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("drive straight"), HasSubstr("kestrel: ")));
 }
 
 // A tag of 5 cm is not seen from there: LAND comes down where it is.
-TEST_F(FlyCommandTest, ALandingOutOfSightIsSaidBeforeAndAtItsBegin) {
+TEST_F(FlyCommandTest, WarnsOfLandingOutOfSightBeforeAndAtItsStart) {
   const Outcome outcome =
       Run(std::string(
               "fly sim:standing --autopilot sim:ardupilot --target apriltag --target-size 0.05") +
@@ -103,7 +103,7 @@ TEST_F(FlyCommandTest, ALandingOutOfSightIsSaidBeforeAndAtItsBegin) {
                                  HasSubstr("the autopilot lands, and the pattern is not in view")));
 }
 
-TEST_F(FlyCommandTest, PlaysARecordingInRealTime) {
+TEST_F(FlyCommandTest, PlaysRecordingInRealTime) {
   const std::string flight =
       Simulate("landing", "--scenario calm --seed 2 --set frames=10 --set rate_hz=10");
   const Outcome outcome = Succeed("fly " + flight + " --output " + folder_ / "out");
@@ -111,7 +111,7 @@ TEST_F(FlyCommandTest, PlaysARecordingInRealTime) {
   EXPECT_EQ(Lines(ReadFile(folder_ / "out/landing_detections.csv")), 11);
 }
 
-TEST_F(FlyCommandTest, WaitingForTheAutopilotIsReported) {
+TEST_F(FlyCommandTest, ReportsWaitingForAutopilot) {
   const std::string flight =
       Simulate("landing", "--scenario calm --seed 2 --set frames=30 --set rate_hz=10");
   const Outcome outcome = Succeed("fly " + flight + " --autopilot tcpout://127.0.0.1:1");
@@ -120,7 +120,7 @@ TEST_F(FlyCommandTest, WaitingForTheAutopilotIsReported) {
                     HasSubstr("waits for the autopilot: tcpout://127.0.0.1:1 refused")));
 }
 
-TEST_F(FlyCommandTest, WithoutACalibrationACameraIsRecorded) {
+TEST_F(FlyCommandTest, RecordsCameraWithoutCalibration) {
   const std::string record = folder_ / "flight";
   const Outcome outcome = Succeed(
       "fly 'videotestsrc num-buffers=20 ! video/x-raw,width=64,height=48,framerate=100/1'"
@@ -135,7 +135,7 @@ TEST_F(FlyCommandTest, WithoutACalibrationACameraIsRecorded) {
   EXPECT_THAT(Succeed("land " + record).err, HasSubstr("no calibration"));
 }
 
-TEST_F(FlyCommandTest, WithoutACalibrationNothingIsSent) {
+TEST_F(FlyCommandTest, RefusesToSendWithoutCalibration) {
   for (const std::string option :
        {"--autopilot sim:px4", "--autopilot udpout://127.0.0.1:14550 --guide", "--dds 7",
         "--team a --hunt", "--output out", "--mcap a.mcap"}) {
@@ -150,7 +150,7 @@ TEST_F(FlyCommandTest, WithoutACalibrationNothingIsSent) {
   ExpectInputError("fly 'udpsrc port=99999 ! filesrc'", "udpsrc");
 }
 
-TEST_F(FlyCommandTest, TheSourceMayBeInTheConfiguration) {
+TEST_F(FlyCommandTest, ReadsSourceFromConfiguration) {
   const std::string flight =
       Simulate("landing", "--scenario calm --seed 2 --set frames=10 --set rate_hz=10");
   const std::string config = folder_.Write("kestrel.yaml", "fly:\n  source: " + flight + "\n");
@@ -160,7 +160,7 @@ TEST_F(FlyCommandTest, TheSourceMayBeInTheConfiguration) {
   EXPECT_THAT(none.err, HasSubstr("SOURCE, or fly.source in --config FILE, is required"));
 }
 
-TEST_F(FlyCommandTest, FaultsAreNamed) {
+TEST_F(FlyCommandTest, ReportsFaults) {
   const std::string source = "fly sim:standing --autopilot ";
   ExpectInputError(source + "udp://127.0.0.1:14550", "udp");
   ExpectInputError(source + "serial:///dev/no_such_line:57600", "there is no /dev/no_such_line");

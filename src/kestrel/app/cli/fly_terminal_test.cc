@@ -70,7 +70,7 @@ class FlyTerminalTest : public CommandTest {
   pid_t process_ = 0;
 };
 
-TEST_F(FlyTerminalTest, AClosedTerminalDoesNotEndTheFlight) {
+TEST_F(FlyTerminalTest, FlightSurvivesClosedTerminal) {
   Start("fly " + Flight() + " --output " + folder_ / "out");
   ASSERT_TRUE(Await("goes on when its terminal closes"));
   CloseTerminal();
@@ -79,7 +79,7 @@ TEST_F(FlyTerminalTest, AClosedTerminalDoesNotEndTheFlight) {
   EXPECT_EQ(Lines(ReadFile(folder_ / "out/landing_detections.csv")), 31);
 }
 
-TEST_F(FlyTerminalTest, ATerminalThatTakesNothingDoesNotStopTheFlight) {
+TEST_F(FlyTerminalTest, FlightSurvivesStalledTerminal) {
   Start("fly " + Flight() + " --output " + folder_ / "out");
   ASSERT_TRUE(Await("goes on when its terminal closes"));
   StopOutput();
@@ -87,7 +87,7 @@ TEST_F(FlyTerminalTest, ATerminalThatTakesNothingDoesNotStopTheFlight) {
   EXPECT_EQ(Lines(ReadFile(folder_ / "out/landing_detections.csv")), 31);
 }
 
-TEST_F(FlyTerminalTest, SigtermEndsTheFlightWithWholeFiles) {
+TEST_F(FlyTerminalTest, SigtermEndsFlightWithCompleteFiles) {
   Start("fly " + Flight() + " --loop --output " + folder_ / "out");
   ASSERT_TRUE(Await("goes on when its terminal closes"));
   CloseTerminal();

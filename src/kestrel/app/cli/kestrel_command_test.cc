@@ -71,7 +71,7 @@ class KestrelCommandTest : public CommandTest {
 
 // The libraries that OpenCV's codecs need (GDAL, FFmpeg and others) take longer to load than a
 // short command runs.
-TEST_F(KestrelCommandTest, NeedsNoneOfOpenCvsCodecs) {
+TEST_F(KestrelCommandTest, DoesNotLinkOpenCvCodecs) {
   const std::string list = folder_ / "libraries.txt";
   ASSERT_EQ(std::system(fmt::format("ldd '{}' > '{}'", KESTREL_COMMAND, list).c_str()), 0);
   const std::string libraries = ReadFile(list);
@@ -81,7 +81,7 @@ TEST_F(KestrelCommandTest, NeedsNoneOfOpenCvsCodecs) {
   }
 }
 
-TEST_F(KestrelCommandTest, LandSaysOnceThatTheAltitudeIsWrong) {
+TEST_F(KestrelCommandTest, LandWarnsOnceOfWrongAltitude) {
   WriteRecording();
   const cv::Mat image = ReadImage(folder_ / "flight/mav0/cam0/data/100000000.png");
   for (int i = 0; i < 12; ++i) WriteTestImage(folder_, fmt::format("images/{:02}.png", i), image);
@@ -95,7 +95,7 @@ TEST_F(KestrelCommandTest, LandSaysOnceThatTheAltitudeIsWrong) {
   EXPECT_THAT(Run(land + "3").err, Not(HasSubstr("given altitude")));
 }
 
-TEST_F(KestrelCommandTest, HelpAndVersion) {
+TEST_F(KestrelCommandTest, PrintsHelpAndVersion) {
   for (const char* arguments : {"help", "--help"}) {
     const Outcome outcome = Succeed(arguments);
     EXPECT_THAT(outcome.out, HasSubstr("Run the landing pipeline"));
@@ -108,7 +108,7 @@ TEST_F(KestrelCommandTest, HelpAndVersion) {
   EXPECT_THAT(version.out, StartsWith("kestrel 0."));
 }
 
-TEST_F(KestrelCommandTest, WrongUsageIsStatusTwo) {
+TEST_F(KestrelCommandTest, ExitsWithStatusTwoOnWrongUsage) {
   for (const char* arguments :
        {"", "swim", "help swim", "land", "land a.png --altitude nan", "land a.png --altitude -1",
         "land a.png --clock-offset inf", "land a.png --annotate", "land a.png --colour",
@@ -124,7 +124,7 @@ TEST_F(KestrelCommandTest, WrongUsageIsStatusTwo) {
   }
 }
 
-TEST_F(KestrelCommandTest, WrongUsageIsNamed) {
+TEST_F(KestrelCommandTest, ReportsWrongUsage) {
   for (const auto& [arguments, message] :
        {std::pair("lnd a.png", "kestrel: there is no command 'lnd'; did you mean 'land'?"),
         std::pair("simulate landng", "there is no command 'landng'; did you mean 'landing'?"),
@@ -142,14 +142,14 @@ TEST_F(KestrelCommandTest, WrongUsageIsNamed) {
   ExpectInputError("land a.png --set landing=5", "landing is a group of options");
 }
 
-TEST_F(KestrelCommandTest, ConfigReadsBackToItself) {
+TEST_F(KestrelCommandTest, ConfigRoundTrips) {
   const Outcome first = Succeed("config --set landing.detector.min_ring_px=9.5");
   const Outcome again = Run("config --config " + folder_.Write("c.yaml", first.out));
   EXPECT_EQ(again.out, first.out);
   EXPECT_THAT(again.out, HasSubstr("min_ring_px: 9.5 "));
 }
 
-TEST_F(KestrelCommandTest, ConfigPrintsOptionsOfSimulatorsApart) {
+TEST_F(KestrelCommandTest, ConfigPrintsSimulatorOptionsSeparately) {
   const std::string users = Succeed("config").out;
   EXPECT_THAT(users, HasSubstr("min_ring_px:"));
   EXPECT_THAT(users, Not(HasSubstr("sim_")));
@@ -160,7 +160,7 @@ TEST_F(KestrelCommandTest, ConfigPrintsOptionsOfSimulatorsApart) {
   EXPECT_THAT(simulators, Not(HasSubstr("min_ring_px:")));
 }
 
-TEST_F(KestrelCommandTest, LandsOnARecording) {
+TEST_F(KestrelCommandTest, LandsOnRecording) {
   const std::string output = folder_ / "out";
   const Outcome outcome =
       Succeed("land " + WriteRecording() + " --output " + output + " --annotate=images");
@@ -176,7 +176,7 @@ TEST_F(KestrelCommandTest, LandsOnARecording) {
   }
 }
 
-TEST_F(KestrelCommandTest, UnusedKeysOfTheRecordingsCalibrationAreNamed) {
+TEST_F(KestrelCommandTest, ReportsUnusedKeysOfRecordingCalibration) {
   const std::string recording = WriteRecording();
   folder_.Write("flight/mav0/cam0/sensor.yaml", std::string(kSensor) + "lens_shift: 3\n");
   const std::string err = Succeed("land " + recording).err;
@@ -186,7 +186,7 @@ TEST_F(KestrelCommandTest, UnusedKeysOfTheRecordingsCalibrationAreNamed) {
   EXPECT_EQ(err.find(warning, first + 1), std::string::npos) << err;
 }
 
-TEST_F(KestrelCommandTest, SaysWhereThePatternIsInTheWorld) {
+TEST_F(KestrelCommandTest, PrintsPatternPositionInWorld) {
   const Outcome outcome = Succeed("land --still " + WriteRecording());
   std::string row = outcome.out.substr(outcome.out.find('\n') + 1);
   std::vector<std::string> cells;
@@ -202,7 +202,7 @@ TEST_F(KestrelCommandTest, SaysWhereThePatternIsInTheWorld) {
   EXPECT_NEAR(std::stod(cells[12]), 0, 0.03);                    // p_WP_W_z_m
 }
 
-TEST_F(KestrelCommandTest, PicturesHaveTheColorsOfTheSource) {
+TEST_F(KestrelCommandTest, PicturesHaveColorsOfSource) {
   const std::string output = folder_ / "out";
   const std::string land = "land " + WriteRecording(3) + " --output " + output;
   Succeed(land + " --annotate=images");
@@ -210,7 +210,7 @@ TEST_F(KestrelCommandTest, PicturesHaveTheColorsOfTheSource) {
   EXPECT_EQ(picture.at<cv::Vec3b>(0, 600), cv::Vec3b(0, 0, 200));
 }
 
-TEST_F(KestrelCommandTest, WritesAnAnnotatedVideo) {
+TEST_F(KestrelCommandTest, WritesAnnotatedVideo) {
   const std::string output = folder_ / "out";
   Succeed("land --annotate " + WriteRecording() + " --output " + output);
   EXPECT_NE(std::filesystem::exists(output + "/annotated.mp4"),
@@ -240,7 +240,7 @@ TEST_F(KestrelCommandTest, LandAndHuntWriteMcap) {
   }
 }
 
-TEST_F(KestrelCommandTest, NothingIsWrittenWhereAnMcapFileIsThere) {
+TEST_F(KestrelCommandTest, WritesNothingWhenMcapFileExists) {
   const std::string recording = WriteRecording();
   const std::string mcap = folder_.Write("mine.mcap", "mine");
   ExpectInputError("land " + recording + " --mcap " + mcap + " --output " + (folder_ / "out"),
@@ -283,7 +283,7 @@ TEST_F(KestrelCommandTest, CtrlCEndsCleanly) {
                                   frames))));
 }
 
-TEST_F(KestrelCommandTest, SourceAtFaultIsNamed) {
+TEST_F(KestrelCommandTest, ReportsFaultySource) {
   const std::string camera = " --camera " + folder_.Write("camera.yaml", kSensor);
   const std::string image = WriteTestImage(folder_, "a.png", NoiseImage(640, 480, CV_8UC1));
   ExpectInputError("land nowhere.png" + camera, "nowhere.png: no such file");
@@ -305,7 +305,7 @@ TEST_F(KestrelCommandTest, SourceAtFaultIsNamed) {
   }
 }
 
-TEST_F(KestrelCommandTest, WithoutACalibrationThePlaceInTheImageIsTold) {
+TEST_F(KestrelCommandTest, ReportsPositionInImageWithoutCalibration) {
   const std::string image = WriteRecording() + "/mav0/cam0/data/100000000.png";
   const Outcome outcome = Succeed("land " + image);
   EXPECT_THAT(outcome.err, HasSubstr("kestrel calibrate lens"));
@@ -320,7 +320,7 @@ TEST_F(KestrelCommandTest, WithoutACalibrationThePlaceInTheImageIsTold) {
   ExpectInputError("fly " + image + " --fov 77", "--fov: a flight needs a calibration");
 }
 
-TEST_F(KestrelCommandTest, ABrokenImageOfAFolderIsARow) {
+TEST_F(KestrelCommandTest, BrokenImageInFolderGetsRow) {
   const std::string image = WriteRecording() + "/mav0/cam0/data/100000000.png";
   for (const char* name : {"a.png", "c.png"}) {
     WriteTestImage(folder_, std::string("images/") + name, ReadImage(image));
@@ -340,7 +340,7 @@ TEST_F(KestrelCommandTest, ABrokenImageOfAFolderIsARow) {
   ExpectInputError("land " + (folder_ / "images") + camera, "a.png: cannot be decoded");
 }
 
-TEST_F(KestrelCommandTest, HuntSaysThatItNeedsColour) {
+TEST_F(KestrelCommandTest, HuntRefusesGrayImages) {
   ExpectInputError("hunt " + WriteRecording() + " --output " + (folder_ / "o"),
                    "is a gray image, expected images in colour");
 }
@@ -350,7 +350,7 @@ TEST_F(KestrelCommandTest, DemoReplacesNothing) {
   ExpectInputError("demo --output " + (folder_ / "demo"), "demo: exists already; --force");
 }
 
-TEST_F(KestrelCommandTest, VideoThatEndsEarlyGivesItsFramesAndSaysSo) {
+TEST_F(KestrelCommandTest, ReportsTruncatedVideoAfterItsFrames) {
   const std::string camera = " --camera " + folder_.Write("camera.yaml", kSensor);
   const std::string video = folder_ / "flight.avi";
   WriteTestVideo(folder_ / "flight", VideoFormat::kAvi, 20, cv::Size(640, 480));
@@ -361,13 +361,13 @@ TEST_F(KestrelCommandTest, VideoThatEndsEarlyGivesItsFramesAndSaysSo) {
   EXPECT_GT(Lines(outcome.out), 5);
 }
 
-TEST_F(KestrelCommandTest, RecordingAtFaultIsNamed) {
+TEST_F(KestrelCommandTest, ReportsFaultyRecording) {
   const std::string recording = WriteRecording();
   folder_.Write("flight/mav0/nav0/data.csv", std::string(kPoses) + "150000000,5,6,3,1,0,0,0\n");
   ExpectInputError("land " + recording, "nav0/data.csv: line 4: timestamp 150000000 out of order");
 }
 
-TEST_F(KestrelCommandTest, CalibrationAtFaultIsNamed) {
+TEST_F(KestrelCommandTest, ReportsFaultyCalibration) {
   const std::string recording = WriteRecording();
   std::string sensor = kSensor;
   sensor.replace(sensor.find("[400,"), 5, "[.nan,");
@@ -375,13 +375,13 @@ TEST_F(KestrelCommandTest, CalibrationAtFaultIsNamed) {
                    "nan.yaml");
 }
 
-TEST_F(KestrelCommandTest, OutputFolderThatCannotBeMadeIsNamed) {
+TEST_F(KestrelCommandTest, ReportsOutputFolderThatCannotBeCreated) {
   const std::string recording = WriteRecording();
   ExpectInputError("land " + recording + " --output " + folder_.Write("file", "") + "/out",
                    "file/out: cannot be made");
 }
 
-TEST_F(KestrelCommandTest, MisspeltOptionNamesTheNearest) {
+TEST_F(KestrelCommandTest, SuggestsNearestNameForMisspeltOption) {
   const std::string recording = WriteRecording();
   const std::string config = folder_.Write("c.yaml", "landing:\n  hint_sigma: 1\n");
   ExpectInputError("land " + recording + " --config " + config,
@@ -391,7 +391,7 @@ TEST_F(KestrelCommandTest, MisspeltOptionNamesTheNearest) {
   EXPECT_THAT(Run("land " + recording + " --set zzz=1").err, Not(HasSubstr("did you mean")));
 }
 
-TEST_F(KestrelCommandTest, EvaluateComparesALandingWithItsTruth) {
+TEST_F(KestrelCommandTest, EvaluateComparesLandingWithTruth) {
   const std::string flight = WriteRecording();
   folder_.Write("flight/mav0/state_groundtruth_estimate0/data.csv",
                 "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y "
@@ -423,14 +423,14 @@ TEST_F(KestrelCommandTest, LandWritesTrackAndPrediction) {
   EXPECT_FALSE(std::filesystem::exists(still + "/landing_track.csv"));
 }
 
-TEST_F(KestrelCommandTest, CalibrateSaysWhatIsMissing) {
+TEST_F(KestrelCommandTest, CalibrateReportsMissingData) {
   const std::string flight = WriteRecording();
   ExpectInputError("calibrate mount " + flight, "seen in 0 images with poses around them");
   std::filesystem::remove(flight + "/mav0/nav0/data.csv");
   ExpectInputError("calibrate clock " + flight, "has no poses of the UAV");
 }
 
-TEST_F(KestrelCommandTest, ABenchmarkHasALineForEachStepAndOneToSend) {
+TEST_F(KestrelCommandTest, BenchmarkPrintsLinePerStepAndOneToShare) {
   const std::string out = Succeed("benchmark").out;
   EXPECT_THAT(out, HasSubstr("| ring, whole image, 752 x 480 | "));
   EXPECT_THAT(out, HasSubstr("| capture to result, 30 images/s for 5 s | "));

@@ -9,7 +9,7 @@
 namespace kestrel {
 namespace {
 
-TEST(PageLinksTest, AQrCodeIsASquareOfModulesWithAMargin) {
+TEST(PageLinksTest, QrCodeIsSquareWithMargin) {
   // This text takes version 2: 25 modules, and 2 on either side, two rows a line.
   const std::string lines = QrLines("http://192.168.1.17:8080/?token=x");
   EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), 15);
@@ -17,7 +17,7 @@ TEST(PageLinksTest, AQrCodeIsASquareOfModulesWithAMargin) {
   EXPECT_THAT(lines, testing::HasSubstr(" ▄▄▄▄▄ ")) << "the square in a corner";
 }
 
-TEST(PageLinksTest, LinksArePrintedForProgramsWithoutACode) {
+TEST(PageLinksTest, PrintsPlainLinksForPrograms) {
   testing::internal::CaptureStderr();
   PrintLinks({"http://localhost:8080/", "http://10.0.0.5:8080/"});
   EXPECT_EQ(testing::internal::GetCapturedStderr(),

@@ -52,7 +52,7 @@ class PrintCommandTest : public CommandTest {
   std::string WriteCamera() const { return folder_.Write("camera.yaml", kCamera); }
 };
 
-TEST_F(PrintCommandTest, EveryPadIsPrinted) {
+TEST_F(PrintCommandTest, PrintsEveryPad) {
   folder_.Write("board.yaml", "tags:\n  - {family: tag36h11, id: 3, size_m: 0.1}\n");
   const std::string board = " --set landing.target.nested.board=" + folder_ / "board.yaml";
   for (const std::string kind : {"apriltag", "aruco", "nested", "ring-with-tags", "helipad"}) {
@@ -65,7 +65,7 @@ TEST_F(PrintCommandTest, EveryPadIsPrinted) {
 }
 
 // A sheet of A4, dark around it as on a floor, from 1 m above.
-TEST_F(PrintCommandTest, APadOfAnySizeFitsOneSheetAndIsDetected) {
+TEST_F(PrintCommandTest, PrintsPadOfAnySizeOnOneSheetDetectably) {
   folder_.Write("board.yaml", "tags:\n  - {family: tag36h11, id: 3, size_m: 0.6}\n");
   const std::string board = " --set landing.target.nested.board=" + folder_ / "board.yaml";
   for (const std::string kind : {"ring-cross", "apriltag", "aruco", "nested", "helipad"}) {
@@ -90,21 +90,21 @@ TEST_F(PrintCommandTest, APadOfAnySizeFitsOneSheetAndIsDetected) {
   }
 }
 
-TEST_F(PrintCommandTest, LargePadIsPrintedOnOneSheet) {
+TEST_F(PrintCommandTest, PrintsLargePadOnOneSheet) {
   const std::string pdf = folder_ / "large.pdf";
   EXPECT_THAT(Succeed("print --size 1.2 --output " + pdf).err, Not(HasSubstr("sheet")));
   ExpectInputError("print --size 160 --output " + folder_ / "x.pdf", "metres: 0.16?");
   ExpectInputError("print --size -1 --output " + folder_ / "x.pdf", "size_m is -1");
 }
 
-TEST_F(PrintCommandTest, AStarterIsANearAndAFarPad) {
+TEST_F(PrintCommandTest, StarterHasNearAndFarPad) {
   const Outcome printed = Succeed("print --starter --output " + folder_ / "starter.pdf");
   EXPECT_THAT(printed.err, HasSubstr("1 sheet. Fly with it: kestrel fly ... --target-size 0.16"));
   EXPECT_THAT(printed.err, HasSubstr("--target-size 0.5"));
   EXPECT_EQ(Run("print --starter --size 0.3").status, 2);
 }
 
-TEST_F(PrintCommandTest, WhatIsPrintedIsDetectedAndRight) {
+TEST_F(PrintCommandTest, PrintedPatternIsDetectedAndMeasuredRight) {
   ASSERT_EQ(std::system("command -v pdftoppm >/dev/null"), 0)
       << "pdftoppm is not there: scripts/install-deps";
   const std::string pdf = folder_ / "pattern.pdf";
@@ -129,7 +129,7 @@ TEST_F(PrintCommandTest, WhatIsPrintedIsDetectedAndRight) {
                    "landing.detector.pattern.ring_width_m=0.1");
 }
 
-TEST_F(PrintCommandTest, WritesWhatItNamesAndReplacesNothing) {
+TEST_F(PrintCommandTest, WritesNamedFilesAndReplacesNothing) {
   const std::string first = folder_ / "first", second = folder_ / "second";
   const Outcome whole = Succeed("print --output " + first);
   EXPECT_THAT(whole.err, HasSubstr("first/landing_pattern.pdf\n"));
@@ -150,14 +150,14 @@ TEST_F(PrintCommandTest, WritesWhatItNamesAndReplacesNothing) {
   }
 }
 
-TEST_F(PrintCommandTest, OneFileIsOneFormat) {
+TEST_F(PrintCommandTest, WritesOneFormatForOneFileName) {
   const std::string svg = folder_ / "mine.svg";
   Succeed("print --output " + svg);
   EXPECT_THAT(ReadFile(svg), HasSubstr("width=\"4251.96"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "mine.pdf"));
 }
 
-TEST_F(PrintCommandTest, SaysWhatIsWrong) {
+TEST_F(PrintCommandTest, ReportsFaults) {
   ExpectInputError(
       "print --output " + folder_ / "o" + " --set landing.detector.pattern.ring_width_m=0.7",
       "ring_width_m");

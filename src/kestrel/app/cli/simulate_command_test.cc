@@ -25,7 +25,7 @@ class SimulateCommandTest : public CommandTest {
       " --set frames=2 --set rate_hz=1 --set ground.map_px=256 --set shutter.rays_per_pixel=4";
 };
 
-TEST_F(SimulateCommandTest, LandsOnWhatItSimulates) {
+TEST_F(SimulateCommandTest, LandsOnSimulatedRecording) {
   const std::string flight = folder_ / "flight";
   const Outcome simulated =
       Succeed("simulate landing --scenario calm --seed 2 --output " + flight + kSmall);
@@ -39,7 +39,7 @@ TEST_F(SimulateCommandTest, LandsOnWhatItSimulates) {
                    "exists already; --force replaces it");
 }
 
-TEST_F(SimulateCommandTest, LandsOnTheTagThatIsAskedForAndOnNoOther) {
+TEST_F(SimulateCommandTest, LandsOnRequestedTagOnly) {
   const std::string flight = folder_ / "flight";
   Succeed("simulate landing --target apriltag --target-id 7 --scenario calm --output " + flight +
           kSmall + " --set flight.start_altitude_m=3 --set flight.end_altitude_m=2");
@@ -51,7 +51,7 @@ TEST_F(SimulateCommandTest, LandsOnTheTagThatIsAskedForAndOnNoOther) {
                    "--target-id 7 and --set landing.target.apriltag.id=1");
 }
 
-TEST_F(SimulateCommandTest, SimulatesAHuntWithTheUsersCamera) {
+TEST_F(SimulateCommandTest, SimulatesHuntWithUserCamera) {
   const std::string camera = folder_.Write("camera.yaml",
                                            "image_width: 160\nimage_height: 90\n"
                                            "distortion_model: plumb_bob\n"
@@ -64,7 +64,7 @@ TEST_F(SimulateCommandTest, SimulatesAHuntWithTheUsersCamera) {
   EXPECT_EQ(image.channels(), 3);
 }
 
-TEST_F(SimulateCommandTest, HuntSaysOnceThatTheGroundIsElsewhere) {
+TEST_F(SimulateCommandTest, HuntWarnsOnceOfWrongGroundHeight) {
   const std::string flight = folder_ / "hunt";
   Succeed("simulate hunt --scenario descend --output " + flight + kSmall +
           " --set frames=8 --set rate_hz=10"
@@ -80,7 +80,7 @@ TEST_F(SimulateCommandTest, HuntSaysOnceThatTheGroundIsElsewhere) {
   EXPECT_THAT(told, HasSubstr("hunt.ground_height_m says -5 m: set hunt.ground_height_m="));
 }
 
-TEST_F(SimulateCommandTest, FliesATouchdownThatCanBeRunAgain) {
+TEST_F(SimulateCommandTest, FliesTouchdownThatCanBeReplayed) {
   const std::string flight = folder_ / "flight";
   const Outcome flown = Succeed("simulate touchdown --seed 4 --annotate=images --output " + flight +
                                 kSmall + " --set frames=4 --set rate_hz=10");
@@ -106,7 +106,7 @@ TEST_F(SimulateCommandTest, ListsScenariosAndPrintsOptions) {
   EXPECT_THAT(options.out, HasSubstr("material: sand "));
 }
 
-TEST_F(SimulateCommandTest, FaultsAreNamed) {
+TEST_F(SimulateCommandTest, ReportsFaults) {
   const std::string output = " --output " + folder_ / "flight";
   ExpectInputError("simulate landing --scenario moon" + output, "no scenario 'moon'");
   ExpectInputError("simulate hunt --set objects.size_m=big" + output,

@@ -20,12 +20,12 @@ class StudyCommandTest : public CommandTest {
   const std::string path_ = std::getenv("PATH");
 };
 
-TEST_F(StudyCommandTest, SaysWhatToInstallWithoutPython) {
+TEST_F(StudyCommandTest, ReportsPackagesToInstallWithoutPython) {
   SetPath(folder_ / "nothing");
   ExpectInputError("study run study.yaml", kWhatToInstall);
 }
 
-TEST_F(StudyCommandTest, SaysWhatToInstallWithoutTheModules) {
+TEST_F(StudyCommandTest, ReportsPackagesToInstallWithoutModules) {
   const std::string python =
       folder_.Write("python3", "#!/bin/sh\nexec /usr/bin/python3 -I -S \"$@\"\n");
   std::filesystem::permissions(python, std::filesystem::perms::owner_all);

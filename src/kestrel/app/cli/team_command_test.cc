@@ -106,7 +106,7 @@ int RowsThatEnd(const std::string& map, const std::string& end) {
   return rows;
 }
 
-TEST_F(TeamCommandTest, TwoHuntsEndWithOneMap) {
+TEST_F(TeamCommandTest, TwoHuntsShareOneMap) {
   const std::string first = WriteFlight("a", {0, 0});
   WriteFlight("b", {0.7, -0.5});
   if (!HasDds(first)) GTEST_SKIP() << "no DDS";
@@ -122,7 +122,7 @@ TEST_F(TeamCommandTest, TwoHuntsEndWithOneMap) {
   EXPECT_EQ(RowsThatEnd(map, ",a b,\n"), 12) << map;  // both have it, nobody has claimed it
 }
 
-TEST_F(TeamCommandTest, EachGoesForAnotherObject) {
+TEST_F(TeamCommandTest, EachUavClaimsAnotherObject) {
   const std::string first = WriteFlight("a", {0, 0});
   WriteFlight("b", {0.7, -0.5});
   if (!HasDds(first)) GTEST_SKIP() << "no DDS";
@@ -135,7 +135,7 @@ TEST_F(TeamCommandTest, EachGoesForAnotherObject) {
   EXPECT_THAT(Said("a"), HasSubstr("team: goes for "));
 }
 
-TEST_F(TeamCommandTest, TheTeamsMapIsToldToRos2) {
+TEST_F(TeamCommandTest, PublishesTeamMapToRos2) {
   const std::string first = WriteFlight("a", {0, 0});
   WriteFlight("b", {0.7, -0.5});
   if (!HasDds(first)) GTEST_SKIP() << "no DDS";
@@ -158,7 +158,7 @@ TEST_F(TeamCommandTest, TheTeamsMapIsToldToRos2) {
   EXPECT_EQ(markers.markers.size(), 25u);  // two per object, one that deletes the others
 }
 
-TEST_F(TeamCommandTest, OnlyThoseWithTheKeyAreHeard) {
+TEST_F(TeamCommandTest, IgnoresUavsWithoutKey) {
   const std::string first = WriteFlight("a", {0, 0});
   WriteFlight("b", {0.7, -0.5});
   if (!HasDds(first)) GTEST_SKIP() << "no DDS";
@@ -179,7 +179,7 @@ TEST_F(TeamCommandTest, OnlyThoseWithTheKeyAreHeard) {
   }
 }
 
-TEST_F(TeamCommandTest, AFlightSharesItsMapWithAHunt) {
+TEST_F(TeamCommandTest, FlightSharesMapWithHunt) {
   const std::string first = WriteFlight("a", {0, 0});
   WriteFlight("b", {0.7, -0.5});
   if (!HasDds(first)) GTEST_SKIP() << "no DDS";
@@ -189,7 +189,7 @@ TEST_F(TeamCommandTest, AFlightSharesItsMapWithAHunt) {
   EXPECT_EQ(Lines(TeamMapOf("b")), 13) << TeamMapOf("b");
 }
 
-TEST_F(TeamCommandTest, FaultsAreNamed) {
+TEST_F(TeamCommandTest, ReportsFaults) {
   TestDomain();
   const std::string flight = WriteFlight("a", {0, 0});
   ExpectInputError("hunt " + flight + " --team 'two words'", "expected 1 to 32 letters");

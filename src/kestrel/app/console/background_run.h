@@ -19,9 +19,9 @@ namespace kestrel {
 template <class Result>
 class BackgroundRun {
  public:
-  // The job reports how many frames are done. A return value of false tells it to end.
+  // The job reports how many frames are done. A return value of false requests its end.
   using GoOn = std::function<bool(std::size_t done)>;
-  // Returns the result, or nothing if it was told to end. Throws InputError.
+  // Returns the result, or nothing if its end was requested. Throws InputError.
   using Job = std::function<std::optional<Result>(const GoOn& go_on)>;
 
   BackgroundRun() = default;
@@ -40,10 +40,11 @@ class BackgroundRun {
     thread_ = std::thread([this, name, job = std::move(job)] { Run(name, job); });
   }
 
-  // Tells the job to end, without waiting. Its outcome then has neither a result nor an error.
+  // Requests the end of the job, without waiting. Its outcome then has neither a result nor an
+  // error.
   void RequestEnd() { is_cancelled_ = true; }
 
-  // Tells the job to end and waits for it: at most from one call of GoOn to the next. Returns false
+  // Ends the job and waits for it: at most from one call of GoOn to the next. Returns false
   // when there was no job.
   bool Cancel() {
     if (!thread_.joinable()) return false;

@@ -55,7 +55,7 @@ class ImageFlow {
   std::optional<Duration> draw_time_;
 };
 
-// The live image and its views. Each is encoded once for all browsers, and only when one asks for
+// The live image and its views. Each is encoded once for all browsers, and only when one requests
 // it. A message is the length of the text (32 bits, lowest byte first), the text (FrameJson) and
 // the JPEG. Used by the console's thread.
 class ImageChannel {

@@ -47,7 +47,7 @@ Unpacked Unpack(const std::string& message) {
           DecodeImage(message.substr(4 + size), "image")};
 }
 
-TEST(ImageChannelTest, OneMessageHoldsTheImageAndWhatWasFoundInIt) {
+TEST(ImageChannelTest, MessageHoldsImageAndItsFindings) {
   ConsoleFeed feed({});
   ImageChannel channel(&feed, 90, 20);
   const Time captured = TimeFromNanoseconds(1700000000123456789);
@@ -69,7 +69,7 @@ TEST(ImageChannelTest, OneMessageHoldsTheImageAndWhatWasFoundInIt) {
   EXPECT_NEAR(unpacked.image.at<uchar>(20, 20), 77, 2);
 }
 
-TEST(ImageChannelTest, EncodesTheNewestOnlyAndOnceForAll) {
+TEST(ImageChannelTest, EncodesNewestImageOnceForAllViewers) {
   ConsoleFeed feed({});
   ImageChannel channel(&feed, 70, 20);
   const Time start = TimeFromNanoseconds(0);
@@ -88,7 +88,7 @@ TEST(ImageChannelTest, EncodesTheNewestOnlyAndOnceForAll) {
   EXPECT_EQ(channel.encoded(), 1u);
 }
 
-TEST(ImageChannelTest, KeepsToItsRate) {
+TEST(ImageChannelTest, LimitsRate) {
   ConsoleFeed feed({});
   ImageChannel channel(&feed, 70, 10);
   const Time start = TimeFromNanoseconds(0);
@@ -106,7 +106,7 @@ TEST(ImageChannelTest, KeepsToItsRate) {
   EXPECT_EQ(images, 10);
 }
 
-TEST(ImageChannelTest, AnImageThatIsNoneIsLeftOut) {
+TEST(ImageChannelTest, OmitsImageOfUnsupportedType) {
   ConsoleFeed feed({});
   ImageChannel channel(&feed, 70, 20);
   ConsoleFrame frame;
@@ -115,7 +115,7 @@ TEST(ImageChannelTest, AnImageThatIsNoneIsLeftOut) {
   EXPECT_FALSE(channel.NextFor(Wanting(), Time{}));
 }
 
-TEST(ImageChannelTest, AViewIsDrawnOnlyWhenItIsWantedAndOnceForAll) {
+TEST(ImageChannelTest, DrawsViewOnceAndOnlyWhenRequested) {
   int drawn = 0;
   ConsoleFeed::Description description;
   description.views.push_back({"dark", [&drawn](const cv::Mat& image) {
@@ -144,7 +144,7 @@ TEST(ImageChannelTest, AViewIsDrawnOnlyWhenItIsWantedAndOnceForAll) {
   EXPECT_NEAR(Unpack(*camera->message).image.at<uchar>(20, 20), 120, 2);
 }
 
-TEST(ImageChannelTest, AHeldFrameIsSeenInAnotherView) {
+TEST(ImageChannelTest, ShowsHeldFrameInAnotherView) {
   ConsoleFeed feed(WithDarkView());
   ImageChannel channel(&feed, 90, 20);
   const Time start = TimeFromNanoseconds(0);
@@ -178,7 +178,7 @@ TEST(ImageChannelTest, AHeldFrameIsSeenInAnotherView) {
   EXPECT_EQ(show(start + 6s)->frame->sequence, 2u);
 }
 
-TEST(ImageFlowTest, OneIsOnItsWayUntilItIsDrawn) {
+TEST(ImageFlowTest, SendsNextImageOnlyAfterAcknowledgement) {
   ImageFlow flow;
   EXPECT_FALSE(flow.wants_next());
   flow.SetWish(true, 0, false);
@@ -196,7 +196,7 @@ TEST(ImageFlowTest, OneIsOnItsWayUntilItIsDrawn) {
   EXPECT_EQ(flow.draw_time(), 40ms);
 }
 
-TEST(TelemetryChannelTest, TheOldestGoesAndIsCounted) {
+TEST(TelemetryChannelTest, DropsOldestMessageAndCountsIt) {
   TelemetryChannel channel(2);
   for (const char* text : {"a", "b", "c"}) channel.Push(std::make_shared<const std::string>(text));
   EXPECT_EQ(channel.dropped(), 1u);

@@ -67,7 +67,7 @@ TEST_F(EvaluateTest, LandingReportHasTablesAndPlots) {
   }
 }
 
-TEST_F(EvaluateTest, LandingWithATrackAndPredictions) {
+TEST_F(EvaluateTest, EvaluatesLandingWithTrackAndPredictions) {
   WriteLanding();
   files_.WriteResult("landing_track.csv",
                      "timestamp_ns,state,p_x_m,p_y_m,p_z_m,v_x_mps,v_y_mps,v_z_mps,heading_rad,"
@@ -89,7 +89,7 @@ TEST_F(EvaluateTest, HuntReportHasTables) {
   EXPECT_THAT(page, HasSubstr("| digit | 0.5 to 0.7 | 1 | 60.0 | 0.0 |")) << "a 6 is no 9";
 }
 
-TEST_F(EvaluateTest, WhatIsMissingIsNamed) {
+TEST_F(EvaluateTest, ReportsMissingFilesAndRows) {
   EXPECT_THAT(LandingError(), HasSubstr("landing_pattern0/data.csv"));
   WriteLanding();
   files_.WriteResult("landing_detections.csv", "");
@@ -100,7 +100,7 @@ TEST_F(EvaluateTest, WhatIsMissingIsNamed) {
               HasSubstr("no recording"));
 }
 
-TEST_F(EvaluateTest, RowsThatDoNotBelongAreRefused) {
+TEST_F(EvaluateTest, RefusesRowsOfAnotherRecording) {
   WriteLanding();
   const std::string miss = ",0,,,,,,,,,,,,,,,ring,1\n";
   files_.WriteResult("landing_detections.csv", kDetectionHeader + ("a,150000000" + miss));

@@ -42,7 +42,7 @@ std::string Table() {
   return table + ObjectCsvRows("b.png", observation, model);
 }
 
-TEST(HuntResultTest, FramesAreWhatTheTableHasOfThem) {
+TEST(HuntResultTest, FramesMatchTable) {
   const TestFolder folder;
   HuntResult result(folder.Write("object_detections.csv", Table()));
   EXPECT_EQ(result.text(), Table());
@@ -65,7 +65,7 @@ TEST(HuntResultTest, FramesAreWhatTheTableHasOfThem) {
   result.RequireEnd();
 }
 
-TEST(HuntResultTest, AnotherRecordingsResultIsRefused) {
+TEST(HuntResultTest, RefusesResultOfAnotherRecording) {
   const TestFolder folder;
   HuntResult result(folder.Write("object_detections.csv", Table()));
   EXPECT_THAT(InputErrorOf([&] { result.Next(kSecond, std::nullopt); }),

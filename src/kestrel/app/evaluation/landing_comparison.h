@@ -38,7 +38,7 @@ struct LandingComparison {
   std::string condition;
   LandingVerdict verdict = LandingVerdict::kQuiet;
   std::optional<TruePattern> truth;
-  std::optional<double> tilt;       // of the UAV: angle between its z axis and the vertical, rad
+  std::optional<double> tilt;  // tilt of the UAV: angle between its z axis and the vertical, rad
   std::optional<double> motion_px;  // motion of the pattern's centre during the exposure
   std::optional<Eigen::Vector3d> estimate_in_world;
   std::optional<LandingErrors> errors;  // for kFound only

@@ -35,13 +35,13 @@ std::vector<LandingVerdict> Verdicts(const std::vector<LandingComparison>& compa
   return verdicts;
 }
 
-TEST(IsRightCenter, LeavesFourPixelsOrAPartOfTheRing) {
+TEST(IsRightCenter, AllowsFourPixelsOrPartOfRing) {
   EXPECT_TRUE(IsRightCenter({3.9, 0}, {0, 0}, 0));
   EXPECT_FALSE(IsRightCenter({4.1, 0}, {0, 0}, 10));
   EXPECT_TRUE(IsRightCenter({14, 0}, {0, 0}, 100));
 }
 
-TEST(MeasureErrors, SplitsAlongAndAcrossTheLineOfSight) {
+TEST(MeasureErrors, SplitsAlongAndAcrossLineOfSight) {
   DetectionRow::Pattern detected = *Detected(0).pattern;
   detected.center_px = {323, 244};
   detected.center_in_camera = {0.03, -0.04, 4.1};
@@ -68,7 +68,7 @@ std::optional<double> YawErrorAfter(int quarters, std::optional<int> symmetry, b
   return MeasureErrors(detected, PatternBelow(0), RigidTransform(), symmetry).yaw;
 }
 
-TEST(MeasureErrors, YawIsHeldAgainstTheHeadingsThatThePadHas) {
+TEST(MeasureErrors, ComparesYawUpToSymmetryOfPad) {
   EXPECT_NEAR(*YawErrorAfter(1, 4, false), 0.02, 1e-9) << "ring";
   EXPECT_NEAR(*YawErrorAfter(2, 2, false), 0.02, 1e-9) << "H";
   EXPECT_NEAR(*YawErrorAfter(1, 2, false), -kPi / 2 + 0.02, 1e-9) << "H, a quarter turn off";
@@ -77,7 +77,7 @@ TEST(MeasureErrors, YawIsHeldAgainstTheHeadingsThatThePadHas) {
   EXPECT_FALSE(YawErrorAfter(0, std::nullopt, true)) << "unknown pad";
 }
 
-TEST(CompareLanding, TheSceneSaysWhichPadItIs) {
+TEST(CompareLanding, ReadsKindOfPadFromScene) {
   const TestFlight files;
   files.WriteTruth("scene.yaml", "options: {target: {kind: apriltag}}\n");
   DetectionRow row = Detected(0);
@@ -102,7 +102,7 @@ TEST(CompareLanding, JudgesEveryFrame) {
   EXPECT_FALSE(comparisons[1].errors);
 }
 
-TEST(CompareLanding, RowOfNoImageIsRefused) {
+TEST(CompareLanding, RefusesRowWithoutImage) {
   const TestFlight files;
   const FlightTruth flight(files.recording());
   const DetectionRow row = {TimeFromNanoseconds(7), {}};
@@ -110,7 +110,7 @@ TEST(CompareLanding, RowOfNoImageIsRefused) {
               HasSubstr("landing.csv: timestamp 7 is not that of an image"));
 }
 
-TEST(CompareLanding, MotionDuringTheExposure) {
+TEST(CompareLanding, UsesMotionDuringExposure) {
   const TestFlight files(5);
   files.WriteTruth("scene.yaml", "options: {shutter: {exposure_s: 0.02}}\n");
   const FlightTruth flight(files.recording());
@@ -122,7 +122,7 @@ TEST(CompareLanding, MotionDuringTheExposure) {
   EXPECT_NEAR(*comparisons[0].tilt, 0, 1e-9);
 }
 
-TEST(SuccessTable, CountsOnlyWhatIsVisible) {
+TEST(SuccessTable, CountsVisiblePatternsOnly) {
   const TestFlight files;
   const FlightTruth flight(files.recording());
   const auto comparisons =
@@ -134,7 +134,7 @@ TEST(SuccessTable, CountsOnlyWhatIsVisible) {
   EXPECT_THAT(table.rows[2], ElementsAre("all", "not in view", "2", "-", "-", "-", "1"));
 }
 
-TEST(ErrorTable, HasARowForEveryAltitudeWithAFind) {
+TEST(ErrorTable, HasRowForEveryAltitudeWithDetection) {
   const TestFlight files;
   const FlightTruth flight(files.recording());
   const auto comparisons =
@@ -148,7 +148,7 @@ TEST(ErrorTable, HasARowForEveryAltitudeWithAFind) {
   EXPECT_EQ(ConsistencyTable(comparisons).rows.size(), 2u);
 }
 
-TEST(VisibleFractionTable, HasTheWholePatternForItself) {
+TEST(VisibleFractionTable, SeparatesWholePattern) {
   const TestFlight files;
   const FlightTruth flight(files.recording());
   const auto comparisons = CompareLanding(flight, {PatternBelow(0), PatternBelow(1, 0.8)},

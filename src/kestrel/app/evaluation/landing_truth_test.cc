@@ -23,7 +23,7 @@ TruePattern OnCircle(double seconds) {
   return row;
 }
 
-TEST(TrueMotionAt, FollowsACurveBetweenItsRows) {
+TEST(TrueMotionAt, FollowsCurveBetweenRows) {
   std::vector<TruePattern> rows;
   for (int i = 0; i <= 20; ++i) rows.push_back(OnCircle(0.1 * i));
   for (double t = 0; t <= 2; t += 0.013) {
@@ -35,7 +35,7 @@ TEST(TrueMotionAt, FollowsACurveBetweenItsRows) {
   }
 }
 
-TEST(TrueMotionAt, NothingOutsideAndInGaps) {
+TEST(TrueMotionAt, IsEmptyOutsideOfRowsAndInGaps) {
   const std::vector<TruePattern> rows = {OnCircle(1), OnCircle(2)};
   EXPECT_FALSE(TrueMotionAt(rows, Time(DurationFromSeconds(0.9))));
   EXPECT_TRUE(TrueMotionAt(rows, Time(DurationFromSeconds(1))));
@@ -44,7 +44,7 @@ TEST(TrueMotionAt, NothingOutsideAndInGaps) {
   EXPECT_FALSE(TrueMotionAt({}, Time()));
 }
 
-TEST(ParseTruePatterns, ReadsARow) {
+TEST(ParseTruePatterns, ReadsRow) {
   const auto rows = ParseTruePatterns(
       std::string(kPatternHeader) + "5,1,2,3,1,0,0,0,4,5,6,320.5,240,2.5,0.75\n", "p.csv");
   ASSERT_EQ(rows.size(), 1u);
@@ -57,7 +57,7 @@ TEST(ParseTruePatterns, ReadsARow) {
   EXPECT_EQ(FindTruePattern(rows, TimeFromNanoseconds(4)), nullptr);
 }
 
-TEST(ParseTruePatterns, FaultsNameTheLine) {
+TEST(ParseTruePatterns, ErrorsNameLine) {
   const auto error = [](const std::string& rows) {
     return InputErrorOf([&] { ParseTruePatterns(kPatternHeader + rows, "p.csv"); });
   };

@@ -17,7 +17,7 @@ LensCalibration TwoViews() {
   return calibration;
 }
 
-TEST(LensPlotsTest, ResidualsLieAtTheAnglesOfTheirEdges) {
+TEST(LensPlotsTest, ResidualsLieAtAnglesOfTheirEdges) {
   const Plot plot = LensResidualPlot(TwoViews());
   const Points2d& points = plot.panels[0].series[0].points;
   ASSERT_EQ(points.size(), 2u);
@@ -25,7 +25,7 @@ TEST(LensPlotsTest, ResidualsLieAtTheAnglesOfTheirEdges) {
   EXPECT_TRUE(points[1].isApprox(Eigen::Vector2d(45, -0.2)));
 }
 
-TEST(LensPlotsTest, TheCurveIsDashedBeyondTheEdges) {
+TEST(LensPlotsTest, CurveIsDashedBeyondEdges) {
   const PlotPanel curve = LensResidualPlot(TwoViews()).panels[1];
   const PlotSeries& by_edges = curve.series[0];
   const PlotSeries& beyond = curve.series[1];
@@ -36,7 +36,7 @@ TEST(LensPlotsTest, TheCurveIsDashedBeyondTheEdges) {
   EXPECT_NEAR(beyond.points.back().x(), 63, 1);
 }
 
-TEST(LensPlotsTest, CoverageShowsAllEdgesInTheImage) {
+TEST(LensPlotsTest, CoverageShowsAllEdgesInImage) {
   const PlotPanel panel = LensCoveragePlot(TwoViews()).panels[0];
   EXPECT_EQ(panel.series[1].points, Points2d{Eigen::Vector2d(320, 240)});
   EXPECT_EQ(panel.series[2].points, Points2d{Eigen::Vector2d(520, 240)});

@@ -24,7 +24,7 @@ struct ObjectComparison {
   std::string detected_class;
   std::string detected_shape;
   double class_probability = 0;
-  std::optional<SaidDigit> digit;
+  std::optional<ReportedDigit> digit;
   // Errors of the detection, estimate minus truth.
   double center_error_px = 0;
   std::optional<double> depth_error;  // relative to the distance; positive: too far away

@@ -31,7 +31,7 @@ ObjectRow Merged(const std::string& class_name, const Eigen::Vector2d& center_px
   return {FrameTime(0), center_px, 30, class_name, 0.9, "merged", {}, {}, {}};
 }
 
-TEST(MatchNearest, TakesEveryThingOnce) {
+TEST(MatchNearest, MatchesEachObjectOnce) {
   const auto matches = MatchNearest({{0, 0, 3}, {0, 1, 1}, {1, 1, 2}, {1, 0, 4}});
   ASSERT_EQ(matches.size(), 2u);
   EXPECT_EQ(matches[0].second, 1);
@@ -39,7 +39,7 @@ TEST(MatchNearest, TakesEveryThingOnce) {
   EXPECT_EQ(matches[1].second, 0);
 }
 
-TEST(CompareObjects, FoundMissedFalseAndOfAnotherClass) {
+TEST(CompareObjects, DistinguishesFoundMissedFalseAndMisclassified) {
   const TestFlight files;
   const FlightTruth flight(files.recording());
   const ObjectRows rows = {{FrameTime(0)},
@@ -66,7 +66,7 @@ TEST(CompareObjects, FoundMissedFalseAndOfAnotherClass) {
               ElementsAre(ElementsAre("blue", "1", "0"), ElementsAre("red", "0", "1")));
 }
 
-TEST(CompareObjects, MergedIsRightOnlyWhereDiscsAre) {
+TEST(CompareObjects, AcceptsMergedOnlyAtTrueDiscs) {
   const TestFlight files;
   const FlightTruth flight(files.recording());
   const TrueObjects discs = {{1, {"red", 0.2, "disc", {}}}, {2, {"red", 0.2, "disc", {}}}};
@@ -82,7 +82,7 @@ TEST(CompareObjects, MergedIsRightOnlyWhereDiscsAre) {
   EXPECT_FALSE(comparisons[3].IsObject());
 }
 
-TEST(ParseObjectRows, ObjectsHaveAShapeAndAllButMergedOnesAPosition) {
+TEST(ParseObjectRows, RequiresShapeAndPositionExceptForMerged) {
   const std::string header =
       "frame,timestamp_ns,u_px,v_px,semi_major_px,class,class_probability,p_CO_C_x_m,p_CO_C_y_m,"
       "p_CO_C_z_m,p_WO_W_x_m,p_WO_W_y_m,p_WO_W_z_m,shape,digit,digit_probability\n";
@@ -97,7 +97,7 @@ TEST(ParseObjectRows, ObjectsHaveAShapeAndAllButMergedOnesAPosition) {
               HasSubstr("shape 'square', expected disc, cuboid, bar, merged"));
 }
 
-TEST(CompareMap, FindsWhatIsMissingAndWhatIsNotThere) {
+TEST(CompareMap, ReportsMissingAndFalseObjects) {
   std::vector<TrueSighting> sightings = {Sighting(1, 0), Sighting(2, 1), Sighting(3, 2)};
   sightings[2].velocity_in_world = {0, 1, 0};
   std::vector<ObjectComparison> comparisons;
@@ -107,7 +107,7 @@ TEST(CompareMap, FindsWhatIsMissingAndWhatIsNotThere) {
   }
   const Time later = FrameTime(0) + DurationFromSeconds(2);
   const std::vector<MapRow> rows = {
-      {1, "red", "cuboid", SaidDigit{6, 0.5}, {0.3, 0.4, 0}, {0, 0, 0}, FrameTime(0)},
+      {1, "red", "cuboid", ReportedDigit{6, 0.5}, {0.3, 0.4, 0}, {0, 0, 0}, FrameTime(0)},
       {2, "yellow", "cuboid", {}, {2, 2, 0}, {0, 1, 0.5}, later},
       {3, "red", "disc", {}, {9, 9, 0}, {0, 0, 0}, FrameTime(0)}};
   const auto map = CompareMap(kObjects, sightings, comparisons, rows);
@@ -121,7 +121,7 @@ TEST(CompareMap, FindsWhatIsMissingAndWhatIsNotThere) {
                                       "0.250", "0.500", "0.500")));
 }
 
-TEST(ParseTrueSightings, ObjectThatIsNotListedIsRefused) {
+TEST(ParseTrueSightings, RefusesUnlistedObject) {
   const std::string text =
       "#timestamp [ns],id [],p_WO_W_x [m],p_WO_W_y [m],p_WO_W_z [m],v_WO_W_x [m s^-1],v_WO_W_y [m "
       "s^-1],v_WO_W_z [m s^-1],u [px],v [px],visible_fraction []\n5,8,0,0,0,0,0,0,1,1,1\n";

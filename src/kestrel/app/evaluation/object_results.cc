@@ -34,10 +34,10 @@ class ShapeColumns {
     }
     return shape;
   }
-  std::optional<SaidDigit> ParseDigit(std::size_t row) const {
+  std::optional<ReportedDigit> ParseDigit(std::size_t row) const {
     if (table_.IsEmpty(row, digit_)) return std::nullopt;
-    return SaidDigit{static_cast<int>(table_.Integer(row, digit_)),
-                     table_.Number(row, probability_)};
+    return ReportedDigit{static_cast<int>(table_.Integer(row, digit_)),
+                         table_.Number(row, probability_)};
   }
 
  private:

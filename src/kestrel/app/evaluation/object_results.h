@@ -13,7 +13,7 @@
 namespace kestrel {
 
 // The digit of a row with its reported probability.
-struct SaidDigit {
+struct ReportedDigit {
   int digit = 0;
   double probability = 0;
 };
@@ -26,7 +26,7 @@ struct ObjectRow {
   std::string class_name;
   double class_probability = 0;
   std::string shape;  // disc, cuboid, bar, merged
-  std::optional<SaidDigit> digit;
+  std::optional<ReportedDigit> digit;
   std::optional<Eigen::Vector3d> center_in_camera;  // merged objects have none
   std::optional<Eigen::Vector3d> center_in_world;
 };
@@ -42,7 +42,7 @@ struct MapRow {
   int id = 0;
   std::string class_name;
   std::string shape;
-  std::optional<SaidDigit> digit;
+  std::optional<ReportedDigit> digit;
   Eigen::Vector3d position_in_world;
   Eigen::Vector3d velocity_in_world;
   Time last_seen;

@@ -18,7 +18,7 @@ constexpr int kMapHeight_px = 1100;
 constexpr int kPanelHeight_px = 420;
 constexpr int kTitleHeight_px = 60;
 
-// Colours of Okabe and Ito (2008), which the colour-blind and gray prints can tell apart.
+// Colours of Okabe and Ito (2008), which stay distinct for the colour-blind and in gray prints.
 constexpr std::array<const char*, 6> kColors = {"#000000", "#0072B2", "#D55E00",
                                                 "#009E73", "#CC79A7", "#E69F00"};
 

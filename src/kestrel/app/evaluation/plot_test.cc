@@ -40,7 +40,7 @@ TEST(PlotScript, LeavesOutSeriesWithoutPoints) {
   EXPECT_THAT(PlotScript(TwoPanels(), "a.png"), Not(HasSubstr("nothing")));
 }
 
-TEST(WritePlot, DrawsAPicture) {
+TEST(WritePlot, DrawsPicture) {
   const TestFolder folder;
   WritePlot(TwoPanels(), folder / "it's.png");
   const cv::Mat picture = ReadImage(folder / "it's.png");
@@ -48,7 +48,7 @@ TEST(WritePlot, DrawsAPicture) {
   EXPECT_GT(cv::countNonZero(picture.reshape(1) < 128), 500);
 }
 
-TEST(WritePlot, SaysWhatItNeedsWhereItFails) {
+TEST(WritePlot, ReportsWhyItFails) {
   const std::string error =
       InputErrorOf([] { WritePlot(TwoPanels(), "/nonexistent/folder/a.png"); });
   EXPECT_THAT(error, HasSubstr("/nonexistent/folder/a.png: cannot be drawn"));

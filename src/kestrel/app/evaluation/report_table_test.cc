@@ -11,13 +11,13 @@ namespace {
 const ReportTable kTable = {
     "rates", "Rates", "All of it.", {"what", "rate, %"}, {{"day", "-"}, {"night", "12.5"}}};
 
-TEST(ReportTable, AsMarkdown) {
+TEST(ReportTable, FormatsAsMarkdown) {
   EXPECT_EQ(ToMarkdown(kTable),
             "## Rates\n\nAll of it.\n\n| what | rate, % |\n| --- | --- |\n| day | - |\n"
             "| night | 12.5 |\n");
 }
 
-TEST(ReportTable, AsCsvTheUnknownIsEmptyAndCommasAreQuoted) {
+TEST(ReportTable, FormatsAsCsvWithEmptyUnknownsAndQuotedCommas) {
   EXPECT_EQ(ToCsv(kTable), "what,\"rate, %\"\nday,\nnight,12.5\n");
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-TEST(SceneTruth, WhatIsNotThereKeepsItsDefault) {
+TEST(SceneTruth, KeepsDefaultsOfMissingKeys) {
   const SceneTruth scene = ParseSceneTruth("seed: 7\npattern: null\n", "scene.yaml");
   EXPECT_EQ(scene.ConditionAt(Time()), "all");
   EXPECT_EQ(scene.ring_diameter_m, 1);
@@ -19,7 +19,7 @@ TEST(SceneTruth, WhatIsNotThereKeepsItsDefault) {
   EXPECT_NEAR(scene.mount_error.w(), 1, 1e-12);
 }
 
-TEST(SceneTruth, AnImageMayHaveItsOwn) {
+TEST(SceneTruth, ReadsValuesOfSingleImages) {
   const SceneTruth scene = ParseSceneTruth(
       "condition: dark\ntime_offset_s: 0.07\noptions: {shutter: {exposure_s: 0.01}}\n"
       "frames:\n  '5': {condition: dust, exposure_s: 0.02}\n  '6': {haze: 1}\n",
@@ -30,7 +30,7 @@ TEST(SceneTruth, AnImageMayHaveItsOwn) {
   EXPECT_EQ(scene.ExposureAt(TimeFromNanoseconds(6)), 0.01);
 }
 
-TEST(SceneTruth, HeadingsAreThoseOfThePad) {
+TEST(SceneTruth, TakesHeadingsFromKindOfPad) {
   const auto of = [](const char* kind) {
     return ParseSceneTruth(std::string("options: {target: {kind: ") + kind + "}}\n", "scene.yaml")
         .heading_symmetry;
@@ -50,7 +50,7 @@ TEST(SceneTruth, MountErrorTurnsAboutZThenYThenX) {
   EXPECT_LT((turned - Eigen::Vector3d::UnitZ()).norm(), 1e-12);
 }
 
-TEST(SceneTruth, FaultsNameTheKey) {
+TEST(SceneTruth, ErrorsNameKey) {
   EXPECT_THAT(InputErrorOf([] { ParseSceneTruth("mount_error: {yaw_deg: much}\n", "scene.yaml"); }),
               HasSubstr("scene.yaml: mount_error.yaw_deg: is 'much', expected a finite number"));
   EXPECT_THAT(InputErrorOf([] { ParseSceneTruth("frames: {first: {}}\n", "scene.yaml"); }),

@@ -17,7 +17,7 @@ TEST(WilsonInterval, AgreesWithTabulatedValues) {
   EXPECT_NEAR(WilsonInterval(0, 100).high, 0.0370, 1e-4);
 }
 
-TEST(WilsonInterval, IsNeverSureAndNeverOutside) {
+TEST(WilsonInterval, IsNeverCertainAndStaysWithinBounds) {
   EXPECT_LT(WilsonInterval(20, 20).low, 1);
   EXPECT_EQ(WilsonInterval(20, 20).high, 1);
   EXPECT_EQ(WilsonInterval(0, 20).low, 0);
@@ -32,7 +32,7 @@ TEST(ChiSquareBounds, AgreeWithTabulatedValues) {
   EXPECT_NEAR(ChiSquareBounds(100).high, 129.561, 0.05);
 }
 
-TEST(MeanNeesBounds, CloseInOnTheDimensions) {
+TEST(MeanNeesBounds, ConvergeToDimensions) {
   const Interval few = MeanNeesBounds(10, 3);
   const Interval many = MeanNeesBounds(1000, 3);
   EXPECT_LT(few.low, many.low);
@@ -41,7 +41,7 @@ TEST(MeanNeesBounds, CloseInOnTheDimensions) {
   EXPECT_NEAR(many.high, 3, 0.2);
 }
 
-TEST(IndependentCount, OfNeighboursThatAreAlikeIsLess) {
+TEST(IndependentCount, IsSmallerForCorrelatedNeighbours) {
   Random random(1);
   std::vector<double> independent, alike;
   double state = 0;
@@ -64,13 +64,13 @@ TEST(Quantile, InterpolatesBetweenNeighbours) {
   EXPECT_NEAR(Quantile({0, 10, 20}, 0.95), 19, 1e-12);
 }
 
-TEST(Statistics, WithoutValuesNothingIsKnown) {
+TEST(Statistics, AreNanWithoutValues) {
   EXPECT_TRUE(std::isnan(Mean({})));
   EXPECT_TRUE(std::isnan(RootMeanSquare({})));
   EXPECT_TRUE(std::isnan(Median({})));
 }
 
-TEST(Statistics, MeanAndRootMeanSquare) {
+TEST(Statistics, GiveMeanAndRootMeanSquare) {
   const std::vector<double> values = {3, -4};
   EXPECT_EQ(Mean(values), -0.5);
   EXPECT_NEAR(RootMeanSquare(values), std::sqrt(12.5), 1e-12);

@@ -8,7 +8,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-TEST(TouchdownPlotTest, ShowsThePathsFromAboveAndFromTheSide) {
+TEST(TouchdownPlotTest, ShowsPathsFromAboveAndFromSide) {
   TouchdownResult result;
   TouchdownMoment start;
   start.feet_in_world = {0, 0, 10};
@@ -31,7 +31,7 @@ TEST(TouchdownPlotTest, ShowsThePathsFromAboveAndFromTheSide) {
   EXPECT_LT((side.series[0].points[0] - Vector2d(3.6, 2)).norm(), 1e-12);
 }
 
-TEST(TouchdownPlotTest, AFlightWithoutImagesIsNoFault) {
+TEST(TouchdownPlotTest, AcceptsFlightWithoutImages) {
   EXPECT_TRUE(TouchdownPlot({}).panels[0].series[1].points.empty());
 }
 

@@ -12,10 +12,11 @@
 
 namespace kestrel {
 
-// Errors of a row of the track in the world's frame, estimate minus truth.
+// Errors of one row of the track: estimate minus truth, in the world frame.
 struct TrackErrors {
   Time time;
-  double altitude_m = 0;  // of the camera above the pattern, at the last image before
+  // True height of the camera above the pattern in the newest image not later than 'time'.
+  double altitude_m = 0;
   Eigen::Vector3d position;
   Eigen::Vector3d velocity;
   double position_nees = 0;  // with the one standard deviation that holds for all axes

@@ -40,7 +40,7 @@ TEST(CompareTrack, MeasuresPositionAndVelocity) {
               ElementsAre("2 to 6", "1", "0.500", "0.500", "1.000", "1.000", "25.00", "4.00"));
 }
 
-TEST(ComparePredictions, AreHeldAgainstTheTruthOfTheirTime) {
+TEST(ComparePredictions, ComparesWithTruthAtPredictedTime) {
   const Duration half = DurationFromSeconds(0.5);
   const auto errors =
       ComparePredictions(Straight(), {{At(0.2), half, {1.4, 0.1, 0}}, {At(0.8), half, {0, 0, 0}}});

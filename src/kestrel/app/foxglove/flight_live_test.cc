@@ -43,7 +43,7 @@ void SeeFrame(FlightLive* flight, int index) {
   flight->Take(Observation{frame, ObservedLanding(frame.time)});
 }
 
-TEST(FlightLiveTest, GivesTheMessagesOfTheFile) {
+TEST(FlightLiveTest, GivesSameMessagesAsFile) {
   FlightLive flight(ObservedCamera(), ObservedView(), kAnyRate_hz);
   flight.channels()->SetWanted(~std::uint64_t{0});
   for (int i = 0; i < 3; ++i) {
@@ -59,7 +59,7 @@ TEST(FlightLiveTest, GivesTheMessagesOfTheFile) {
   }
 }
 
-TEST(FlightLiveTest, MakesOnlyWhatIsWanted) {
+TEST(FlightLiveTest, MakesRequestedMessagesOnly) {
   FlightLive flight(ObservedCamera(), ObservedView(), kAnyRate_hz);
   const Frame frame = ObservedFrame(0);
   flight.Take(Observation{frame, ObservedLanding(frame.time)});
@@ -70,7 +70,7 @@ TEST(FlightLiveTest, MakesOnlyWhatIsWanted) {
   EXPECT_EQ(messages.size(), 1u);
 }
 
-TEST(FlightLiveTest, ImagesAreLimited) {
+TEST(FlightLiveTest, LimitsImageRate) {
   FlightLive flight(ObservedCamera(), ObservedView(), /*max_image_rate_hz=*/0.1);
   flight.channels()->SetWanted(~std::uint64_t{0});
   for (int i = 0; i < 5; ++i) SeeFrame(&flight, i);
@@ -79,7 +79,7 @@ TEST(FlightLiveTest, ImagesAreLimited) {
   EXPECT_EQ(messages.at("/camera/image").size(), 1u);
 }
 
-TEST(FlightLiveTest, SaysWhatHappens) {
+TEST(FlightLiveTest, ReportsEvents) {
   FlightLive flight(ObservedCamera(), ObservedView(), kAnyRate_hz);
   flight.channels()->SetWanted(~std::uint64_t{0});
   flight.Take(SessionEvent{Now(), EventLevel::kWarning, "camera came back"});

@@ -21,7 +21,7 @@ Message Read(const std::string& bytes) {
   return ParseMessage<Message>(bytes, WireFormat::kProtobuf, "file: /topic");
 }
 
-TEST(ReadFoxglove, CompressedImagesWithTheirHeader) {
+TEST(ReadFoxglove, ReadsCompressedImagesWithHeader) {
   const std::string bytes = ProtobufBytesOf(
       foxglove::CompressedImage{kTime, "camera", {std::string("\xff\xd8\0x", 4)}, "jpeg"});
   const auto image = Read<CompressedImageMessage>(bytes);
@@ -34,7 +34,7 @@ TEST(ReadFoxglove, CompressedImagesWithTheirHeader) {
   EXPECT_EQ(header.frame_id, "camera");
 }
 
-TEST(ReadFoxglove, CalibrationsUnderTheNamesOfRos) {
+TEST(ReadFoxglove, ReadsCalibrationsByRosNames) {
   foxglove::CameraCalibration written;
   written.width = 752;
   written.height = 480;
@@ -48,7 +48,7 @@ TEST(ReadFoxglove, CalibrationsUnderTheNamesOfRos) {
   EXPECT_EQ(read.k, written.k);
 }
 
-TEST(ReadFoxglove, PosesAndTransforms) {
+TEST(ReadFoxglove, ReadsPosesAndTransforms) {
   const foxglove::Pose pose{{1, 2, 3}, {0, 0, 0.6, 0.8}};
   const auto stamped =
       Read<PoseStampedMessage>(ProtobufBytesOf(foxglove::PoseInFrame{kTime, "map", pose}));
@@ -67,7 +67,7 @@ TEST(ReadFoxglove, PosesAndTransforms) {
   EXPECT_EQ(tf.transforms[1].transform.translation.x, 1);
 }
 
-TEST(ReadFoxglove, RefusesWhatIsBroken) {
+TEST(ReadFoxglove, RefusesMalformedMessages) {
   const std::string bytes =
       ProtobufBytesOf(foxglove::PoseInFrame{kTime, "map", {{1, 2, 3}, {0, 0, 0, 1}}});
   int refused = 0;

@@ -23,7 +23,7 @@ namespace {
 
 using ::testing::IsEmpty;
 
-TEST(McapSinkTest, WritesAllThatItWasGiven) {
+TEST(McapSinkTest, WritesAllObservationsAndEvents) {
   const TestFolder folder;
   const std::string path = folder / "flight.mcap";
   std::vector<std::string> told;
@@ -45,7 +45,7 @@ TEST(McapSinkTest, WritesAllThatItWasGiven) {
 }
 
 // After a crash the file would be like this: readable, although nothing follows.
-TEST(McapSinkTest, ASecondAfterAFrameItIsInTheFile) {
+TEST(McapSinkTest, WritesFrameWithinASecond) {
   const TestFolder folder;
   const std::string path = folder / "flight.mcap";
   const auto mcap =
@@ -61,7 +61,7 @@ TEST(McapSinkTest, ASecondAfterAFrameItIsInTheFile) {
   EXPECT_EQ(topics, 9u);
 }
 
-TEST(McapSinkTest, AFullDiskIsSaidAndTheFlightGoesOn) {
+TEST(McapSinkTest, ReportsFullDiskAndContinuesFlight) {
   std::mutex mutex;
   std::vector<std::string> told;
   {

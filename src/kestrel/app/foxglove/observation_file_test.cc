@@ -20,7 +20,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-TEST(ObservationFileTest, WritesALanding) {
+TEST(ObservationFileTest, WritesLanding) {
   const TestFolder folder;
   const std::string path = folder / "flight.mcap";
   {
@@ -69,7 +69,7 @@ TEST(ObservationFileTest, WritesALanding) {
   EXPECT_EQ(target.doubles(5).size(), 36u);
 }
 
-TEST(ObservationFileTest, WhatWasWrittenStaysWhenTheRunFails) {
+TEST(ObservationFileTest, KeepsWrittenMessagesWhenRunFails) {
   const TestFolder folder;
   const Frame frame = ObservedFrame(0);
   {
@@ -81,14 +81,14 @@ TEST(ObservationFileTest, WhatWasWrittenStaysWhenTheRunFails) {
   EXPECT_FALSE(std::filesystem::exists(folder / "b.mcap"));
 }
 
-TEST(ObservationFileTest, AFileThatIsThereIsKept) {
+TEST(ObservationFileTest, KeepsExistingFile) {
   const TestFolder folder;
   const std::string path = folder.Write("a.mcap", "mine");
   EXPECT_THROW(ObservationFile(path, false, ObservedCamera(), ObservedView()), InputError);
   EXPECT_EQ(ReadFile(path), "mine");
 }
 
-TEST(ObservationFileTest, WritesAHunt) {
+TEST(ObservationFileTest, WritesHunt) {
   const TestFolder folder;
   const std::string path = folder / "hunt.mcap";
   const HuntView view{DefaultObjectModel()};

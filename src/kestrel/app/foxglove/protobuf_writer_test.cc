@@ -58,7 +58,7 @@ struct ProtobufEnum<Kind> {
 namespace {
 
 // Examples from protobuf.dev/programming-guides/encoding.
-TEST(ProtobufWriterTest, WritesWhatTheSpecificationShows) {
+TEST(ProtobufWriterTest, WritesExamplesOfSpecification) {
   EXPECT_EQ(ProtobufBytesOf(Inner{150}), "\x08\x96\x01"s);
   Outer outer;
   outer.text = "testing";
@@ -85,14 +85,14 @@ TEST(ProtobufWriterTest, WritesEveryKindOfField) {
   EXPECT_EQ(fields.number<std::uint32_t>(16), 9u);
 }
 
-TEST(ProtobufWriterTest, TimesBeforeTheEpochHaveTheirNanosecondsAfterTheSecond) {
+TEST(ProtobufWriterTest, NanosecondsAreNonNegativeBeforeEpoch) {
   const TimestampMessage before = TimestampOf(TimeFromNanoseconds(-1));
   EXPECT_EQ(before.seconds, -1);
   EXPECT_EQ(before.nanos, 999'999'999);
 }
 
 // The file of a message comes after the files of the messages that it needs; each file comes once.
-TEST(ProtobufSchemaTest, DescribesTheMessageAndAllThatItNeeds) {
+TEST(ProtobufSchemaTest, DescribesMessageAndItsDependencies) {
   const ProtobufFields set(ProtobufSchemaOf<Outer>());
   ASSERT_EQ(set.count(1), 3u);
   EXPECT_EQ(set.message(1, 0).bytes(1), "google/protobuf/timestamp.proto");

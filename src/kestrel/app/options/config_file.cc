@@ -25,12 +25,12 @@ using Names = std::span<const std::string>;
 // A change of a text.
 struct Edit {
   std::size_t begin = 0;
-  std::size_t end = 0;  // of what is replaced
+  std::size_t end = 0;  // end of the replaced text
   std::string text;
 };
 
 struct Setting {
-  std::vector<std::string> names;  // of its key
+  std::vector<std::string> names;  // parts of its key
   std::string value;               // as YAML
 };
 

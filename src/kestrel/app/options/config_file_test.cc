@@ -31,7 +31,7 @@ std::string With(const std::string& yaml, const std::string& setting) {
   return WithSetting(yaml, setting, "kestrel.yaml");
 }
 
-TEST(WithSetting, ReplacesAValueAndNothingElse) {
+TEST(WithSetting, ReplacesSingleValueOnly) {
   std::string expected = kFile;
   expected.replace(expected.find("\"aruco\""), 7, "apriltag");
   EXPECT_EQ(With(kFile, "landing.target.kind=apriltag"), expected);
@@ -40,7 +40,7 @@ TEST(WithSetting, ReplacesAValueAndNothingElse) {
   EXPECT_EQ(With(kFile, "landing.target.id=17"), expected);
 }
 
-TEST(WithSetting, AddsALineToItsGroup) {
+TEST(WithSetting, AddsLineToGroup) {
   std::string expected = kFile;
   expected.insert(expected.find("    # printed"), "    size_m: 0.4\n");
   EXPECT_EQ(With(kFile, "landing.target.size_m=0.4"), expected);
@@ -57,7 +57,7 @@ TEST(WithSetting, AddsGroups) {
             "fly:\n  rate_hz: 30\nlanding:\n  still: true\n");
 }
 
-TEST(WithSetting, QuotesWhatYamlWouldReadOtherwise) {
+TEST(WithSetting, QuotesAmbiguousText) {
   for (const std::string text :
        {"v4l2src device=/dev/video2 ! image/jpeg,width=640 ! jpegdec", "a: b", "a #b", "'", "null",
         "rtsp://10.0.0.2:554/main", "a \"b\" \\c", "[1]", "grün"}) {
@@ -70,7 +70,7 @@ TEST(WithSetting, QuotesWhatYamlWouldReadOtherwise) {
   }
 }
 
-TEST(WithSetting, UnchangeableOptionIsRefused) {
+TEST(WithSetting, RefusesUnchangeableOption) {
   for (const std::string yaml :
        {"landing: {target: {id: 3}}\n", "landing:\n  target: {kind: aruco}\n", "a: 1\n",
         "landing:\n  target:\n    id: >\n      3\n"}) {
@@ -80,7 +80,7 @@ TEST(WithSetting, UnchangeableOptionIsRefused) {
   EXPECT_THROW(With(kFile, "landing.target.nr=4"), InputError);
 }
 
-TEST(SaveSettings, ChangesAFileBehindALink) {
+TEST(SaveSettings, ChangesFileBehindLink) {
   const TestFolder folder;
   const std::string file = folder.Write("own.yaml", kFile);
   const std::string link = folder / "kestrel.yaml";

@@ -22,7 +22,7 @@ class FieldSettings {
   // Returns the settings with the values that the next start would use.
   ConsoleSettings State() const;
 
-  // Saves settings, each as "key=value"; the state says so, or why they are refused: no file, a key
+  // Saves settings, each as "key=value"; the state reports success, or the refusal: no file, a key
   // that is not one of these or that the command line gives, a value that the command line would
   // refuse, a UAV that is armed.
   ConsoleSettings Save(const std::vector<std::string>& settings,

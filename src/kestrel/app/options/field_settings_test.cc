@@ -46,7 +46,7 @@ class FieldSettingsTest : public ::testing::Test {
   std::string file_ = folder_.Write("kestrel.yaml", kTargetFile);
 };
 
-TEST_F(FieldSettingsTest, AreShownAndSaved) {
+TEST_F(FieldSettingsTest, ShowsAndSavesSettings) {
   FieldSettings settings = Settings();
   EXPECT_EQ(ValueOf(settings.State(), "landing.target.id"), "3");
   const ConsoleSettings state = settings.Save(
@@ -67,7 +67,7 @@ TEST_F(FieldSettingsTest, AreShownAndSaved) {
 }
 
 // In the words of the command line.
-TEST_F(FieldSettingsTest, WrongValuesAreRefused) {
+TEST_F(FieldSettingsTest, RefusesWrongValues) {
   for (const std::string setting :
        {"landing.target.id=three", "landing.target.kind=circle", "landing.target.size_m=-1",
         "fly.control_exposure=maybe", "fly.exposure.max_exposure_s=0"}) {
@@ -87,14 +87,14 @@ TEST_F(FieldSettingsTest, WrongValuesAreRefused) {
   ExpectRefused(Settings(), "console.token=0123456789abcdef", "no setting of this page");
 }
 
-TEST_F(FieldSettingsTest, SettingOfTheCommandLineStays) {
+TEST_F(FieldSettingsTest, KeepsSettingOfCommandLine) {
   const FieldSettings settings = Settings({"landing.target.id=9"});
   EXPECT_EQ(ValueOf(settings.State(), "landing.target.id"), "9");
   EXPECT_TRUE(settings.State().settings.back().is_given);
   ExpectRefused(settings, "landing.target.id=4", "command line");
 }
 
-TEST_F(FieldSettingsTest, NothingIsSavedWithoutAFileOrWhileArmed) {
+TEST_F(FieldSettingsTest, SavesNothingWithoutFileOrWhileArmed) {
   ExpectRefused(FieldSettings("", {}, {}), "landing.target.id=4", "--config FILE");
   ExpectRefused(Settings(), "landing.target.id=4", "the UAV is armed", StateOf(/*is_armed=*/true));
 }

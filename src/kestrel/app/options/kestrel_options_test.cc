@@ -11,14 +11,14 @@ namespace {
 
 TEST(KestrelOptions, DefaultsAreValid) { EXPECT_TRUE(ViolationsOf(KestrelOptions()).empty()); }
 
-TEST(KestrelOptions, SettingsChangeTheDefaults) {
+TEST(KestrelOptions, SettingsOverrideDefaults) {
   const KestrelOptions options = ReadKestrelOptions(
       "", {"landing.detector.pattern.outer_diameter_m=1.2", "landing.target_height_m=0.5"});
   EXPECT_EQ(options.landing.detector.pattern.outer_diameter_m, 1.2);
   EXPECT_EQ(options.landing.target_height_m, 0.5);
 }
 
-TEST(KestrelOptions, PrintedTextsReadBackWhateverIsInThem) {
+TEST(KestrelOptions, PrintedTextsRoundTrip) {
   for (const char* text : {"videotestsrc ! video/x-raw", "a: b", "a #b", "null", "", "[1]"}) {
     KestrelOptions options, again;
     options.fly.source = text;
@@ -28,7 +28,7 @@ TEST(KestrelOptions, PrintedTextsReadBackWhateverIsInThem) {
   }
 }
 
-TEST(KestrelOptions, ViolationsCarryTheirWholeKey) {
+TEST(KestrelOptions, ViolationsNameFullKey) {
   try {
     ReadKestrelOptions("", {"landing.hint_sigma_m=-1", "landing.detector.min_quality=7"});
     FAIL() << "expected an InputError";

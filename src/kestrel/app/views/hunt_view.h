@@ -23,7 +23,7 @@ struct HuntView {
 std::vector<SeriesDescription> HuntSeries();
 ViewSample HuntSample(const HuntObservation& observation);
 
-// The ellipses of the objects. Rejected are those whose size says that they are not on the ground.
+// The ellipses of the objects. Objects whose size contradicts a place on the ground are rejected.
 std::vector<OverlayLayer> HuntLayers();
 std::vector<OverlayShape> HuntShapes(const HuntView& view, const HuntObservation& observation);
 

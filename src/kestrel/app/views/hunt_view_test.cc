@@ -27,7 +27,7 @@ cv::Vec3b Paint(const ObjectModel& model, const std::string& name) {
   return 255 * bgr.at<cv::Vec3f>(0, 0);
 }
 
-TEST(HuntViewTest, SegmentsAreInTheirColourAndSpecksHalfAsBright) {
+TEST(HuntViewTest, DrawsSegmentsInTheirColourAndSpecksDarker) {
   const ObjectModel model = DefaultObjectModel();
   cv::Mat image(60, 80, CV_8UC3, cv::Scalar(90, 100, 95));
   image(cv::Rect(10, 10, 20, 20)).setTo(Paint(model, "red"));
@@ -53,7 +53,7 @@ TEST(HuntViewTest, SegmentsAreInTheirColourAndSpecksHalfAsBright) {
   EXPECT_TRUE(views[0].draw(cv::Mat(9, 9, CV_8UC1, cv::Scalar(1))).empty());
 }
 
-TEST(HuntViewTest, WhatIsRejectedSaysWhy) {
+TEST(HuntViewTest, RejectedObjectShowsReason) {
   HuntObservation observation;
   observation.report.elsewhere.emplace_back().class_probability = 0.5;
   const HuntView view{DefaultObjectModel(), {}};

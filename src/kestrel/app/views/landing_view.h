@@ -42,7 +42,7 @@ std::vector<ImageView> LandingImageViews();
 // Returns the state of the track, and why the pattern was not found.
 ViewStatus LandingStatus(const LandingObservation& observation);
 
-// Says whether the pattern was found or why not, the method, the quality, and by how many pixels
+// Lists whether the pattern was found or why not, the method, the quality, and by how many pixels
 // pose and calibration miss it.
 std::vector<ViewFact> LandingFacts(const LandingObservation& observation);
 

@@ -71,7 +71,7 @@ double Width(const OverlayShape& shape, bool is_vertical) {
   return high - low;
 }
 
-TEST(LandingViewTest, TheTracksEllipseLiesWhereTheRingIs) {
+TEST(LandingViewTest, TrackEllipseLiesAtRing) {
   const auto shapes = LandingShapes(View(), Seen());
   ASSERT_EQ(shapes.size(), 5U);
   EXPECT_EQ(shapes[0].layer, OverlayLayer::kPrediction);
@@ -84,7 +84,7 @@ TEST(LandingViewTest, TheTracksEllipseLiesWhereTheRingIs) {
 }
 
 // The longest side of any of these pads is drawn in 8 pieces, as the print has no diagonals.
-TEST(LandingViewTest, NoLineIsDrawnAcrossAPad) {
+TEST(LandingViewTest, DrawsNoLineAcrossPad) {
   for (const char* const kind : {"ring-cross", "apriltag", "aruco", "helipad"}) {
     TargetOptions target;
     target.kind = kind;
@@ -100,7 +100,7 @@ TEST(LandingViewTest, NoLineIsDrawnAcrossAPad) {
   }
 }
 
-TEST(LandingViewTest, ALineEndsWhereTheLensShowsNothing) {
+TEST(LandingViewTest, LineEndsAtFieldOfViewOfLens) {
   // A pad so near, beside a lens that shows a part of the world only.
   LandingObservation observation = Seen();
   observation.report.detection->camera_from_pattern.translation = {0.6, 0, 0.05};
@@ -118,7 +118,7 @@ TEST(LandingViewTest, ALineEndsWhereTheLensShowsNothing) {
   EXPECT_NE(shapes[0].label, "");
 }
 
-TEST(LandingViewTest, WhatTheTrackDoesNotTakeIsRejected) {
+TEST(LandingViewTest, ShowsDetectionFarFromTrackAsRejected) {
   LandingObservation observation = Seen();
   observation.fate = MeasurementFate::kFarFromTrack;
   const auto shapes = LandingShapes(View(), observation);
@@ -127,7 +127,7 @@ TEST(LandingViewTest, WhatTheTrackDoesNotTakeIsRejected) {
   EXPECT_NE(LandingStatus(observation).reason, "");
 }
 
-TEST(LandingViewTest, OfAMisfitBothOutlinesAreShown) {
+TEST(LandingViewTest, ShowsBothOutlinesOfMisfit) {
   LandingObservation observation = Seen();
   LandingDetection& detection = *observation.report.detection;
   detection.seen = SeenPrint{detection.camera_from_pattern, PlaneWarp::Coefficients::Zero(), 0.5};
@@ -149,7 +149,7 @@ TEST(LandingViewTest, OfAMisfitBothOutlinesAreShown) {
   EXPECT_EQ(LandingShapes(View(), observation).size(), 5U) << "no more than should be";
 }
 
-TEST(LandingViewTest, SaysWhichPadItIs) {
+TEST(LandingViewTest, NamesPad) {
   LandingObservation observation = Seen();
   observation.report.detection->method = DetectionMethod::kTags;
   observation.report.detection->id = 17;
@@ -157,7 +157,7 @@ TEST(LandingViewTest, SaysWhichPadItIs) {
   EXPECT_EQ(LandingFacts(observation)[1].value, "pad, by its tags, id 17");
 }
 
-TEST(LandingViewTest, NumbersAreThoseOfTheTrack) {
+TEST(LandingViewTest, ShowsNumbersOfTrack) {
   const ViewSample sample = LandingSample(Seen());
   ASSERT_EQ(sample.values.size(), LandingSeries().size());
   EXPECT_NEAR(sample.values[0], 5, 1e-9);
@@ -167,7 +167,7 @@ TEST(LandingViewTest, NumbersAreThoseOfTheTrack) {
   for (int i = 0; i < 4; ++i) EXPECT_TRUE(std::isnan(LandingSample({}).values[i]));
 }
 
-TEST(LandingViewTest, TheMapLooksAhead) {
+TEST(LandingViewTest, MapShowsPrediction) {
   const ViewMap map = LandingMap(View(), Seen());
   EXPECT_NEAR(map.uav_heading, M_PI / 2, 1e-9);
   ASSERT_EQ(map.prediction.size(), 3U);
@@ -176,7 +176,7 @@ TEST(LandingViewTest, TheMapLooksAhead) {
   EXPECT_FALSE(LandingMap(View(), {}).uav);
 }
 
-TEST(LandingViewTest, SaysWhyNot) {
+TEST(LandingViewTest, ReportsReasonOfMiss) {
   LandingObservation observation;
   observation.report.reason = "no ring";
   EXPECT_EQ(LandingStatus(observation).state, "searching");
@@ -185,14 +185,14 @@ TEST(LandingViewTest, SaysWhyNot) {
   EXPECT_EQ(LandingStatus(Seen()).state, "tracking");
 }
 
-TEST(LandingViewTest, OneSightingIsFoundBeforeItIsATrack) {
+TEST(LandingViewTest, SingleSightingIsFoundBeforeTrackExists) {
   LandingObservation observation = Seen();
   observation.track_state = TrackState::kSearching;
   observation.target.reset();
   EXPECT_EQ(LandingStatus(observation).state, "found");
 }
 
-TEST(LandingViewTest, TheThresholdIsSeenAtFourResolutionsOfGrayAndColour) {
+TEST(LandingViewTest, ShowsThresholdAtFourResolutionsOfGrayAndColour) {
   cv::Mat board(96, 128, CV_8UC1, cv::Scalar(230));
   board(cv::Rect(40, 24, 32, 32)).setTo(20);
   cv::Mat color;

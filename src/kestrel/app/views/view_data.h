@@ -61,9 +61,9 @@ struct ViewSample {
 // The state of the flight, in words that a pilot takes in at a glance.
 struct ViewStatus {
   std::string state;   // as "searching", "tracking", "landing"
-  std::string reason;  // why the state is no better; empty where there is nothing to say
+  std::string reason;  // why the state is no better; empty if there is no reason
   bool is_recording = false;
-  bool is_over = false;     // the flight has ended; 'reason' says how
+  bool is_over = false;     // the flight has ended, as 'reason' describes
   std::string replay = {};  // folder in which an ended flight is recorded; empty: none
 
   bool operator==(const ViewStatus&) const = default;

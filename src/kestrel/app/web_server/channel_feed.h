@@ -18,7 +18,7 @@ namespace kestrel {
 // A channel of messages that a viewer such as Foxglove can subscribe to.
 struct LiveChannel {
   std::string topic;            // as "/camera/image"
-  std::string encoding;         // of messages, as "protobuf"
+  std::string encoding;         // message encoding, as "protobuf"
   std::string schema_name;      // as "foxglove.CompressedImage"
   std::string schema_encoding;  // as "protobuf"
   std::string schema;           // bytes of the schema

@@ -44,7 +44,7 @@ class HttpExportTest : public testing::Test {
   TestBrowser browser_{server_.port()};
 };
 
-TEST_F(HttpExportTest, AFileIsSentAndRemoved) {
+TEST_F(HttpExportTest, SendsFileAndRemovesIt) {
   browser_.Ask(browser_.Get("/export/clip-1-5.mp4"));
   const PendingExport pending = TakePending();
   EXPECT_EQ(pending.request.last, 5u);
@@ -68,7 +68,7 @@ TEST_F(HttpExportTest, AFileIsSentAndRemoved) {
   EXPECT_EQ(browser_.ReadResponse().body(), "png");
 }
 
-TEST_F(HttpExportTest, WhoGoesAwayDoesNotWaitAnyMore) {
+TEST_F(HttpExportTest, CancelsExportWhenClientDisconnects) {
   std::optional<TestBrowser> leaving(std::in_place, server_.port());
   leaving->Ask(leaving->Get("/export/clip-1-5.mp4"));
   const PendingExport pending = TakePending();
@@ -84,7 +84,7 @@ TEST_F(HttpExportTest, WhoGoesAwayDoesNotWaitAnyMore) {
   EXPECT_EQ(refused.body(), "another clip is being made\n");
 }
 
-TEST_F(HttpExportTest, AnotherSitesPageMayNotAskForAClip) {
+TEST_F(HttpExportTest, RefusesClipRequestFromOtherSite) {
   auto request = browser_.Get("/export/clip-1-5.mp4");
   request.set("Sec-Fetch-Site", "cross-site");
   request.set("Sec-Fetch-Mode", "navigate");

@@ -13,11 +13,11 @@ namespace kestrel {
 // Path to which viewers connect that speak Foxglove's protocol.
 inline constexpr std::string_view kViewerPath = "/foxglove";
 
-// The parts of an HTTP request that tell who sends it.
+// The parts of an HTTP request that identify its sender.
 struct RequestHead {
   std::string_view target = {};                     // path and query
   std::string_view host = {};                       // as "localhost:8080"
-  std::optional<std::string_view> origin = {};      // of the page that asks, if a browser says it
+  std::optional<std::string_view> origin = {};      // of the page, if sent
   std::optional<std::string_view> fetch_site = {};  // Sec-Fetch-Site
   std::optional<std::string_view> fetch_mode = {};  // Sec-Fetch-Mode
   std::string_view cookies = {};
@@ -29,7 +29,7 @@ enum class Admission {
   kSignedIn,      // the token was in the address; a cookie replaces it
   kNoToken,       // neither cookie nor token, or a wrong one
   kWrongHost,     // a host name that is not this computer's: DNS rebinding
-  kForeignOrigin  // a page of another site asks
+  kForeignOrigin  // the request comes from a page of another site
 };
 
 // Decides who may use the console. A browser sends requests on behalf of any page that is open in

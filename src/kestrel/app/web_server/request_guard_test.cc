@@ -25,7 +25,7 @@ RequestHead Socket(std::string_view host, std::optional<std::string_view> origin
   return {.target = "/live", .host = host, .origin = origin, .is_web_socket = true};
 }
 
-TEST(RequestGuardTest, OnThisComputerOnlyItsOwnNamesAreServed) {
+TEST(RequestGuardTest, LoopbackServesLocalNamesOnly) {
   const RequestGuard guard(OptionsAt("127.0.0.1"), 8080);
   for (const char* host : {"localhost", "LocalHost:9000", "127.0.0.1:8080", "[::1]:8080"}) {
     EXPECT_EQ(guard.Admit(Page(host)), Admission::kServed) << host;
@@ -37,7 +37,7 @@ TEST(RequestGuardTest, OnThisComputerOnlyItsOwnNamesAreServed) {
   }
 }
 
-TEST(RequestGuardTest, InANetworkAddressesAndGivenNamesAreServed) {
+TEST(RequestGuardTest, NetworkServesAddressesAndConfiguredNames) {
   ConsoleOptions options = OptionsAt("0.0.0.0", kToken);
   options.host_names = "Kestrel.local, uav";
   const RequestGuard guard(options, 8080);
@@ -47,7 +47,7 @@ TEST(RequestGuardTest, InANetworkAddressesAndGivenNamesAreServed) {
   EXPECT_EQ(guard.Admit(Page("evil.example")), Admission::kWrongHost);
 }
 
-TEST(RequestGuardTest, AWebSocketNeedsItsOwnOrigin) {
+TEST(RequestGuardTest, WebSocketRequiresOwnOrigin) {
   const RequestGuard guard(OptionsAt("127.0.0.1"), 8080);
   EXPECT_EQ(guard.Admit(Socket("localhost:8080", "http://localhost:8080")), Admission::kServed);
   EXPECT_EQ(guard.Admit(Socket("localhost:8080", std::nullopt)), Admission::kForeignOrigin);
@@ -57,7 +57,7 @@ TEST(RequestGuardTest, AWebSocketNeedsItsOwnOrigin) {
   }
 }
 
-TEST(RequestGuardTest, OtherSitesMayLinkHereAndNoMore) {
+TEST(RequestGuardTest, OtherSitesMayLinkOnly) {
   const RequestGuard guard(OptionsAt("127.0.0.1"), 8080);
   RequestHead head = Page("localhost");
   head.fetch_site = "cross-site";
@@ -68,7 +68,7 @@ TEST(RequestGuardTest, OtherSitesMayLinkHereAndNoMore) {
   EXPECT_EQ(guard.Admit(head), Admission::kForeignOrigin);
 }
 
-TEST(RequestGuardTest, TheTokenBecomesACookie) {
+TEST(RequestGuardTest, TokenBecomesCookie) {
   const RequestGuard guard(OptionsAt("10.0.0.5", kToken), 8080);
   RequestHead head = Page("10.0.0.5:8080");
   EXPECT_EQ(guard.Admit(head), Admission::kNoToken);
@@ -99,7 +99,7 @@ TEST(RequestGuardTest, ReadsItsCookieAmongOthers) {
   }
 }
 
-TEST(ConsoleOptionsTest, NamesWhatIsWrongButNeverTheToken) {
+TEST(ConsoleOptionsTest, ReportsFaultsWithoutToken) {
   ConsoleOptions options = OptionsAt("nowhere", "geheim");
   EXPECT_THAT(ViolationsOf(options),
               testing::ElementsAre("address is 'nowhere', expected an IP address",
@@ -110,7 +110,7 @@ TEST(ConsoleOptionsTest, NamesWhatIsWrongButNeverTheToken) {
   EXPECT_THAT(ViolationsOf(OptionsAt("10.0.0.5", "0123456789abcdef")), testing::IsEmpty());
 }
 
-TEST(ConsoleOptionsTest, AddressOpenToOthersGetsAToken) {
+TEST(ConsoleOptionsTest, AddressOpenToOthersGetsToken) {
   EXPECT_EQ(WithToken(OptionsAt("127.0.0.1")).token, "");
   const ConsoleOptions open = WithToken(OptionsAt("0.0.0.0"));
   EXPECT_EQ(open.token.size(), 32u);
@@ -119,7 +119,7 @@ TEST(ConsoleOptionsTest, AddressOpenToOthersGetsAToken) {
   EXPECT_EQ(WithToken(OptionsAt("0.0.0.0", "0123456789abcdef")).token, "0123456789abcdef");
 }
 
-TEST(RequestGuardTest, OwnNameIsAHost) {
+TEST(RequestGuardTest, AcceptsOwnHostName) {
   const RequestGuard guard(OptionsAt("0.0.0.0", "0123456789abcdef"), 8080);
   for (const std::string& host : {OwnHostName(), OwnHostName() + ".local:8080"}) {
     EXPECT_NE(guard.Admit({.target = "/", .host = host}), Admission::kWrongHost) << host;
@@ -128,7 +128,7 @@ TEST(RequestGuardTest, OwnNameIsAHost) {
             Admission::kWrongHost);
 }
 
-TEST(ConsoleOptionsTest, OriginsOfViewersAreNeitherPathsNorAnything) {
+TEST(ConsoleOptionsTest, RefusesViewerOriginsWithPathsAndWildcards) {
   ConsoleOptions options = OptionsAt("127.0.0.1", kToken);
   options.viewer_origins = "https://app.foxglove.dev, http://localhost:8081, file://";
   EXPECT_THAT(ViolationsOf(options), testing::IsEmpty());
@@ -141,7 +141,7 @@ TEST(ConsoleOptionsTest, OriginsOfViewersAreNeitherPathsNorAnything) {
   }
 }
 
-TEST(ConsoleOptionsTest, AddressesAreAddressAndPort) {
+TEST(ConsoleOptionsTest, AcceptsAddressWithPort) {
   const auto read = [](const std::string& text) { return WithAddress({}, text, "--console"); };
   EXPECT_EQ(read("10.0.0.5:80").address, "10.0.0.5");
   EXPECT_EQ(read("10.0.0.5:80").port, 80);

@@ -126,7 +126,7 @@ void ViewerFlow::Push(WebMessage message) {
 
 void ViewerFlow::Warn(const std::string& text) { Say(StatusJson(kWarning, text)); }
 
-void ViewerFlow::SayLosses() {
+void ViewerFlow::ReportLosses() {
   if (lost_messages_ + lost_images_ == 0) return;
   const auto images = std::exchange(lost_images_, 0);
   const auto messages = std::exchange(lost_messages_, 0);

@@ -24,7 +24,7 @@ class ViewerFlow {
   // 'capacity': length of the queue, at least 1. 'channels' outlive this.
   ViewerFlow(const std::vector<LiveChannel>* channels, std::size_t capacity);
 
-  // Executes a viewer's request. The viewer is told what cannot be done.
+  // Executes a viewer's request. Sends the viewer an error if it cannot be executed.
   void Take(const ViewerRequest& request);
 
   // Returns one bit for each channel with a subscription.
@@ -33,8 +33,8 @@ class ViewerFlow {
   // Queues a message if the viewer has subscribed to its channel; otherwise does nothing.
   void Offer(const ChannelMessage& message);
   void Say(std::string text);  // 'text': JSON
-  // Tells the viewer how many messages were dropped since the last report, if any.
-  void SayLosses();
+  // Reports to the viewer how many messages were dropped since the last report, if any.
+  void ReportLosses();
 
   // Returns the message to be sent next; nothing when none waits.
   std::optional<WebMessage> Pop();

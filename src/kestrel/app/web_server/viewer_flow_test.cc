@@ -43,7 +43,7 @@ class ViewerFlowTest : public testing::Test {
   ViewerFlow flow_{&Channels(), 3};
 };
 
-TEST_F(ViewerFlowTest, MessagesComeWithTheSubscriptionAndTheirTime) {
+TEST_F(ViewerFlowTest, MessagesCarrySubscriptionAndTime) {
   flow_.Offer(Message(kResults, 1));  // nobody has subscribed to it
   Subscribe(0x01020304, kResults);
   EXPECT_EQ(flow_.wanted(), 2u);
@@ -60,7 +60,7 @@ TEST_F(ViewerFlowTest, MessagesComeWithTheSubscriptionAndTheirTime) {
   EXPECT_FALSE(flow_.Pop());
 }
 
-TEST_F(ViewerFlowTest, ImagesGoFirstWhereItIsSlow) {
+TEST_F(ViewerFlowTest, DropsImagesFirstOnSlowConnection) {
   Subscribe(1, kImages);
   Subscribe(2, kResults);
   for (int i = 1; i <= 3; ++i) {
@@ -68,24 +68,24 @@ TEST_F(ViewerFlowTest, ImagesGoFirstWhereItIsSlow) {
     flow_.Offer(Message(kResults, i));
   }
   EXPECT_THAT(PopAll(), testing::ElementsAre("1", "2", "3", "3"));
-  flow_.SayLosses();
+  flow_.ReportLosses();
   EXPECT_THAT(PopAll(), testing::ElementsAre(HasSubstr("2 images and 0 messages left out")));
   for (int i = 1; i <= 5; ++i) flow_.Offer(Message(kResults, i));
   EXPECT_THAT(PopAll(), testing::ElementsAre("3", "4", "5"));
-  flow_.SayLosses();
+  flow_.ReportLosses();
   EXPECT_THAT(PopAll(), testing::ElementsAre(HasSubstr("0 images and 2 messages left out")));
-  flow_.SayLosses();
+  flow_.ReportLosses();
   EXPECT_FALSE(flow_.Pop());
 }
 
-TEST_F(ViewerFlowTest, AnImageThatIsNotWantedAnyMoreIsNotSent) {
+TEST_F(ViewerFlowTest, DropsImageAfterUnsubscribe) {
   Subscribe(1, kImages);
   flow_.Offer(Message(kImages, 1));
   flow_.Take(UnsubscribeRequest{{1}});
   EXPECT_FALSE(flow_.Pop());
 }
 
-TEST_F(ViewerFlowTest, SaysWhatCannotBeDone) {
+TEST_F(ViewerFlowTest, ReportsInvalidRequests) {
   Subscribe(1, kResults);
   Subscribe(1, kImages);
   Subscribe(2, kResults);
@@ -99,7 +99,7 @@ TEST_F(ViewerFlowTest, SaysWhatCannotBeDone) {
   EXPECT_EQ(flow_.wanted(), 2u);
 }
 
-TEST(ViewerJsonTest, TellsWhatThereIs) {
+TEST(ViewerJsonTest, DescribesServerAndChannels) {
   const Json info = Json::parse(ServerInfoJson("a flight", "17"));
   EXPECT_EQ(info, (Json{{"op", "serverInfo"},
                         {"name", "a flight"},

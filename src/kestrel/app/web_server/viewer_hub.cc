@@ -67,7 +67,7 @@ void ViewerHub::Tick(Time now) {
     for (Viewer* viewer : viewers_) viewer->flow().Offer(*message);
   }
   if (now - losses_reported_ < kLossInterval) return;
-  for (Viewer* viewer : viewers_) viewer->flow().SayLosses();
+  for (Viewer* viewer : viewers_) viewer->flow().ReportLosses();
   losses_reported_ = now;
 }
 

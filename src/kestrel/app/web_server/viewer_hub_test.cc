@@ -45,7 +45,7 @@ class ViewerHubTest : public testing::Test {
   std::optional<WebServer> server_;
 };
 
-TEST_F(ViewerHubTest, GivesWhatAViewerSubscribesTo) {
+TEST_F(ViewerHubTest, SendsSubscribedChannels) {
   Serve(AnyPort());
   TestSocket viewer = Connect();
   ASSERT_TRUE(viewer.is_open());
@@ -67,7 +67,7 @@ TEST_F(ViewerHubTest, GivesWhatAViewerSubscribesTo) {
   EXPECT_TRUE(Eventually([&] { return !channels_.IsWatched(); }));
 }
 
-TEST_F(ViewerHubTest, OlderAppsAreServedToo) {
+TEST_F(ViewerHubTest, ServesOlderApps) {
   Serve(AnyPort());
   EXPECT_EQ(Connect("", "/foxglove", "foxglove.websocket.v1").subprotocol(),
             "foxglove.websocket.v1");
@@ -76,7 +76,7 @@ TEST_F(ViewerHubTest, OlderAppsAreServedToo) {
   EXPECT_FALSE(Connect("", "/foxglove/", kProtocols).is_open());
 }
 
-TEST_F(ViewerHubTest, OtherSitesPagesComeInOnlyWhenTheyAreListed) {
+TEST_F(ViewerHubTest, AdmitsListedOriginsOnly) {
   ConsoleOptions options = AnyPort();
   options.viewer_origins = "https://app.foxglove.dev, https://lichtblick.example";
   Serve(options);
@@ -92,13 +92,13 @@ TEST_F(ViewerHubTest, OtherSitesPagesComeInOnlyWhenTheyAreListed) {
   EXPECT_FALSE(LetsIn("", "/live"));
 }
 
-TEST_F(ViewerHubTest, NoForeignPageIsListedUnlessTheUserSaysSo) {
+TEST_F(ViewerHubTest, RefusesForeignOriginsByDefault) {
   Serve(AnyPort());
   EXPECT_TRUE(LetsIn(""));
   EXPECT_FALSE(LetsIn("https://app.foxglove.dev"));
 }
 
-TEST_F(ViewerHubTest, TheTokenIsInTheAddress) {
+TEST_F(ViewerHubTest, RequiresTokenInAddress) {
   Serve(AnyPort(kSecret));
   EXPECT_THAT(server_->viewer_url(), testing::EndsWith("/foxglove?token=0123456789abcdef"));
   EXPECT_TRUE(LetsIn("", "/foxglove?token=0123456789abcdef"));
@@ -111,7 +111,7 @@ TEST_F(ViewerHubTest, TheTokenIsInTheAddress) {
                       "/live?token=0123456789abcdef"));
 }
 
-TEST_F(ViewerHubTest, AskingForMoreThanToLookIsAnswered) {
+TEST_F(ViewerHubTest, RefusesWriteRequestsWithStatus) {
   Serve(AnyPort());
   TestSocket viewer = Connect();
   viewer.Read();
@@ -150,7 +150,7 @@ TEST_F(ViewerHubTest, RefusesViewersWithoutChannels) {
 }
 
 // The oldest messages of a viewer that does not read are dropped; the others get all.
-TEST_F(ViewerHubTest, AStalledViewerCostsTheOthersNothing) {
+TEST_F(ViewerHubTest, StalledViewerDoesNotDelayOthers) {
   ConsoleOptions options = AnyPort();
   options.idle_timeout_s = 2;
   Serve(options);

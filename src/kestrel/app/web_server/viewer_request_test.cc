@@ -19,7 +19,7 @@ TEST(ViewerRequestTest, ReadsSubscriptions) {
   EXPECT_EQ(std::get<UnsubscribeRequest>(*end).ids, (std::vector<std::uint32_t>{0, 7}));
 }
 
-TEST(ViewerRequestTest, KnowsWhatElseViewersAskFor) {
+TEST(ViewerRequestTest, RecognisesUnsupportedRequests) {
   const auto asks = [](const std::optional<ViewerRequest>& request) {
     return request ? std::get<OtherRequest>(*request).what : "";
   };
@@ -30,7 +30,7 @@ TEST(ViewerRequestTest, KnowsWhatElseViewersAskFor) {
   EXPECT_EQ(asks(ParseViewerBytes({"\x02\0\0\0\0\0\0\0\0\0\0\0\0", 13})), "call");
 }
 
-TEST(ViewerRequestTest, RefusesAllElse) {
+TEST(ViewerRequestTest, RefusesMalformedRequests) {
   const std::string many = [] {
     std::string ids = "0";
     for (int i = 1; i < 300; ++i) ids.append(",").append(std::to_string(i));

@@ -53,7 +53,7 @@ class WebServerTest : public testing::Test {
                      .offers = {ConsoleCommandKind::kRecord}}};
 };
 
-TEST_F(WebServerTest, ServesItsPageWithAllThatKeepsItSafe) {
+TEST_F(WebServerTest, ServesPageWithSecurityHeaders) {
   const WebServer server = ServeConsole(AnyPort(), &feed_, kAssets);
   TestBrowser browser(server.port());
   const auto page = browser.Send(browser.Get("/"));
@@ -75,7 +75,7 @@ TEST_F(WebServerTest, ServesItsPageWithAllThatKeepsItSafe) {
   EXPECT_THAT(std::string(answer[http::field::cache_control]), testing::HasSubstr("immutable"));
 }
 
-TEST_F(WebServerTest, ThePageThatIsBuiltInIsServed) {
+TEST_F(WebServerTest, ServesBuiltInPage) {
   const WebServer server = ServeConsole(AnyPort(), &feed_);
   TestBrowser browser(server.port());
   auto request = browser.Get("/");
@@ -83,7 +83,7 @@ TEST_F(WebServerTest, ThePageThatIsBuiltInIsServed) {
   EXPECT_EQ(browser.Send(request).result_int(), 200u);
 }
 
-TEST_F(WebServerTest, ThePageIsUnpackedForClientsWithoutGzip) {
+TEST_F(WebServerTest, UnpacksPageForClientsWithoutGzip) {
   const WebServer server = ServeConsole(AnyPort(), &feed_);
   TestBrowser browser(server.port());
   const auto page = browser.Send(browser.Get("/"));
@@ -92,7 +92,7 @@ TEST_F(WebServerTest, ThePageIsUnpackedForClientsWithoutGzip) {
   EXPECT_THAT(page.body(), testing::HasSubstr("<title>"));
 }
 
-TEST_F(WebServerTest, NothingElseIsServed) {
+TEST_F(WebServerTest, RefusesOtherPaths) {
   const WebServer server = ServeConsole(AnyPort(), &feed_, kAssets);
   for (const char* target :
        {"/etc/passwd", "/../etc/passwd", "/assets/../index.html", "/%2e%2e/etc/passwd", "/assets",
@@ -109,7 +109,7 @@ TEST_F(WebServerTest, NothingElseIsServed) {
   }
 }
 
-TEST_F(WebServerTest, WrongHostsAndOriginsAreRefused) {
+TEST_F(WebServerTest, RefusesWrongHostsAndOrigins) {
   const WebServer server = ServeConsole(AnyPort(), &feed_, kAssets);
   for (const char* host : {"evil.example", "evil.example:8080", "192.168.1.7", ""}) {
     TestBrowser browser(server.port());
@@ -130,7 +130,7 @@ TEST_F(WebServerTest, WrongHostsAndOriginsAreRefused) {
   EXPECT_TRUE(TestSocket(server.port()).is_open());
 }
 
-TEST_F(WebServerTest, WithATokenNothingIsSaidWithoutIt) {
+TEST_F(WebServerTest, ServesNothingWithoutToken) {
   const WebServer server = ServeConsole(AnyPort(kSecret), &feed_, kAssets);
   EXPECT_THAT(server.urls().front(), testing::EndsWith("/?token=0123456789abcdef"));
   for (const char* target : {"/", "/index.html", "/nothing", "/?token=0123456789abcdee"}) {
@@ -156,7 +156,7 @@ TEST_F(WebServerTest, WithATokenNothingIsSaidWithoutIt) {
   EXPECT_TRUE(TestSocket(server.port(), origin, cookie.substr(0, cookie.find(';'))).is_open());
 }
 
-TEST_F(WebServerTest, AnAddressThatOthersReachNeedsAToken) {
+TEST_F(WebServerTest, RequiresTokenAtPublicAddress) {
   ConsoleOptions options = AnyPort();
   options.address = "0.0.0.0";
   const auto answer = [&] {
@@ -169,7 +169,7 @@ TEST_F(WebServerTest, AnAddressThatOthersReachNeedsAToken) {
   EXPECT_EQ(answer(), 401u);
 }
 
-TEST_F(WebServerTest, APortThatIsTakenIsSaid) {
+TEST_F(WebServerTest, ReportsPortInUse) {
   const WebServer server = ServeConsole(AnyPort(), &feed_, kAssets);
   ConsoleOptions options = AnyPort();
   options.port = server.port();
@@ -181,7 +181,7 @@ TEST_F(WebServerTest, APortThatIsTakenIsSaid) {
   }
 }
 
-TEST_F(WebServerTest, MalformedAndOversizeRequestsAreRefused) {
+TEST_F(WebServerTest, RefusesMalformedAndOversizeRequests) {
   const WebServer server = ServeConsole(AnyPort(), &feed_, kAssets);
   const std::string start = "GET / HTTP/1.1\r\nHost: localhost\r\n";
   for (const std::string& bytes :
@@ -203,7 +203,7 @@ TEST_F(WebServerTest, MalformedAndOversizeRequestsAreRefused) {
 }
 
 // Each request is wrong in at least one way; the other parts are drawn at random.
-TEST_F(WebServerTest, AThousandHostileRequestsAreRefused) {
+TEST_F(WebServerTest, RefusesThousandHostileRequests) {
   const WebServer server = ServeConsole(AnyPort(kSecret), &feed_, kAssets);
   std::mt19937 random(20);
   const auto pick = [&random](const std::vector<std::string>& from) {
@@ -257,7 +257,7 @@ TEST_F(WebServerTest, AThousandHostileRequestsAreRefused) {
   EXPECT_GE(server.counters().refused, 500u);
 }
 
-TEST_F(WebServerTest, ThereAreOnlySoManyConnections) {
+TEST_F(WebServerTest, LimitsConnections) {
   ConsoleOptions options = AnyPort();
   options.max_connections = 3;
   const WebServer server = ServeConsole(options, &feed_, kAssets);
@@ -274,7 +274,7 @@ TEST_F(WebServerTest, ThereAreOnlySoManyConnections) {
   }));
 }
 
-TEST_F(WebServerTest, BadFramesEndTheConnection) {
+TEST_F(WebServerTest, BadFramesEndConnection) {
   const WebServer server = ServeConsole(AnyPort(), &feed_, kAssets);
   for (const std::string& text : {std::string("{}"), std::string("garbage"),
                                   std::string(20000, ' '), std::string("{\"command\":\"rm\"}")}) {
@@ -291,7 +291,7 @@ TEST_F(WebServerTest, BadFramesEndTheConnection) {
   EXPECT_TRUE(Eventually([&] { return server.counters().clients == 0; }));
 }
 
-TEST_F(WebServerTest, NewcomersGetWhatIsKnown) {
+TEST_F(WebServerTest, SendsCurrentStateToNewClients) {
   const WebServer server = ServeConsole(AnyPort(), &feed_, kAssets);
   feed_.Add(ViewStatus{"searching", "no pattern", false});
   feed_.Add(ViewStatus{"tracking", "", true});
@@ -311,7 +311,7 @@ TEST_F(WebServerTest, NewcomersGetWhatIsKnown) {
   EXPECT_TRUE((*sample)["values"][0].is_null());
 }
 
-TEST_F(WebServerTest, CommandsReachTheProgram) {
+TEST_F(WebServerTest, ForwardsCommandsToProgram) {
   const WebServer server = ServeConsole(AnyPort(), &feed_, kAssets);
   TestSocket socket(server.port());
   socket.Send(R"({"command": "record", "value": 1})");
@@ -321,7 +321,7 @@ TEST_F(WebServerTest, CommandsReachTheProgram) {
   EXPECT_EQ(command->value, 1);
 }
 
-TEST_F(WebServerTest, TheNextImageComesAfterTheLastIsDrawn) {
+TEST_F(WebServerTest, SendsNextImageAfterAcknowledgement) {
   ConsoleOptions options = AnyPort();
   options.max_image_rate_hz = 200;
   std::atomic<int> drawn{0};
@@ -355,14 +355,14 @@ TEST_F(WebServerTest, TheNextImageComesAfterTheLastIsDrawn) {
   EXPECT_GT((*first.Next("link"))["draw_ms"], 0);
 }
 
-TEST_F(WebServerTest, AViewThatThereIsNoneOfEndsTheConnection) {
+TEST_F(WebServerTest, UnknownViewEndsConnection) {
   const WebServer server = ServeConsole(AnyPort(), &feed_, kAssets);
   TestSocket socket(server.port());
   socket.Send(R"({"images": "x-ray"})");
   EXPECT_TRUE(socket.IsEnded());
 }
 
-TEST_F(WebServerTest, AStalledBrowserCostsTheOthersNothing) {
+TEST_F(WebServerTest, StalledBrowserDoesNotDelayOthers) {
   ConsoleOptions options = AnyPort();
   options.max_image_rate_hz = 200;
   options.message_queue = 8;
@@ -407,7 +407,7 @@ TEST_F(WebServerTest, AStalledBrowserCostsTheOthersNothing) {
   EXPECT_EQ(server.counters().clients, 1);
 }
 
-TEST_F(WebServerTest, ADeadBrowserIsNoticed) {
+TEST_F(WebServerTest, DetectsDisconnectedBrowser) {
   const WebServer server = ServeConsole(AnyPort(), &feed_, kAssets);
   {
     TestSocket socket(server.port());
@@ -416,7 +416,7 @@ TEST_F(WebServerTest, ADeadBrowserIsNoticed) {
   EXPECT_TRUE(Eventually([&] { return !feed_.IsWatched(); }));
 }
 
-TEST_F(WebServerTest, EndsWithBrowsersConnected) {
+TEST_F(WebServerTest, StopsWithBrowsersConnected) {
   std::optional<WebServer> server(ServeConsole(AnyPort(), &feed_, kAssets));
   TestSocket socket(server->port());
   TestBrowser silent(server->port());

@@ -26,7 +26,7 @@ std::string ErrorOf(const std::string& yaml) {
   return "";
 }
 
-TEST(ColorDraft, GoesBackAndForth) {
+TEST(ColorDraft, UndoesAndRedoes) {
   ColorDraft draft;
   EXPECT_FALSE(draft.Undo());
   draft.Add(Brush(0, "red"));
@@ -42,7 +42,7 @@ TEST(ColorDraft, GoesBackAndForth) {
   EXPECT_EQ(draft.strokes().back().frame, 2U);
 }
 
-TEST(ColorDraft, IsBounded) {
+TEST(ColorDraft, LimitsStrokes) {
   ColorDraft draft;
   for (std::size_t i = 0; i < ColorDraft::kMaxStrokes; ++i) draft.Add(Brush(i, "red"));
   EXPECT_THROW(draft.Add(Brush(0, "red")), InputError);
@@ -50,7 +50,7 @@ TEST(ColorDraft, IsBounded) {
   EXPECT_THROW(ColorDraft().Add({0, "red", StrokeTool::kBrush, 0, {}}), InputError);
 }
 
-TEST(ParseColorDraft, ReadsWhatPrintColorDraftWrites) {
+TEST(ParseColorDraft, RoundTripsThroughText) {
   ColorDraft draft;
   draft.Add(Brush(0, "red: 'it''s' #1"));
   draft.Add({3, "", StrokeTool::kRectangle, 0, {{1, 2}, {30, 40}}});

@@ -45,14 +45,14 @@ class ColorEditor {
   // For a colour of the model; throw InputError when it has none with this name.
   ColorScores Scores(const std::string& color) const;
   std::vector<std::string> Warnings(const std::string& color) const;
-  HueSaturationHistogram Histogram(const std::string& color) const;  // of its marked pixels
+  HueSaturationHistogram Histogram(const std::string& color) const;  // its marked pixels
 
   // Inputs of ScoreColor besides model and grid, for callers that score in a thread of their own.
   std::vector<FrameMarks> MarksFor(const std::string& color) const { return pixels_.Of(color); }
   std::size_t IndexOf(const std::string& color) const;
 
   // Returns the marks of a frame's pixels, CV_8UC1: labels as in the grid, background where nothing
-  // is marked, ambiguous where the mark says none of the colours. Empty when the frame has no
+  // is marked, ambiguous where the mark excludes all colours. Empty when the frame has no
   // marks.
   cv::Mat Marks(std::size_t frame) const;
 

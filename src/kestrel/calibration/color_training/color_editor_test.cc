@@ -59,7 +59,7 @@ class ColorEditorTest : public ::testing::Test {
                       [this](std::size_t frame) { return frames_[frame]; }};
 };
 
-TEST_F(ColorEditorTest, LaterStrokesHoldAndCanBeUndone) {
+TEST_F(ColorEditorTest, LaterStrokesOverrideAndCanBeUndone) {
   editor_.Mark({0, "red", StrokeTool::kRectangle, 0, {{0, 0}, {9, 9}}});
   editor_.Mark({0, "", StrokeTool::kRectangle, 0, {{0, 0}, {9, 4}}});
   editor_.Teach("red");
@@ -82,7 +82,7 @@ TEST_F(ColorEditorTest, RefusedStrokesChangeNothing) {
   EXPECT_THROW(editor_.Scores("pink"), InputError);
 }
 
-TEST_F(ColorEditorTest, ContradictionsAreRefusedAndTheModelStaysAsItWas) {
+TEST_F(ColorEditorTest, RefusesContradictionsAndKeepsModel) {
   ColorStroke stroke = On(0, 0);
   stroke.color = "blue";
   editor_.Mark(stroke);
@@ -99,7 +99,7 @@ TEST_F(ColorEditorTest, ContradictionsAreRefusedAndTheModelStaysAsItWas) {
   EXPECT_EQ(PrintObjectModel(editor_.model()), before);
 }
 
-TEST_F(ColorEditorTest, MarksAreLabelled) {
+TEST_F(ColorEditorTest, LabelsMarks) {
   EXPECT_TRUE(editor_.Marks(0).empty());
   editor_.Mark({0, "green", StrokeTool::kRectangle, 0, {{0, 0}, {9, 9}}});
   editor_.Mark({0, "", StrokeTool::kRectangle, 0, {{0, 0}, {9, 4}}});
@@ -110,7 +110,7 @@ TEST_F(ColorEditorTest, MarksAreLabelled) {
   EXPECT_TRUE(editor_.Marks(1).empty());
 }
 
-TEST_F(ColorEditorTest, RestoresADraft) {
+TEST_F(ColorEditorTest, RestoresDraft) {
   editor_.Mark(On(0, 3));
   editor_.Mark(OnGround(0));
   editor_.Teach("green");
@@ -122,7 +122,7 @@ TEST_F(ColorEditorTest, RestoresADraft) {
       << "and is taught the same each time";
 }
 
-TEST_F(ColorEditorTest, ScoresSayHowGoodAColourIs) {
+TEST_F(ColorEditorTest, ScoresMeasureQualityOfColour) {
   for (std::size_t frame = 0; frame < frames_.size(); ++frame) {
     editor_.Mark(On(frame, 3));
     editor_.Mark(OnGround(frame));
@@ -138,7 +138,7 @@ TEST_F(ColorEditorTest, ScoresSayHowGoodAColourIs) {
             scores.wanted);
 }
 
-TEST_F(ColorEditorTest, LabelsAreThoseOfTheTaughtModel) {
+TEST_F(ColorEditorTest, LabelsComeFromTaughtModel) {
   const cv::Mat purple(40, 40, CV_8UC3, cv::Scalar(200, 60, 190));
   ColorEditor editor(DefaultObjectModel(), 1, [&](std::size_t) { return purple; });
   EXPECT_EQ(editor.Labels(purple).at<uchar>(30, 10), kBackgroundLabel);
@@ -147,14 +147,14 @@ TEST_F(ColorEditorTest, LabelsAreThoseOfTheTaughtModel) {
   EXPECT_EQ(editor.Labels(purple).at<uchar>(30, 10), 4) << "green is the fourth";
 }
 
-TEST(RequireDistinctTest, TheBuiltInColoursAre) {
+TEST(RequireDistinctTest, AcceptsBuiltInColours) {
   const ColorModel model = DefaultObjectModel().colors;
   for (std::size_t i = 0; i < model.colors.size(); ++i) {
     EXPECT_NO_THROW(RequireDistinct(model, i)) << model.colors[i].name;
   }
 }
 
-TEST(ScoreColorTest, OverlapIsOfTheColoursCells) {
+TEST(ScoreColorTest, MeasuresOverlapByCellsOfColour) {
   ColorModel model;
   model.colors = {{"red", {{1, {0, 0.7F, 0.7F}, {10, 0.1F, 0.1F}}}},
                   {"orange", {{1, {40, 0.7F, 0.7F}, {5, 0.1F, 0.1F}}}},
@@ -168,7 +168,7 @@ TEST(ScoreColorTest, OverlapIsOfTheColoursCells) {
   EXPECT_LT(red.overlaps[0].share, orange.overlaps[0].share) << "red has twice as many cells";
 }
 
-TEST_F(ColorEditorTest, WarningsSayWhatToMarkNext) {
+TEST_F(ColorEditorTest, WarningsAdviseWhatToMarkNext) {
   editor_.Mark({0, "green", StrokeTool::kRectangle, 0, {{10, 10}, {600, 60}}});
   EXPECT_THAT(editor_.Warnings("green"), Contains(HasSubstr("nearly gray")));
   while (editor_.Undo()) continue;
@@ -216,7 +216,7 @@ bool IsAmong(const Found& object, const std::vector<Found>& others) {
 
 struct Agreement {
   int built_in = 0;  // objects that the built-in model finds
-  int both = 0;      // of them, also found by the taught model
+  int both = 0;      // those among them that the taught model finds, too
   int more = 0;      // found by the taught model only
 };
 
@@ -234,7 +234,7 @@ Agreement Compare(const ObjectModel& taught, std::span<const cv::Mat> frames) {
   return agreement;
 }
 
-TEST_F(ColorEditorTest, TenStrokesFindWhatTheBuiltInModelFindsInThreeLights) {
+TEST_F(ColorEditorTest, TenStrokesMatchBuiltInModelInThreeLights) {
   for (std::size_t color = 0; color < kNames.size(); ++color) {
     editor_.Mark(On(0, color));
     editor_.Mark(On(2, color));

@@ -15,7 +15,7 @@ using ::testing::IsEmpty;
 
 cv::Mat GrayImage() { return {60, 80, CV_8UC3, cv::Scalar(100, 100, 100)}; }
 
-TEST(StrokeMask, RectangleHasItsCornersInAnyOrder) {
+TEST(StrokeMask, RectangleTakesCornersInAnyOrder) {
   const ColorStroke stroke{0, "red", StrokeTool::kRectangle, 0, {{20, 12}, {11, 10}}};
   const cv::Mat mask = StrokeMask(stroke, GrayImage());
   EXPECT_EQ(cv::countNonZero(mask), 10 * 3);
@@ -35,7 +35,7 @@ TEST(StrokeMask, BrushIsRoundAndWithoutGaps) {
   EXPECT_EQ(mask.at<uchar>(33, 17), 0) << "the corner";
 }
 
-TEST(StrokeMask, GrowsAsFarAsTheColourIsTheSameAndJoined) {
+TEST(StrokeMask, GrowsOverConnectedPixelsOfSameColour) {
   cv::Mat image = GrayImage();
   image(cv::Rect(10, 10, 20, 20)).setTo(cv::Scalar(20, 20, 200));
   image(cv::Rect(12, 12, 5, 5)).setTo(cv::Scalar(25, 22, 210));
@@ -48,7 +48,7 @@ TEST(StrokeMask, GrowsAsFarAsTheColourIsTheSameAndJoined) {
   EXPECT_EQ(cv::norm(image, before), 0) << "the image is as it was";
 }
 
-TEST(StrokeMask, PointsOutsideOfTheImageAreRefused) {
+TEST(StrokeMask, RefusesPointsOutsideImage) {
   const ColorStroke stroke{7, "red", StrokeTool::kGrow, 15, {{80, 25}}};
   try {
     StrokeMask(stroke, GrayImage());
@@ -58,7 +58,7 @@ TEST(StrokeMask, PointsOutsideOfTheImageAreRefused) {
   }
 }
 
-TEST(ColorStroke, ValidatesWhatEachToolNeeds) {
+TEST(ColorStroke, ValidatesInputOfEachTool) {
   EXPECT_THAT(ColorStroke({0, "", StrokeTool::kBrush, 5, {{1, 1}}}).Validate(), IsEmpty());
   EXPECT_THAT(ColorStroke({0, "", StrokeTool::kBrush, 0, {{1, 1}}}).Validate(),
               Contains(HasSubstr("brush's size")));

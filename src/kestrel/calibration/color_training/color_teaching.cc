@@ -94,7 +94,7 @@ float MedianValue(const FrameMarks& marks) {
 ColorMixture TeachColor(const std::string& color, std::span<const FrameMarks> marks,
                         double max_distance) {
   constexpr int kMaxComponents = 4;
-  constexpr std::size_t kMaxPixels = 4000;  // neighbours say much the same
+  constexpr std::size_t kMaxPixels = 4000;  // neighbours are much alike
   constexpr float kSaturationSigma = 0.08F;
   constexpr float kValueSigma = 0.15F;
   const std::vector<Hsv> wanted = EvenlyTaken(Colors(marks, &FrameMarks::wanted), kMaxPixels);

@@ -21,7 +21,7 @@ class ModelVersionsTest : public ::testing::Test {
   const std::string path_ = folder_ / "objects.yaml";
 };
 
-TEST_F(ModelVersionsTest, NothingIsOverwrittenWithoutACopy) {
+TEST_F(ModelVersionsTest, CopiesFileBeforeOverwriting) {
   ObjectModel model = DefaultObjectModel();
   EXPECT_EQ(SaveModelVersion(path_, model), "");
   const std::string first = ReadFile(path_);
@@ -35,13 +35,13 @@ TEST_F(ModelVersionsTest, NothingIsOverwrittenWithoutACopy) {
   EXPECT_EQ(ReadFile(path_ + ".1"), first);
 }
 
-TEST_F(ModelVersionsTest, WhatIsNoModelIsKeptToo) {
+TEST_F(ModelVersionsTest, CopiesFileThatIsNoModel) {
   WriteFile(path_, "notes\n");
   EXPECT_EQ(SaveModelVersion(path_, DefaultObjectModel()), path_ + ".1");
   EXPECT_EQ(ReadFile(path_ + ".1"), "notes\n");
 }
 
-TEST_F(ModelVersionsTest, AModelThatCannotBeReadIsNotWritten) {
+TEST_F(ModelVersionsTest, DoesNotWriteUnreadableModel) {
   ObjectModel model = DefaultObjectModel();
   SaveModelVersion(path_, model);
   const std::string before = ReadFile(path_);
@@ -52,7 +52,7 @@ TEST_F(ModelVersionsTest, AModelThatCannotBeReadIsNotWritten) {
   EXPECT_THROW(SaveModelVersion(folder_ / "none/objects.yaml", DefaultObjectModel()), InputError);
 }
 
-TEST(LineDifference, NamesTheColourOfWhatDiffers) {
+TEST(LineDifference, NamesColourOfDifferentLines) {
   const std::string before = "colors:\n - name: red\n  a\n  b\n - name: blue\n  c\n";
   const std::string after = "colors:\n - name: red\n  a\n  b\n - name: blue\n  d\n  e\n";
   EXPECT_EQ(LineDifference(before, after),

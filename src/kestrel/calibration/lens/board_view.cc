@@ -18,7 +18,7 @@ namespace kestrel {
 namespace {
 
 constexpr std::size_t kLeastCorners = 8;
-constexpr double kLeastSpread = 0.03;  // of the corners in the image, of its width
+constexpr double kLeastSpread = 0.03;  // spread of the corners in the image, share of its width
 
 struct BoardCorner {
   Eigen::Vector2d on_board;
@@ -77,7 +77,7 @@ class TagFinder {
   }
 
  private:
-  // The corners are the quad's; which of them is the first, the match's pose tells.
+  // Takes the corners of the quad; the match's pose determines which of them is the first.
   void Add(const TagMatch& match, const TagQuad& quad, SeenTags* seen) const {
     SeenTag one{match.tag, {}, quad.side_px};
     std::array<Eigen::Vector2d, 4> of_quad, of_tag;
@@ -160,14 +160,14 @@ std::vector<cv::Point2f> FindSquareCorners(const cv::Mat& image, const cv::Size&
   cv::Mat small = image;
   if (scale > 1) cv::resize(image, small, {}, 1 / scale, 1 / scale, cv::INTER_AREA);
   if (!cv::findChessboardCornersSB(small, corners, pixels, cv::CALIB_CB_NORMALIZE_IMAGE)) return {};
-  const cv::Point2f middle(0.5F, 0.5F);  // of a pixel
+  const cv::Point2f middle(0.5F, 0.5F);  // middle of a pixel
   for (cv::Point2f& pixel : pixels) pixel = (pixel + middle) * scale - middle;
   return pixels;
 }
 
 std::vector<BoardCorner> FindChessboard(const cv::Mat& image, const LensBoard& board) {
   std::vector<cv::Point2f> pixels = FindSquareCorners(image, {board.columns, board.rows});
-  constexpr double kReach = 0.4;  // of a square
+  constexpr double kReach = 0.4;  // share of a square
   if (!pixels.empty()) Refine(image, kReach * LeastSpacing(pixels, board.columns), &pixels);
   return Paired(board.Corners(), pixels);
 }
@@ -198,7 +198,7 @@ std::vector<BoardCorner> FindAprilGrid(const cv::Mat& image, const LensBoard& bo
   return corners;
 }
 
-// The place of a corner of squares as the markers beside it tell; NaN where there is none.
+// The place of a corner of squares by the markers beside it; NaN where there is none.
 cv::Point2f PlaceByMarkers(const SeenTags& seen, const Eigen::Vector2d& corner, double side_m) {
   cv::Point2f sum(0, 0);
   int count = 0;
@@ -221,7 +221,7 @@ std::vector<BoardCorner> FindSquares(const cv::Mat& image, const LensBoard& boar
   TagFinder finder(board.Tags(), camera);
   SeenTags seen = finder.Find(image);
   KeepPlane(&seen);
-  double side_px = std::numeric_limits<double>::infinity();  // of the smallest marker
+  double side_px = std::numeric_limits<double>::infinity();  // side of the smallest marker
   for (const auto& [id, tag] : seen) side_px = std::min(side_px, tag.side_px);
   const double reach_px = 0.4 * side_px * (board.side_m - board.marker_m) / board.marker_m;
   std::vector<Eigen::Vector2d> on_board;
@@ -272,7 +272,7 @@ std::vector<BoardCorner> FindCorners(const cv::Mat& image, const LensBoard& boar
 }
 
 // Returns the pose of a plane by the rays to its points: the homography, made a rotation. Nothing
-// when the points do not tell it.
+// when the points do not determine it.
 std::optional<RigidTransform> PoseOf(const LensView& view, const CameraModel& lens) {
   double size = 0;
   for (const LensEdge& edge : view.edges) size = std::max(size, edge.on_print.norm());
@@ -325,7 +325,7 @@ bool AreSpread(const std::vector<BoardCorner>& corners, int width_px) {
   if (corners.size() < kLeastCorners) return false;
   std::vector<cv::Point2f> pixels;
   for (const BoardCorner& corner : corners) pixels.push_back(corner.pixel);
-  const cv::Size2f size = cv::minAreaRect(pixels).size;  // corners in a line tell no pose
+  const cv::Size2f size = cv::minAreaRect(pixels).size;  // corners in a line determine no pose
   return std::min(size.width, size.height) > kLeastSpread * width_px;
 }
 

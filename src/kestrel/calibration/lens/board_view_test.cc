@@ -36,20 +36,20 @@ void ExpectLens(const CameraIntrinsics& truth, const std::string& text, double r
 }
 
 // The focal length is right to 0.4 %.
-TEST(BoardCalibrationTest, AChessboardTellsTheLens) {
+TEST(BoardCalibrationTest, ChessboardDeterminesLens) {
   ExpectLens(Webcam(), "chessboard:9x6:0.025", 0.5, 0.7);
 }
-TEST(BoardCalibrationTest, AChessboardTellsAFisheye) {
+TEST(BoardCalibrationTest, ChessboardDeterminesFisheyeLens) {
   ExpectLens(Fisheye(), "chessboard:8x5:0.03", 0.6, 0.7);
 }
-TEST(BoardCalibrationTest, ACharucoBoardThatIsHalfInViewTellsTheLens) {
+TEST(BoardCalibrationTest, PartialViewsOfCharucoBoardDetermineLens) {
   ExpectLens(Webcam(), "charuco:7x5:0.04:0.03", 0.9, 0.7);
 }
-TEST(BoardCalibrationTest, AnAprilGridThatIsHalfInViewTellsTheLens) {
+TEST(BoardCalibrationTest, PartialViewsOfAprilGridDetermineLens) {
   ExpectLens(Webcam(), "aprilgrid:6x6:0.088:0.3", 0.9, 0.7);
 }
 
-TEST(FindBoardTest, BothKindsOfCharucoBoardsAreRead) {
+TEST(FindBoardTest, ReadsBothKindsOfCharucoBoards) {
   for (const bool begins_white : {false, true}) {
     LensBoard board = ParseLensBoard("charuco:6x8:0.03:0.022:DICT_5X5_100");
     board.begins_white = begins_white;
@@ -62,7 +62,7 @@ TEST(FindBoardTest, BothKindsOfCharucoBoardsAreRead) {
   }
 }
 
-TEST(FindBoardTest, AnImageWithoutTheBoardHasNoView) {
+TEST(FindBoardTest, FindsNoViewInImageWithoutBoard) {
   const cv::Mat gray(480, 640, CV_8UC1, cv::Scalar(128));
   for (const char* text :
        {"chessboard:9x6:0.025", "charuco:7x5:0.04:0.03", "aprilgrid:6x6:0.088:0.3"}) {
@@ -70,7 +70,7 @@ TEST(FindBoardTest, AnImageWithoutTheBoardHasNoView) {
   }
 }
 
-TEST(ParseLensBoardTest, WrongBoardsAreRefusedWithWhatWasExpected) {
+TEST(ParseLensBoardTest, RefusesWrongBoardsAndNamesExpectedFormat) {
   const auto error = [](const std::string& text) {
     return InputErrorOf([&] { ParseLensBoard(text); });
   };
@@ -84,7 +84,7 @@ TEST(ParseLensBoardTest, WrongBoardsAreRefusedWithWhatWasExpected) {
   EXPECT_THAT(error("charuco:20x20:0.04:0.03"), HasSubstr("at most 50 tags"));
 }
 
-TEST(ParseLensBoardTest, DictionariesHaveTheNamesOfOpenCvToo) {
+TEST(ParseLensBoardTest, AcceptsOpenCvNamesOfDictionaries) {
   EXPECT_EQ(ParseLensBoard("charuco:7x5:0.04:0.03:DICT_5X5_100").family, "aruco_5x5_100");
   EXPECT_EQ(ParseLensBoard("charuco:7x5:0.04:0.03:DICT_APRILTAG_36h11").family, "tag36h11");
   EXPECT_EQ(ParseLensBoard("charuco:7x5:0.04:0.03:aruco_6x6_250").family, "aruco_6x6_250");

@@ -15,12 +15,12 @@ std::vector<int> Kept(int count) {
   return kept;
 }
 
-TEST(EvenSample, KeepsAllImagesOfAShortStream) {
+TEST(EvenSample, KeepsAllImagesOfShortStream) {
   EXPECT_TRUE(Kept(0).empty());
   EXPECT_EQ(Kept(400).size(), 400u);
 }
 
-TEST(EvenSample, KeepsEvenlySpacedImagesOfALongStream) {
+TEST(EvenSample, KeepsEvenlySpacedImagesOfLongStream) {
   for (const int count : {401, 1000, 12'345}) {
     const std::vector<int> kept = Kept(count);
     EXPECT_GT(kept.size(), 200u) << count;

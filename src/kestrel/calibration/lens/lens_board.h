@@ -19,10 +19,10 @@ struct LensBoard {
   // (AprilGrid).
   int columns = 9;
   int rows = 6;
-  double side_m = 0.025;            // of a square; of an AprilGrid's tag
+  double side_m = 0.025;            // side of a square; of an AprilGrid's tag
   double marker_m = 0;              // side of a ChArUco board's markers
   double gap = 0;                   // between an AprilGrid's tags, in sides of a tag
-  std::string family = "tag36h11";  // of the tags or markers
+  std::string family = "tag36h11";  // family of the tags or markers
   // The upper left square of a ChArUco board is white: boards of OpenCV before 4.6 with an even
   // number of rows.
   bool begins_white = false;
@@ -40,7 +40,7 @@ struct LensBoard {
 // Parses "chessboard:9x6:0.025" (inner corners, square in m), "charuco:7x5:0.04:0.03" (squares,
 // square and marker in m; ":DICT_5X5_100" or ":aruco_5x5_100" at the end: another dictionary than
 // aruco_4x4_50) and "aprilgrid:6x6:0.088:0.3" (tags, tag in m, gap over tag). Throws InputError
-// that says what was expected.
+// with what was expected.
 LensBoard ParseLensBoard(const std::string& text);
 
 }  // namespace kestrel

@@ -26,16 +26,16 @@ constexpr std::size_t kFewViews = 40;  // enough to find more views with
 // the second it is not a good one.
 constexpr double kMaxFocalSigma = 0.05;
 constexpr double kGoodFocalSigma = 0.01;
-constexpr double kMaxPrincipalSigma = 0.01;  // of the image's width
+constexpr double kMaxPrincipalSigma = 0.01;  // share of the image's width
 constexpr double kLeastReach = 0.35;         // least good reach, in halves of the diagonal
 constexpr double kLevelDeg = 12;             // views with less tilt face the pattern
-InputError CannotTell(const std::string& why) {
+InputError NotDetermined(const std::string& why) {
   return InputError("the views cannot tell the lens: " + why);
 }
 
 void RequireViews(std::size_t count) {
   if (count >= kMinViews) return;
-  throw CannotTell(
+  throw NotDetermined(
       fmt::format("the pattern is in {} of them, near enough for its edges, expected at least {}",
                   count, kMinViews));
 }
@@ -51,24 +51,24 @@ double UsualTilt(const std::vector<LensView>& views) {
   return tilts[tilts.size() * 9 / 10];
 }
 
-void RequireTold(const LensCalibration& calibration) {
+void RequireDetermined(const LensCalibration& calibration) {
   const double focal_sigma = calibration.fit.sigmas(kFocal) / calibration.intrinsics.fx_px;
   const std::string found =
       fmt::format("the standard deviation of the focal length is {:.2g} %", 100 * focal_sigma);
   const double tilt_deg = Degrees(UsualTilt(calibration.views));
   if (!(focal_sigma <= kMaxFocalSigma)) {
     if (tilt_deg < kLevelDeg) {
-      throw CannotTell(fmt::format(
+      throw NotDetermined(fmt::format(
           "{}, for nearly all of them look straight at the pattern (tilt to {:.0f} degrees): tilt "
           "the camera or the pattern by 20 to 50 degrees, to different sides",
           found, tilt_deg));
     }
-    throw CannotTell(fmt::format(
+    throw NotDetermined(fmt::format(
         "{}: take more views, near ones and with tilts of 20 to 50 degrees to different sides",
         found));
   }
   if (calibration.coverage.reach < kLeastReach) {
-    throw CannotTell(fmt::format(
+    throw NotDetermined(fmt::format(
         "the pattern is only in the middle of the image (to {:.0f} % of the way to its corners): "
         "bring it to the border and into the corners",
         100 * calibration.coverage.reach));
@@ -156,7 +156,7 @@ LensCalibration Estimate(const std::vector<LensView>& views, const CameraIntrins
     RequireViews(choice.views().size());
   }
   std::optional<LensFit> fit = near ? choice.Choose(*near) : std::nullopt;
-  if (!fit) throw CannotTell("no lens of this kind shows what they show");
+  if (!fit) throw NotDetermined("no lens of this kind shows what they show");
   LensCalibration calibration;
   calibration.intrinsics = fit->Simplified();
   calibration.fit = std::move(*fit);
@@ -206,7 +206,7 @@ std::vector<CameraIntrinsics> LensGuesses(const cv::Size& size) {
 LensCalibration EstimateLens(const std::vector<LensView>& views, const CameraIntrinsics& start,
                              std::optional<DistortionModel> model) {
   LensCalibration calibration = Estimate(views, start, model, kMaxViews);
-  RequireTold(calibration);
+  RequireDetermined(calibration);
   return calibration;
 }
 

@@ -33,7 +33,7 @@ struct LensCalibration {
 // Returns the lens that explains the views best, starting from one with a similar focal length (to
 // 30 %). 'model': the distortion model. Without it the model and its number of coefficients are
 // those with the least expected error on other views of the same kind (Takeuchi's information
-// criterion, with the penalty of BIC). Throws InputError that says what to do when the views do not
+// criterion, with the penalty of BIC). Throws InputError with advice when the views do not
 // determine the lens.
 LensCalibration EstimateLens(const std::vector<LensView>& views, const CameraIntrinsics& start,
                              std::optional<DistortionModel> model = {});

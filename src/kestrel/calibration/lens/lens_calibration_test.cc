@@ -54,7 +54,7 @@ std::string Refusal(const std::vector<LensView>& views, const CameraIntrinsics& 
   }
 }
 
-TEST(EstimateLensTest, FindsAFisheye) {
+TEST(EstimateLensTest, EstimatesFisheyeLens) {
   const CameraIntrinsics truth = PaperCamera();
   const auto views = MakeLensViews(truth, {.count = 60, .seed = 1, .noise_px = 0.05});
   const LensCalibration lens = EstimateLens(views, Guess(truth, 1.2));
@@ -65,7 +65,7 @@ TEST(EstimateLensTest, FindsAFisheye) {
   EXPECT_EQ(lens.outliers, 0);
 }
 
-TEST(EstimateLensTest, FindsARadialTangentialLensFromAPinhole) {
+TEST(EstimateLensTest, EstimatesRadialTangentialLensFromPinholeStart) {
   const CameraIntrinsics truth = EurocCamera();
   const auto views = MakeLensViews(truth, {.count = 40, .seed = 2});
   CameraIntrinsics start = Guess(truth, 0.8);
@@ -78,7 +78,7 @@ TEST(EstimateLensTest, FindsARadialTangentialLensFromAPinhole) {
 }
 
 // A model other than the lens's own is a good approximation at best.
-TEST(EstimateLensTest, GivesALensTheKindThatIsAskedFor) {
+TEST(EstimateLensTest, EstimatesRequestedDistortionModel) {
   const auto views = MakeLensViews(EurocCamera(), {.count = 30, .seed = 3});
   const LensCalibration lens =
       EstimateLens(views, Guess(EurocCamera(), 1), DistortionModel::kEquidistant);
@@ -86,7 +86,7 @@ TEST(EstimateLensTest, GivesALensTheKindThatIsAskedFor) {
   EXPECT_LT(MedianDifferencePx(EurocCamera(), lens.intrinsics, 40), 0.6);
 }
 
-TEST(EstimateLensTest, APinholeHasNoDistortion) {
+TEST(EstimateLensTest, EstimatesPinholeWithoutDistortion) {
   const auto views = MakeLensViews(Pinhole(), {.count = 40, .seed = 4});
   const LensCalibration lens = EstimateLens(views, Guess(Pinhole(), 1.2));
   EXPECT_EQ(lens.intrinsics.distortion_model, DistortionModel::kNone);
@@ -94,7 +94,7 @@ TEST(EstimateLensTest, APinholeHasNoDistortion) {
   EXPECT_LT(MedianDifferencePx(Pinhole(), lens.intrinsics, 45), 0.15);
 }
 
-TEST(EstimateLensTest, TellsTwoFocalLengthsWhereTheyDiffer) {
+TEST(EstimateLensTest, EstimatesDifferentFocalLengths) {
   CameraIntrinsics truth = Pinhole();
   truth.fy_px = 1.02 * truth.fx_px;
   const auto views = MakeLensViews(truth, {.count = 40, .seed = 5});
@@ -102,7 +102,7 @@ TEST(EstimateLensTest, TellsTwoFocalLengthsWhereTheyDiffer) {
   EXPECT_NEAR(lens.intrinsics.fy_px / lens.intrinsics.fx_px, 1.02, 0.002);
 }
 
-TEST(EstimateLensTest, ErrorsAreAsLargeAsTheStandardDeviationsSay) {
+TEST(EstimateLensTest, ErrorsMatchStandardDeviations) {
   constexpr int kSets = 12;
   double squares = 0;
   for (int seed = 0; seed < kSets; ++seed) {
@@ -116,7 +116,7 @@ TEST(EstimateLensTest, ErrorsAreAsLargeAsTheStandardDeviationsSay) {
   EXPECT_LT(squares, 32.9);
 }
 
-TEST(EstimateLensTest, LeavesOutAViewThatIsNone) {
+TEST(EstimateLensTest, RejectsOutlierView) {
   auto views = MakeLensViews(Pinhole(), {.count = 30, .seed = 6});
   Random random(7);
   for (LensEdge& edge : views[9].edges) edge.pixel += 8 * random.Normal() * edge.across;
@@ -126,7 +126,7 @@ TEST(EstimateLensTest, LeavesOutAViewThatIsNone) {
   EXPECT_NEAR(lens.intrinsics.fx_px / Pinhole().fx_px, 1, 0.005);
 }
 
-TEST(EstimateLensTest, RefusesLevelViewsAndSaysToTilt) {
+TEST(EstimateLensTest, RefusesLevelViewsAndAdvisesToTilt) {
   const auto views = MakeLensViews(Pinhole(), {.count = 40, .seed = 8, .max_tilt_deg = 1});
   EXPECT_THAT(Refusal(views, Guess(Pinhole(), 1)), HasSubstr("tilt the camera"));
 }
@@ -145,12 +145,12 @@ TEST(EstimateLensTest, RefusesTooFewViews) {
   EXPECT_THAT(Refusal(views, Guess(Pinhole(), 1)), HasSubstr("in 7 of them"));
 }
 
-TEST(EstimateLensTest, RefusesViewsInTheMiddleOnly) {
+TEST(EstimateLensTest, RefusesViewsInMiddleOnly) {
   const auto views = MakeLensViews(Pinhole(), {.count = 40, .seed = 10, .share_of_image = 0.05});
   EXPECT_THAT(Refusal(views, Guess(Pinhole(), 1)), HasSubstr("only in the middle of the image"));
 }
 
-TEST(EstimateLensTest, StartsFromARationalLens) {
+TEST(EstimateLensTest, StartsFromRationalLens) {
   const CameraIntrinsics truth = Pinhole();
   const auto views = MakeLensViews(truth, {.count = 40, .seed = 14});
   CameraIntrinsics start = Guess(truth, 1.1);
@@ -160,7 +160,7 @@ TEST(EstimateLensTest, StartsFromARationalLens) {
   EXPECT_LT(MedianDifferencePx(truth, lens.intrinsics, 45), 0.2);
 }
 
-TEST(UnlikeViewsTest, TakesThoseThatDiffer) {
+TEST(UnlikeViewsTest, SelectsDifferentViews) {
   // A hovering camera, and three views from elsewhere.
   std::vector<LensView> views = MakeLensViews(Pinhole(), {.count = 4, .seed = 15});
   const LensView hovering = views[0];
@@ -172,7 +172,7 @@ TEST(UnlikeViewsTest, TakesThoseThatDiffer) {
   EXPECT_EQ(UnlikeViews(views, 100, 640).size(), 24u);
 }
 
-TEST(LensCoverageTest, SaysWhatHoldsNoEdges) {
+TEST(LensCoverageTest, DescribesFieldsWithoutEdges) {
   LensCoverage coverage;
   coverage.edges.fill(5);
   coverage.max_angle_deg = 62.3;
@@ -188,7 +188,7 @@ TEST(LensCoverageTest, SaysWhatHoldsNoEdges) {
   EXPECT_THAT(coverage.InWords(), HasSubstr("the corners and the top of the image hold no edges"));
 }
 
-TEST(LensCoverageTest, CountsEdgesWhereTheyAre) {
+TEST(LensCoverageTest, CountsEdgesPerField) {
   LensView view;
   for (const Eigen::Vector2d& pixel :
        std::vector<Eigen::Vector2d>{{0, 0}, {639, 479}, {325, 236}}) {
@@ -201,7 +201,7 @@ TEST(LensCoverageTest, CountsEdgesWhereTheyAre) {
   EXPECT_EQ(coverage.EdgesAt(4, 2), 1);
 }
 
-TEST(ProjectThroughLensTest, AgreesWithTheCameraModel) {
+TEST(ProjectThroughLensTest, AgreesWithCameraModel) {
   Random random(12);
   for (const TestCamera& test : TestCameras()) {
     CameraIntrinsics camera = test.intrinsics;
@@ -222,7 +222,7 @@ TEST(ProjectThroughLensTest, AgreesWithTheCameraModel) {
   }
 }
 
-TEST(LensDifferenceTest, IsNothingForALensThatIsTurned) {
+TEST(LensDifferenceTest, IgnoresRotationOfLens) {
   const CameraIntrinsics truth = Pinhole();
   EXPECT_LT(MedianDifferencePx(truth, truth, 45), 1e-9);
   CameraIntrinsics zoomed = truth;
@@ -251,14 +251,14 @@ std::vector<LensImage> DrawViews(int count, std::uint64_t seed) {
   return images;
 }
 
-TEST(CalibrateLensTest, NeedsNothingButImages) {
+TEST(CalibrateLensTest, CalibratesFromImagesAlone) {
   const LensCalibration lens = CalibrateLens(DrawViews(24, 13), {});
   EXPECT_GE(lens.views.size(), 20u);
   EXPECT_NEAR(lens.intrinsics.fx_px / TestPrintCamera().intrinsics().fx_px, 1, 0.01);
   EXPECT_LT(lens.fit.RootMeanSquare(), 0.15);
 }
 
-TEST(CalibrateLensTest, EndsWhenItIsToldTo) {
+TEST(CalibrateLensTest, StopsWhenCallbackThrows) {
   struct Cancelled {};
   const std::vector<LensImage> images(10, LensImage{"gray", cv::Mat(240, 320, CV_8UC1, 90)});
   int looked_at = 0;
@@ -270,7 +270,7 @@ TEST(CalibrateLensTest, EndsWhenItIsToldTo) {
   EXPECT_EQ(looked_at, 5);
 }
 
-TEST(CalibrateLensTest, SaysWhatIsWrongWithImages) {
+TEST(CalibrateLensTest, RefusesUnusableImages) {
   EXPECT_THROW(CalibrateLens({}, {}), InputError);
   const std::vector<LensImage> empty(10, LensImage{"gray", cv::Mat(240, 320, CV_8UC1, 90)});
   EXPECT_THROW(CalibrateLens(empty, {}), InputError);

@@ -12,8 +12,8 @@
 namespace kestrel {
 namespace {
 
-constexpr double kLeastSigmaPx = 0.02;  // of an edge
-constexpr double kOutlier = 4;          // of an edge, in standard deviations
+constexpr double kLeastSigmaPx = 0.02;  // least standard deviation of an edge
+constexpr double kOutlier = 4;          // limit for an edge, in standard deviations
 constexpr double kOutlierView = 3;      // relative to the error of the median view
 // Lenses of a pinhole model show nothing farther from their axis, in practice.
 constexpr double kMaxPinholeAngle = Radians(80);
@@ -142,8 +142,9 @@ std::optional<LensFit> LensChoice::Choose(const CameraIntrinsics& start) {
   LensFreedom with_aspect = best->freedom;
   with_aspect.aspect = true;
   Offer(Refit(*best, best->intrinsics, with_aspect), &best);
-  // For independent edges the optimism would be the number of parameters. The greater it is, the
-  // less an edge tells compared with the prior.
+  // With independent edges the optimism would equal the number of free parameters. A larger one
+  // means that edges of a view share errors: each counts less, so its standard deviation is raised
+  // and the priors gain weight.
   const double alike = std::max(1.0, best->optimism / best->freedom.count());
   edge_sigma_px_ *= std::sqrt(alike);
   best = Refit(*best, best->intrinsics, best->freedom);

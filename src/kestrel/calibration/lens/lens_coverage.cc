@@ -14,7 +14,7 @@
 namespace kestrel {
 namespace {
 
-constexpr double kNearly = 0.99;  // of all edges
+constexpr double kNearly = 0.99;  // share of all edges
 
 double NearlyLargest(std::vector<double> values) {
   if (values.empty()) return 0;

@@ -276,7 +276,7 @@ class Adjustment {
   std::vector<ViewVector> states_;
   ceres::Problem problem_;
   std::vector<std::vector<ceres::ResidualBlockId>> view_blocks_;
-  std::vector<ceres::ResidualBlockId> lens_blocks_;  // of the priors
+  std::vector<ceres::ResidualBlockId> lens_blocks_;  // residual blocks of the priors
   std::shared_ptr<ceres::ParameterBlockOrdering> ordering_;
   double cost_ = 0;
 };

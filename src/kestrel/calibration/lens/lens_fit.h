@@ -42,7 +42,7 @@ struct LensFit {
   // inverse Hessian times the variance of the views' gradients (Takeuchi 1976).
   double optimism = 0;
 
-  double RootMeanSquare() const;  // of the residuals, px
+  double RootMeanSquare() const;  // RMS of the residuals, px
 
   // Returns the lens without the coefficients that were not estimated, for a calibration file.
   CameraIntrinsics Simplified() const;

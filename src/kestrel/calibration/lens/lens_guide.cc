@@ -17,7 +17,7 @@ namespace {
 // pixel, in widths of the image per second.
 constexpr double kStill = 0.05;
 constexpr Duration kLongestGap = std::chrono::seconds(1);  // between two sights of one movement
-constexpr double kLeastDifference = 0.12;                  // of a view from all others
+constexpr double kLeastDifference = 0.12;  // least difference of a view from all others
 constexpr double kLeastTilt = Radians(15);
 // Share of the image's width or height that the board fills.
 constexpr double kNearShare = 0.6;
@@ -94,8 +94,8 @@ void LensGuide::Count(const LensView& view, const CameraIntrinsics& camera) {
   variety_.bottom += out.y() < -least;
 }
 
-// Returns the missing view that would tell the most, first the places in the image; empty when none
-// is missing.
+// Returns the missing view with the most information, first the places in the image; empty when
+// none is missing.
 std::string LensGuide::Missing() const {
   const std::vector<std::string> empty = variety_.coverage.EmptyParts();
   if (!empty.empty()) return "bring the board to the " + empty.front() + " of the image";

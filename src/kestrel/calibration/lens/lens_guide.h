@@ -21,7 +21,7 @@ struct LensVariety {
   int near = 0, far = 0;  // number of views in which the board is large, and small
 };
 
-// Chooses the views of a live camera that a calibration is made of, and says what to show next.
+// Chooses the views of a live camera that a calibration is made of, and advises what to show next.
 class LensGuide {
  public:
   explicit LensGuide(const cv::Size& image) : image_(image) {}

@@ -34,14 +34,14 @@ LensView Moved(LensView view, double px) {
   return view;
 }
 
-TEST_F(LensGuideTest, ABoardThatMovesIsNotTaken) {
+TEST_F(LensGuideTest, DoesNotTakeMovingBoard) {
   const LensView view = MakeLensViews(Lens(), {.count = 1, .share_of_image = 0.2}).front();
   for (int i = 0; i < 10; ++i) EXPECT_FALSE(Show(Moved(view, 8 * i), 1)) << i;
   EXPECT_THAT(guide_.Advice(), StartsWith("hold it still"));
   EXPECT_TRUE(Show(Moved(view, 80)));
 }
 
-TEST_F(LensGuideTest, TheSameViewIsTakenOnce) {
+TEST_F(LensGuideTest, TakesSameViewOnce) {
   const LensView view = MakeLensViews(Lens(), {.count = 1, .share_of_image = 0.2}).front();
   EXPECT_TRUE(Show(view));
   EXPECT_FALSE(Show(Moved(view, 3)));
@@ -49,12 +49,12 @@ TEST_F(LensGuideTest, TheSameViewIsTakenOnce) {
   EXPECT_THAT(guide_.Advice(), HasSubstr("corner"));
 }
 
-TEST_F(LensGuideTest, MissingBoardIsReported) {
+TEST_F(LensGuideTest, ReportsMissingBoard) {
   EXPECT_FALSE(guide_.Look(std::nullopt, time_, Lens()));
   EXPECT_THAT(guide_.Advice(), HasSubstr("the board is not found"));
 }
 
-TEST_F(LensGuideTest, ManyDifferentViewsAreEnough) {
+TEST_F(LensGuideTest, AcceptsManyDifferentViewsAsEnough) {
   for (const LensView& view : MakeLensViews(Lens(), {.count = 300, .seed = 4})) Show(view);
   EXPECT_GT(guide_.variety().left, 1);
   EXPECT_GT(guide_.variety().bottom, 1);
@@ -62,7 +62,7 @@ TEST_F(LensGuideTest, ManyDifferentViewsAreEnough) {
 }
 
 // A print whose face looks to the right has its left side nearer.
-TEST_F(LensGuideTest, SidesThatAreNearerAreCounted) {
+TEST_F(LensGuideTest, CountsViewsTiltedToEachSide) {
   const auto tilted = [](double about_x, double about_y) {
     LensView view = MakeLensViews(Lens(), {.count = 1, .share_of_image = 0.1}).front();
     view.camera_from_pattern = {

@@ -14,9 +14,9 @@ namespace {
 constexpr double kMinRingPx = 40;     // diameter: an arm of a tenth of it has two edges
 constexpr double kReachShare = 0.03;  // search range for edges, of the ring's diameter
 constexpr double kLeastReachPx = 3;
-constexpr double kMinStep = 4;         // of an edge, gray values per pixel
-constexpr double kInPlacePx = 1;       // of an edge from its place by its neighbours
-constexpr std::size_t kMinEdges = 40;  // of 150
+constexpr double kMinStep = 4;         // least step of an edge, gray values per pixel
+constexpr double kInPlacePx = 1;       // largest offset of an edge from its place by its neighbours
+constexpr std::size_t kMinEdges = 40;  // out of 150
 
 // Corrects a wrong camera by the evidence of the detection.
 CameraIntrinsics Recalibrated(CameraIntrinsics camera, const CalibrationEvidence& evidence) {

@@ -17,8 +17,8 @@ namespace kestrel {
 
 class PrintOutline;
 
-// A point of the print's outline in an image. It tells where the outline is across its direction;
-// along the outline it tells nothing.
+// A point of the print's outline in an image. It fixes the outline across its direction, but not
+// along it.
 struct LensEdge {
   Eigen::Vector2d on_print;  // in the pattern's plane, m
   Eigen::Vector2d pixel;

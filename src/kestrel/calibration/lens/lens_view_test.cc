@@ -30,7 +30,7 @@ std::optional<LensView> FindWith(double zoom) {
   return LensViewFinder(camera, {}).Find("view", TestImage());
 }
 
-TEST(LensViewFinderTest, EdgesLieWhereTheLensShowsTheOutline) {
+TEST(LensViewFinderTest, EdgesLieOnProjectedOutline) {
   const std::optional<LensView> view = FindWith(1);
   ASSERT_TRUE(view);
   EXPECT_GT(view->edges.size(), 120u);
@@ -51,7 +51,7 @@ TEST(LensViewFinderTest, EdgesLieWhereTheLensShowsTheOutline) {
   EXPECT_LT(std::sqrt(squares / static_cast<double>(view->edges.size())), 0.1);
 }
 
-TEST(LensViewFinderTest, AWrongLensFindsTheSameEdges) {
+TEST(LensViewFinderTest, FindsSameEdgesWithWrongLens) {
   const std::optional<LensView> right = FindWith(1);
   ASSERT_TRUE(right);
   for (const double zoom : {0.8, 1.25}) {
@@ -74,12 +74,12 @@ TEST(LensViewFinderTest, AWrongLensFindsTheSameEdges) {
   }
 }
 
-TEST(LensViewFinderTest, SeesNothingWhereThereIsNothing) {
+TEST(LensViewFinderTest, FindsNoViewInEmptyImage) {
   LensViewFinder finder(TestPrintCamera().intrinsics(), {});
   EXPECT_FALSE(finder.Find("gray", cv::Mat(240, 320, CV_8UC1, 90)));
 }
 
-TEST(LensViewFinderTest, LeavesOutPrintsThatAreTooSmallForTheirEdges) {
+TEST(LensViewFinderTest, IgnoresPrintsThatAreTooSmall) {
   const LandingPattern pattern;
   LensViewFinder finder(TestPrintCamera().intrinsics(), {});
   const cv::Mat far = DrawPrint(TestPrintCamera(), pattern, SpokedPrint(pattern, 4),

@@ -222,7 +222,7 @@ Parameters SearchGrid(const FlightFit& fit, const Parameters& given,
 // which are estimated from the median.
 std::vector<TargetSighting> WithoutOutliers(const FlightFit& fit, const Parameters& parameters) {
   constexpr double kSigmas = 4;
-  constexpr double kMedianOfThree = 1.538;  // of a chi variable with 3 degrees of freedom
+  constexpr double kMedianOfThree = 1.538;  // median of a chi variable with 3 degrees of freedom
   const Eigen::VectorXd distances = fit.Residuals(parameters).rowwise().norm();
   const double median =
       MedianInPlace(std::vector<double>(distances.data(), distances.data() + distances.size()));
@@ -337,7 +337,7 @@ std::vector<TargetSighting> WithPoses(const std::vector<TargetSighting>& sightin
   return kept;
 }
 
-// The poses that a history accepts, smoothed: a UAV moves more evenly than its navigation says.
+// The poses that a history accepts, smoothed: a UAV moves more evenly than its navigation reports.
 PoseHistory HistoryOf(const std::vector<PoseSample>& samples) {
   PoseHistory history(samples.size(), kMaxGap);
   std::vector<PoseSample> valid;

@@ -62,7 +62,7 @@ struct FlightCalibration {
   // image; 0: not estimated.
   Eigen::Vector3d angle_sigmas = Eigen::Vector3d::Zero();
   double clock_sigma_s = 0;
-  double rms_before_m = 0;  // of the positions in the world from the path, with the given values
+  double rms_before_m = 0;  // distance of the world positions from the path, with the given values
   double rms_after_m = 0;
   std::vector<SightingResidual> residuals;  // for the sightings that were used
   int sightings = 0;                        // number used

@@ -96,7 +96,7 @@ TEST(CalibrateFlight, FindsMountAndClockTogether) {
   EXPECT_THAT(calibration.warnings, IsEmpty());
 }
 
-TEST(CalibrateFlight, FindsTheMountWithAKnownClock) {
+TEST(CalibrateFlight, FindsMountWithKnownClock) {
   Flight flight;
   flight.clock_offset_s = 0;
   const FlightCalibration calibration = flight.Calibrate({.estimate_clock = false});
@@ -105,7 +105,7 @@ TEST(CalibrateFlight, FindsTheMountWithAKnownClock) {
   EXPECT_EQ(calibration.clock_sigma_s, 0);
 }
 
-TEST(CalibrateFlight, FindsTheClockOverAMovingTarget) {
+TEST(CalibrateFlight, FindsClockOverMovingTarget) {
   Flight flight{.sway = 0.4};
   flight.angles.setZero();
   flight.target_speed_mps = 4;
@@ -118,13 +118,13 @@ TEST(CalibrateFlight, FindsTheClockOverAMovingTarget) {
   }
 }
 
-TEST(CalibrateFlight, APatternOfAnotherSizeDoesNotMoveTheClock) {
+TEST(CalibrateFlight, WrongPatternSizeDoesNotChangeClock) {
   const Flight flight{.climb_m = 6, .scale = 1.005};
   const FlightCalibration calibration = flight.Calibrate({});
   EXPECT_NEAR(calibration.estimate.clock_offset_s, flight.clock_offset_s, 0.002);
 }
 
-TEST(CalibrateFlight, LeavesOutWhatIsNotThePattern) {
+TEST(CalibrateFlight, RejectsFalseDetections) {
   const Flight flight{.sway = 0.3};
   std::vector<TargetSighting> sightings = flight.Sightings();
   for (std::size_t i = 0; i < sightings.size(); i += 20) {
@@ -136,7 +136,7 @@ TEST(CalibrateFlight, LeavesOutWhatIsNotThePattern) {
   EXPECT_LT((calibration.angles - flight.angles).norm(), 0.1 * kDegree);
 }
 
-TEST(CalibrateFlight, SaysWhatTheFlightCannotTell) {
+TEST(CalibrateFlight, ReportsWhatFlightCannotDetermine) {
   // It hangs still: nothing distinguishes the mount from the place of the target, or one time from
   // another.
   Flight flight{.sway = 0, .turn = 0, .climb_m = 0};
@@ -152,7 +152,7 @@ TEST(CalibrateFlight, SaysWhatTheFlightCannotTell) {
   EXPECT_THAT(calibration.motion.tilt, Le(0.2));
 }
 
-TEST(CalibrateFlight, AFlightThatTellsAllIsOfUse) {
+TEST(CalibrateFlight, AcceptsFlightThatDeterminesAllQuantities) {
   const Flight flight{.sway = 0.3, .climb_m = 6};
   const FlightCalibration calibration = flight.Calibrate({});
   EXPECT_EQ(WhyOfNoUse(calibration), "");
@@ -160,7 +160,7 @@ TEST(CalibrateFlight, AFlightThatTellsAllIsOfUse) {
   EXPECT_GT(calibration.motion.turn, 0.5);
 }
 
-TEST(CalibrateFlight, QuantitiesThatAreUncertainAreOfNoUse) {
+TEST(CalibrateFlight, RejectsUncertainQuantities) {
   FlightCalibration result;
   result.rms_before_m = result.rms_after_m = 0.1;
   EXPECT_EQ(WhyOfNoUse(result), "");
@@ -171,7 +171,7 @@ TEST(CalibrateFlight, QuantitiesThatAreUncertainAreOfNoUse) {
   EXPECT_EQ(WhyOfNoUse(result), "the positions agree less than before");
 }
 
-TEST(CalibrateFlight, TooFewSightingsAreRefused) {
+TEST(CalibrateFlight, RefusesTooFewSightings) {
   const Flight flight;
   std::vector<TargetSighting> sightings = flight.Sightings();
   sightings.resize(10);

@@ -12,7 +12,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-TEST(FlightSightings, HasTheImagesThatShowThePattern) {
+TEST(FlightSightings, KeepsImagesThatShowPattern) {
   const CameraIntrinsics camera{640, 480, 400, 400, 319.5, 239.5, DistortionModel::kNone, {}};
   // The camera looks straight down from 3 m.
   const RigidTransform camera_from_pattern{Eigen::Quaterniond(0, 1, 0, 0), {0.3, 0.15, 3}};
@@ -31,7 +31,7 @@ TEST(FlightSightings, HasTheImagesThatShowThePattern) {
   EXPECT_NEAR(flight.places()[0].height_m, 3, 0.03);
 }
 
-TEST(MountAndClock, IsThatOfTheCalibration) {
+TEST(MountAndClock, AreTakenFromCalibration) {
   CameraCalibration calibration;
   try {
     GivenMountAndClock(calibration, "camera.yaml");

@@ -56,7 +56,7 @@ Rms ErrorsOf(const std::vector<PoseSample>& samples) {
   return {std::sqrt(rms.position / count), std::sqrt(rms.rotation / count)};
 }
 
-TEST(SmoothPoses, TakesTwoThirdsOfTheNoiseAway) {
+TEST(SmoothPoses, MoreThanHalvesNoise) {
   const std::vector<PoseSample> noisy = Samples(0.01);
   const Rms before = ErrorsOf(noisy);
   const Rms after = ErrorsOf(SmoothPoses(noisy, kWindow));
@@ -64,13 +64,13 @@ TEST(SmoothPoses, TakesTwoThirdsOfTheNoiseAway) {
   EXPECT_LT(after.rotation, 0.45 * before.rotation);
 }
 
-TEST(SmoothPoses, LeavesTheMotionAsItIs) {
+TEST(SmoothPoses, PreservesMotion) {
   const Rms rms = ErrorsOf(SmoothPoses(Samples(0), kWindow));
   EXPECT_LT(rms.position, 1e-3);
   EXPECT_LT(rms.rotation, 1e-3);
 }
 
-TEST(SmoothPoses, FewSamplesStayAsTheyAre) {
+TEST(SmoothPoses, LeavesFewSamplesUnchanged) {
   std::vector<PoseSample> few = Samples(0.01);
   few.resize(5);
   const std::vector<PoseSample> smooth = SmoothPoses(few, kWindow);

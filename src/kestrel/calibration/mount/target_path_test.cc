@@ -14,7 +14,7 @@ std::vector<Time> Times(int count) {
   return times;
 }
 
-TEST(TargetPath, AStandingTargetIsTheWeightedMean) {
+TEST(TargetPath, FitsWeightedMeanToStandingTarget) {
   const TargetPath path(Times(2), Eigen::Vector2d(1, 3), 0);
   Eigen::MatrixX3d positions = Eigen::MatrixX3d::Zero(2, 3);
   positions(1, 0) = 1;  // the mean is 0.9
@@ -24,7 +24,7 @@ TEST(TargetPath, AStandingTargetIsTheWeightedMean) {
   EXPECT_EQ(path.size(), 1);
 }
 
-TEST(TargetPath, ASmoothCurveLeavesNothingAQuickOneDoes) {
+TEST(TargetPath, FitsSmoothCurveExactlyButNotFastOne) {
   const int count = 100;
   const TargetPath path(Times(count), Eigen::VectorXd::Ones(count), 2);
   Eigen::MatrixX3d positions(count, 3);
@@ -37,7 +37,7 @@ TEST(TargetPath, ASmoothCurveLeavesNothingAQuickOneDoes) {
   EXPECT_GT(residuals.col(2).norm(), 0.9 * positions.col(2).norm());
 }
 
-TEST(TargetPath, BridgesGapsInTheFlight) {
+TEST(TargetPath, BridgesGapsInFlight) {
   std::vector<Time> times = Times(10);
   for (const Time time : Times(10)) times.push_back(time + std::chrono::seconds(60));
   const TargetPath path(times, Eigen::VectorXd::Ones(20), 2);

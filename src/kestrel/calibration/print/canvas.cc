@@ -12,7 +12,7 @@ namespace kestrel {
 namespace {
 
 constexpr double kPointsPerMeter = 72 / 0.0254;
-constexpr double kTolerance = 0.01;  // of curves, points
+constexpr double kTolerance = 0.01;  // tolerance of curves, points
 
 cairo_surface_t* MakeSurface(Canvas::Format format, const std::string& file,
                              const Eigen::Vector2d& size) {

@@ -103,7 +103,7 @@ class PatternPrintTest : public ::testing::Test {
   TestFolder folder_;
 };
 
-TEST_F(PatternPrintTest, APageHasThePatternsDimensions) {
+TEST_F(PatternPrintTest, PageHasDimensionsOfPattern) {
   const LandingPattern large;
   const LandingPattern small{.outer_diameter_m = 0.3,
                              .ring_width_m = 0.035,
@@ -124,7 +124,7 @@ TEST_F(PatternPrintTest, APageHasThePatternsDimensions) {
   }
 }
 
-TEST_F(PatternPrintTest, ArmsThatReachTheRingEndWithIt) {
+TEST_F(PatternPrintTest, ArmsIntoRingEndWithIt) {
   const LandingPattern pattern{.arm_half_length_m = 0.5};
   PrintPatternPdf(PrintOf(pattern), folder_ / "p.pdf");
   const double scale = 4000;
@@ -191,7 +191,7 @@ cv::Mat Assemble(const std::vector<std::string>& sheets, double scale, const Til
   return board;
 }
 
-TEST_F(PatternPrintTest, TilesMeet) {
+TEST_F(PatternPrintTest, TilesJoinWithoutGap) {
   const LandingPattern pattern;
   const double scale = 2000;  // a pixel is half a millimetre
   PrintPatternPdf(PrintOf(pattern), folder_ / "p.pdf");
@@ -217,7 +217,7 @@ TEST_F(PatternPrintTest, TilesMeet) {
   }
 }
 
-TEST_F(PatternPrintTest, RulersAreTrue) {
+TEST_F(PatternPrintTest, RulersHaveTrueLength) {
   const LandingPattern pattern;
   EXPECT_DOUBLE_EQ(RulerLength(pattern.board_size_m), 0.2);
   EXPECT_DOUBLE_EQ(RulerLength(0.43), 0.1);
@@ -233,7 +233,7 @@ TEST_F(PatternPrintTest, RulersAreTrue) {
   EXPECT_NEAR((LineAt(page, end) - LineAt(page, window)) / scale, 0.2, 0.0001);
 }
 
-TEST_F(PatternPrintTest, WhatCannotBePrintedIsRefused) {
+TEST_F(PatternPrintTest, RefusesUnprintablePattern) {
   const TargetPrint print = PrintOf(LandingPattern());
   EXPECT_THROW(PrintPatternPdf(PrintOf({.board_size_m = 6}), folder_ / "p.pdf"), InputError);
   EXPECT_THROW(PrintPatternPdf(print, folder_ / "none/p.pdf"), InputError);

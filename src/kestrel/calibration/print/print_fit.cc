@@ -33,10 +33,10 @@ enum Parameter {
   kParameters
 };
 constexpr double kSpreadSigma_px =
-    0.6;                               // of optics, exposure and gamma: real frames have up to 1.1
+    0.6;  // spread by optics, exposure and gamma: real frames have up to 1.1
 constexpr double kEdgeSigma_px = 0.2;  // initial value
 constexpr double kLeastSigma_px = 0.05;
-constexpr double kUnmodelled_px = 0.15;  // of a dimension: gaps of few pixels, and lens errors
+constexpr double kUnmodelled_px = 0.15;  // errors by gaps of few pixels and by the lens
 constexpr double kMaxZoom = 1.1;         // logarithm: three times as near, or as far, as assumed
 constexpr double kHuber = 2;             // standard deviations
 // Fewest edges: of 180 on the outer and about 100 on the inner circle, 96 on sides, 28 on ends.
@@ -206,7 +206,7 @@ class LineFit {
                                nullptr, state_.data());
     };
     hold(kZoom, std::log(lens_.focal_px / start_.camera.fx_px), lens_.zoom_sigma);
-    // A view straight from above says nothing of the zoom, and the search would run away.
+    // A view straight from above does not determine the zoom, and the search would diverge.
     const double assumed = std::log(lens_.focal_px / start_.camera.fx_px);
     problem.SetParameterLowerBound(state_.data(), kZoom, assumed - kMaxZoom);
     problem.SetParameterUpperBound(state_.data(), kZoom, assumed + kMaxZoom);

@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kStep_px = 0.5;
-constexpr float kLeastContrast = 20;  // of white over black, gray values
+constexpr float kLeastContrast = 20;  // contrast of white over black, gray values
 constexpr double kSmoothing_px = 0.8;
 
 // Samples the image along lines in the plane of the print.

@@ -47,7 +47,7 @@ void ExpectMeasured(const MeasuredLength& length, double truth, double largest_m
   EXPECT_NEAR(length.value_m, truth, largest_m) << what;
 }
 
-TEST(PrintMeasurementTest, MeasuresPrintsOfOtherDimensionsToo) {
+TEST(PrintMeasurementTest, MeasuresPrintsOfOtherDimensions) {
   const LandingPattern configured = Configured().pattern;
   LandingPattern thin_ring, wide_arms, short_arms, other;
   thin_ring.ring_width_m = 0.08;
@@ -80,8 +80,8 @@ TEST(PrintMeasurementTest, MeasuresPrintsOfOtherDimensionsToo) {
   }
 }
 
-// Such a photograph says nothing of the focal length.
-TEST(PrintMeasurementTest, MeasuresAPrintThatIsSeenFromStraightAbove) {
+// Such a photograph does not determine the focal length.
+TEST(PrintMeasurementTest, MeasuresPrintSeenFromStraightAbove) {
   const LandingPattern print = Configured().pattern;
   for (const double distance_m : {1.2, 2.0, 3.0}) {
     for (const double tilt_deg : {0.0, 0.5, 1.5}) {
@@ -94,13 +94,13 @@ TEST(PrintMeasurementTest, MeasuresAPrintThatIsSeenFromStraightAbove) {
   }
 }
 
-TEST(PrintMeasurementTest, SeesNothingWhereThereIsNothing) {
+TEST(PrintMeasurementTest, FindsNoPrintInEmptyImage) {
   EXPECT_FALSE(MeasurePrint(cv::Mat(480, 640, CV_8UC1, cv::Scalar(120)), {}, Configured()));
   const cv::Mat far = Photograph({}, 60, 10);
   EXPECT_FALSE(MeasurePrint(far, Telephone(), Configured()));
 }
 
-TEST(PrintCheckTest, JudgesByWhatThePhotographTells) {
+TEST(PrintCheckTest, JudgesByUncertaintyOfPhotograph) {
   const LandingPattern configured;
   PrintMeasurement print{.ring_width = {0.1003, 0.0005},
                          .arm_width = {0.095, 0.0005},
@@ -116,7 +116,7 @@ TEST(PrintCheckTest, JudgesByWhatThePhotographTells) {
   EXPECT_EQ(checked[2].verdict, PrintVerdict::kTooCoarse);
 }
 
-TEST(PrintCheckTest, ArmsWhoseEndsAreNotSeen) {
+TEST(PrintCheckTest, JudgesArmsWithoutVisibleEnds) {
   PrintMeasurement print{.ring_width = {0.1, 0.0005},
                          .arm_width = {0.1, 0.0005},
                          .arm_half_length = {},
@@ -132,7 +132,7 @@ TEST(PrintCheckTest, ArmsWhoseEndsAreNotSeen) {
   EXPECT_EQ(arms(0.38, 0.005), PrintVerdict::kTooCoarse) << "one of 4 px would not";
 }
 
-TEST(PrintCheckTest, FindsAPrintThatWasMadeSmaller) {
+TEST(PrintCheckTest, DetectsScaledDownPrint) {
   const PrintMeasurement print{.ring_width = {0.1, 0.0005},
                                .arm_width = {0.1, 0.0005},
                                .arm_half_length = MeasuredLength{0.38, 0.0005},

@@ -8,7 +8,7 @@
 namespace kestrel {
 namespace {
 
-TEST(TilingTest, TilesCoverTheBoardAndFitTheirSheets) {
+TEST(TilingTest, TilesCoverBoardAndFitSheets) {
   for (const std::string& name : PaperNames()) {
     for (const double board : {0.1, 0.3, 0.75, 1.5, 3.0}) {
       const Tiling tiling = TileBoard(board, *PaperSize(name));
@@ -21,7 +21,7 @@ TEST(TilingTest, TilesCoverTheBoardAndFitTheirSheets) {
   }
 }
 
-TEST(TilingTest, TurnsTheSheetWhereThatSavesSome) {
+TEST(TilingTest, TurnsSheetIfThatSavesSheets) {
   EXPECT_EQ(TileBoard(1.5, *PaperSize("a4")).count(), 48);
   const Tiling wide = TileBoard(0.27, *PaperSize("a4"));  // 2 x 1 both ways: stays upright
   EXPECT_EQ(wide.count(), 2);
@@ -33,7 +33,7 @@ TEST(TilingTest, TurnsTheSheetWhereThatSavesSome) {
   }
 }
 
-TEST(TilingTest, OneSheetHoldsTheMiddleOfTheBoard) {
+TEST(TilingTest, OneSheetHoldsMiddleOfBoard) {
   const auto sheet = OneSheet(0.24, 0.16, *PaperSize("a4"));
   ASSERT_TRUE(sheet);
   EXPECT_EQ(sheet->count(), 1);
@@ -44,7 +44,7 @@ TEST(TilingTest, OneSheetHoldsTheMiddleOfTheBoard) {
   EXPECT_FALSE(OneSheet(0.3, 0.191, *PaperSize("a4")));
 }
 
-TEST(TilingTest, RefusesMoreSheetsThanAnyoneGlues) {
+TEST(TilingTest, RefusesTooManySheets) {
   EXPECT_THROW(TileBoard(50, *PaperSize("a4")), InputError);
   EXPECT_FALSE(PaperSize("a5"));
 }

@@ -13,7 +13,7 @@ int DdsDomain(const std::optional<int>& told);
 // Returns settings with which Cyclone DDS looks for others as ROS 2 does, from the environment:
 // ROS_AUTOMATIC_DISCOVERY_RANGE (SUBNET, LOCALHOST, OFF, SYSTEM_DEFAULT), ROS_LOCALHOST_ONLY (1
 // means LOCALHOST, and has priority) and ROS_STATIC_PEERS (addresses, separated by semicolons).
-// Empty where these say nothing. Throws InputError for other values.
+// Empty where these are not set. Throws InputError for other values.
 std::string DiscoverySettings();
 
 }  // namespace kestrel

@@ -29,7 +29,7 @@ class DdsDomainTest : public ::testing::Test {
   static void Set(const char* name, const char* value) { setenv(name, value, 1); }
 };
 
-TEST_F(DdsDomainTest, IsTheOneToldElseThatOfRos) {
+TEST_F(DdsDomainTest, IsGivenDomainOrThatOfRos) {
   EXPECT_EQ(DdsDomain(std::nullopt), 0);
   Set("ROS_DOMAIN_ID", "42");
   EXPECT_EQ(DdsDomain(std::nullopt), 42);
@@ -42,7 +42,7 @@ TEST_F(DdsDomainTest, IsTheOneToldElseThatOfRos) {
   }
 }
 
-TEST_F(DdsDomainTest, LooksForOthersWhereRosWould) {
+TEST_F(DdsDomainTest, DiscoversPeersLikeRos) {
   EXPECT_THAT(DiscoverySettings(), IsEmpty());
   Set("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET");
   EXPECT_THAT(DiscoverySettings(), IsEmpty());
@@ -59,7 +59,7 @@ TEST_F(DdsDomainTest, LooksForOthersWhereRosWould) {
   EXPECT_THAT(DiscoverySettings(), AllOf(HasSubstr("\"localhost\""), Not(HasSubstr("<Tag>"))));
 }
 
-TEST_F(DdsDomainTest, WrongVariablesAreNamed) {
+TEST_F(DdsDomainTest, ReportsWrongVariables) {
   Set("ROS_AUTOMATIC_DISCOVERY_RANGE", "FAR");
   EXPECT_THROW(DiscoverySettings(), InputError);
   Set("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET");

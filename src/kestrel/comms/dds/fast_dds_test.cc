@@ -52,7 +52,7 @@ OdometryMessage SomeOdometry() {
   return message;
 }
 
-TEST(FastDds, HearsWhatANodePublishes) {
+TEST(FastDds, ReceivesMessagesOfNode) {
   const int domain = TestDomain();
   const std::string bytes = SerializeMessage(SomeOdometry(), WireFormat::kCdr);
   Ros2Node node(domain, {"kestrel"});
@@ -62,7 +62,7 @@ TEST(FastDds, HearsWhatANodePublishes) {
   EXPECT_EQ(Hear(peer.Read("rt/kestrel/track", "nav_msgs::msg::dds_::Odometry_", kKept)), bytes);
 }
 
-TEST(FastDds, IsHeardByANode) {
+TEST(FastDds, SendsMessagesToNode) {
   const int domain = TestDomain();
   std::string bytes = SerializeMessage(SomeOdometry(), WireFormat::kCdr);
   Ros2Node node(domain, {"kestrel"});
@@ -76,7 +76,7 @@ TEST(FastDds, IsHeardByANode) {
   EXPECT_EQ(heard, bytes);
 }
 
-TEST(FastDds, IsToldTheHashesOfTypes) {
+TEST(FastDds, ReceivesTypeHashes) {
   const int domain = TestDomain();
   Ros2Node node(domain, {"kestrel"});
   node.Advertise("/image", ImageMessage::kType, kSensorDataQos);
@@ -135,7 +135,7 @@ void ExpectListed(const std::string& bytes, const FastParticipant& peer) {
 }
 
 // As Iron and later, and as Humble have it.
-TEST(FastDds, ListsTheNode) {
+TEST(FastDds, ListsNode) {
   for (const bool is_humble : {false, true}) {
     const int domain = TestDomain();
     Ros2Node node(domain, {"eyes", is_humble});
@@ -154,7 +154,7 @@ TEST(FastDds, ListsTheNode) {
 }
 
 // As docs.ros.org has it: a subscriber hears a publisher that offers at least what it requests.
-// Kestrel offers no deadline and no lease, and asks for none.
+// Kestrel offers no deadline and no lease, and requests none.
 struct QosPair {
   const char* what;
   Ros2Qos own;
@@ -205,7 +205,7 @@ bool IsAsExpected(int matches, const fast::IncompatibleQosStatus& refused,
   return matches == 0 && refused.total_count > 0 && refused.last_policy_id == expected;
 }
 
-TEST(FastDds, QosMatchesAsInRos) {
+TEST(FastDds, MatchesQosLikeRos) {
   const int domain = TestDomain();
   const std::string type = "tf2_msgs::msg::dds_::TFMessage_";
   Ros2Node node(domain, {});

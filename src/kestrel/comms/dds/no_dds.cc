@@ -14,13 +14,13 @@ constexpr char kHowToGetIt[] =
     "this kestrel was built without DDS: run scripts/install-deps --dds and build it again";
 #endif
 
-[[noreturn]] void SayHowToGetIt() { throw InputError(kHowToGetIt); }
+[[noreturn]] void FailWithoutDds() { throw InputError(kHowToGetIt); }
 
 }  // namespace
 
 struct Ros2Node::Entities {};
 
-Ros2Node::Ros2Node(int /*domain*/, const Ros2NodeOptions& /*options*/) { SayHowToGetIt(); }
+Ros2Node::Ros2Node(int /*domain*/, const Ros2NodeOptions& /*options*/) { FailWithoutDds(); }
 
 Ros2Node::~Ros2Node() = default;
 
@@ -49,7 +49,7 @@ std::vector<RosTopic> Ros2Node::Topics() const { return {}; }
 struct TeamTopic::Entities {};
 
 TeamTopic::TeamTopic(int /*domain*/, const std::string& /*team*/, const std::string& /*sender*/) {
-  SayHowToGetIt();
+  FailWithoutDds();
 }
 
 TeamTopic::~TeamTopic() = default;

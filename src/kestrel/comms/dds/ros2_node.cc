@@ -157,7 +157,7 @@ struct Ros2Node::Entities {
         options.is_humble ? &HumbleInfo() : DescriptorOf(kDiscoveryInfo);
     constexpr Ros2Qos kInfoQos{true, true, 1};
     info_publisher = {Write("ros_discovery_info", type, kInfoQos, kDiscoveryInfo), type};
-    TellInfo();
+    PublishInfo();
   }
 
   dds_entity_t Require(dds_entity_t entity, const char* what) const {
@@ -196,7 +196,7 @@ struct Ros2Node::Entities {
     return SerializeMessage(message, WireFormat::kCdr);
   }
 
-  void TellInfo() const {
+  void PublishInfo() const {
     static_cast<void>(Publish(info_publisher, options.is_humble ? BytesOf<kHumbleGidSize>(info)
                                                                 : BytesOf<kGidSize>(info)));
   }
@@ -230,7 +230,7 @@ std::size_t Ros2Node::Advertise(const std::string& topic, std::string_view type,
   const dds_entity_t writer = entities_->Write(DdsTopicName(topic), known, qos, type);
   entities_->publishers.push_back({writer, known});
   entities_->info.writers.push_back(Entities::GuidOf(writer));
-  entities_->TellInfo();
+  entities_->PublishInfo();
   return entities_->publishers.size() - 1;
 }
 
@@ -264,7 +264,7 @@ std::size_t Ros2Node::Subscribe(const std::string& topic, std::string_view type,
                      "waiting for messages");
   entities_->subscribers.push_back(reader);
   entities_->info.readers.push_back(Entities::GuidOf(reader));
-  entities_->TellInfo();
+  entities_->PublishInfo();
   return entities_->subscribers.size() - 1;
 }
 

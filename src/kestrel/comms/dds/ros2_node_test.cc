@@ -101,7 +101,7 @@ class Ros2NodeTest : public ::testing::Test {
   int domain_ = TestDomain();
 };
 
-TEST_F(Ros2NodeTest, EveryMessageArrivesByteForByte) {
+TEST_F(Ros2NodeTest, DeliversEveryMessageByteForByte) {
   Ros2Node sender(domain_, {"sender"});
   Ros2Node receiver(domain_, {"receiver"});
   for (const auto& [type, bytes] : SomeMessages()) {
@@ -114,7 +114,7 @@ TEST_F(Ros2NodeTest, EveryMessageArrivesByteForByte) {
   }
 }
 
-TEST_F(Ros2NodeTest, WhatIsNotOfTheTypeIsNotPublished) {
+TEST_F(Ros2NodeTest, DoesNotPublishBytesOfAnotherType) {
   Ros2Node node(domain_, {});
   const std::size_t image = node.Advertise("/image", ImageMessage::kType, kSensorDataQos);
   ImageMessage message;
@@ -131,7 +131,7 @@ TEST_F(Ros2NodeTest, WhatIsNotOfTheTypeIsNotPublished) {
 }
 
 // As docs.ros.org has it: a publisher must offer what a subscriber requests.
-TEST_F(Ros2NodeTest, QosMatchesAsInRos) {
+TEST_F(Ros2NodeTest, MatchesQosLikeRos) {
   struct Case {
     Ros2Qos offered, asked;
     bool do_match;
@@ -171,7 +171,7 @@ TEST_F(Ros2NodeTest, QosMatchesAsInRos) {
   }
 }
 
-TEST_F(Ros2NodeTest, WhoComesLateHearsWhatIsLatched) {
+TEST_F(Ros2NodeTest, LateSubscriberReceivesLatchedMessages) {
   Ros2Node sender(domain_, {});
   TfMessage message;
   message.transforms.emplace_back().child_frame_id = "child";
@@ -185,7 +185,7 @@ TEST_F(Ros2NodeTest, WhoComesLateHearsWhatIsLatched) {
   EXPECT_EQ(Hear(&receiver, kLong), bytes);
 }
 
-TEST_F(Ros2NodeTest, TopicsOfOthersAreListed) {
+TEST_F(Ros2NodeTest, ListsTopicsOfOtherNodes) {
   Ros2Node sender(domain_, {});
   sender.Advertise("/camera/image_raw", ImageMessage::kType, kSensorDataQos);
   sender.Advertise("/odom", OdometryMessage::kType, kDefaultQos);
@@ -202,7 +202,7 @@ TEST_F(Ros2NodeTest, TopicsOfOthersAreListed) {
   EXPECT_TRUE(sender.Topics().size() == 1 && sender.Topics()[0].name == "/own");
 }
 
-TEST_F(Ros2NodeTest, DomainsDoNotHearEachOther) {
+TEST_F(Ros2NodeTest, SeparatesDomains) {
   Ros2Node sender(domain_, {});
   Ros2Node receiver(domain_ + 100, {});
   const std::size_t publisher = sender.Advertise("/tf", TfMessage::kType, kDefaultQos);

@@ -40,7 +40,7 @@ bool TakePart(int domain, const std::string& name, std::size_t count) {
   return false;
 }
 
-TEST(TeamTopic, ThreeProcessesShareTheirMaps) {
+TEST(TeamTopic, ThreeProcessesShareMaps) {
   const int domain = TestDomain();
   for (const char* name : {"b", "c"}) {
     if (fork() == 0) _exit(TakePart(domain, name, 3) ? 0 : 1);
@@ -54,7 +54,7 @@ TEST(TeamTopic, ThreeProcessesShareTheirMaps) {
 }
 
 // The name that docs/team.md gives to other programs.
-TEST(TeamTopic, HasTheNameThatOthersAreTold) {
+TEST(TeamTopic, HasDocumentedName) {
   const int domain = TestDomain();
   const TeamTopic topic(domain, "test", "a");
   const dds_entity_t participant =
@@ -69,7 +69,7 @@ TEST(TeamTopic, HasTheNameThatOthersAreTold) {
   dds_delete(participant);
 }
 
-TEST(TeamTopic, DomainsAreChecked) {
+TEST(TeamTopic, ChecksDomains) {
   EXPECT_THROW(TeamTopic(-1, "test", "a"), InputError);
   EXPECT_THROW(TeamTopic(233, "test", "a"), InputError);
 }

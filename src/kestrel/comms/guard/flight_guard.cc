@@ -13,7 +13,7 @@ constexpr Duration kAskPeriod = std::chrono::milliseconds(300);
 // Shorter than the shortest time after which PX4 takes a stream of set-points for broken off.
 constexpr Duration kPause = std::chrono::milliseconds(250);
 // PX4's Hold and ArduCopter's BRAKE brake more softly than a set-point, and BRAKE lets a UAV that
-// sinks sink on for seconds: they are asked for once the UAV stands, or after so long.
+// sinks sink on for seconds: they are requested once the UAV stands, or after this time.
 constexpr Duration kLongestStop = std::chrono::seconds(3);
 constexpr double kStands_mps = 0.4;
 constexpr Duration kVelocityAge = std::chrono::milliseconds(300);  // an older one is not used
@@ -65,17 +65,17 @@ void FlightGuard::TakeLife(GuardTask task, AutopilotKind kind, Time sent) {
 
 void FlightGuard::TakeMode(bool is_guided, Time now) {
   is_guided_ = is_guided;
-  mode_told_ = now;
+  mode_reported_ = now;
 }
 
 void FlightGuard::TakeVelocity(const Eigen::Vector3d& velocity, Time now) {
   if (!velocity.allFinite()) return;
   velocity_ = velocity;
-  velocity_told_ = now;
+  velocity_reported_ = now;
 }
 
 std::optional<Eigen::Vector3d> FlightGuard::Velocity(Time now) const {
-  if (!velocity_told_ || now - *velocity_told_ > kVelocityAge) return std::nullopt;
+  if (!velocity_reported_ || now - *velocity_reported_ > kVelocityAge) return std::nullopt;
   return velocity_;
 }
 
@@ -120,7 +120,7 @@ GuardAction FlightGuard::Update(Time now) {
 GuardAction FlightGuard::TakeOver(Time now) {
   has_taken_over_ = true;
   since_ = now;
-  mode_told_ = std::max(mode_told_, life_);
+  mode_reported_ = std::max(mode_reported_, life_);
   if (!is_guided_) return HandBack("Kestrel is gone, the mode was left before", now);
   state_ = State::kWorks;
   GuardAction action = Work(now);
@@ -131,14 +131,15 @@ GuardAction FlightGuard::TakeOver(Time now) {
 GuardAction FlightGuard::Work(Time now) {
   if (!is_armed_) return HandBack("Kestrel's guard: the motors are off", now);
   if (!is_guided_) return HandBack("Kestrel's guard has handed back: take over", now);
-  if (now - mode_told_ > kSilence) return HandBack("Kestrel's guard: the autopilot is silent", now);
+  if (now - mode_reported_ > kSilence)
+    return HandBack("Kestrel's guard: the autopilot is silent", now);
   GuardAction action;
   if (task_ == GuardTask::kStop && now >= set_point_due_) {
     set_point_due_ = now + kSetPointPeriod;
     action.stop = Stop(now);
   }
   if (now < mode_due_) return action;
-  action.mode = ModeToAsk(now);
+  action.mode = ModeToRequest(now);
   if (!action.mode) return action;
   mode_due_ = now + kAskPeriod;
   // PX4 reports its mode late, and must not get a set-point once it has left OFFBOARD.
@@ -146,7 +147,7 @@ GuardAction FlightGuard::Work(Time now) {
   return action;
 }
 
-std::optional<FlightMode> FlightGuard::ModeToAsk(Time now) const {
+std::optional<FlightMode> FlightGuard::ModeToRequest(Time now) const {
   if (task_ == GuardTask::kLand) return FlightMode::kLand;
   const auto velocity = Velocity(now);
   const bool is_led = stop_ && !stop_->velocity.isZero();

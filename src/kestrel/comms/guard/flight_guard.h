@@ -16,7 +16,7 @@ namespace kestrel {
 enum class GuardTask : std::uint8_t {
   kNothing,  // guidance does not fly
   kStop,     // guidance flies: the UAV is stopped and handed back
-  kLand,     // it is in the last decimetres or on the deck: the autopilot is asked to land
+  kLand,     // in the last decimetres or on the deck: landing is requested
 };
 
 // Messages that the guard sends now.
@@ -26,8 +26,8 @@ struct GuardAction {
   const char* text = nullptr;      // to the ground station, up to 50 characters
 };
 
-// Decides what the guard does. A state machine without clock or socket: everything that happens is
-// told to it. Neither throws nor allocates. docs/guard.md says what it does in which case.
+// Decides what the guard does. A state machine without clock or socket: every event is
+// passed to it. Neither throws nor allocates. docs/guard.md describes what it does in which case.
 class FlightGuard {
  public:
   // 'patience': after so long without a sign of life the program that flies is taken for dead.
@@ -38,11 +38,11 @@ class FlightGuard {
   void TakeLife(GuardTask task, AutopilotKind kind, Time sent);
   // The program has ended, by itself or not: no more signs of life come.
   void TakeEnd() { has_ended_ = true; }
-  // The autopilot says whether it flies by set-points, and whether its motors run.
+  // The autopilot reports whether it flies by set-points, and whether its motors run.
   void TakeMode(bool is_guided, Time now);
   void TakeArmed(bool is_armed) { is_armed_ = is_armed; }
   void TakeVelocity(const Eigen::Vector3d& velocity, Time now);  // ENU, m/s
-  void TakeRefusal();                                            // of a mode
+  void TakeRefusal();                                            // the autopilot refused a mode
 
   // Call it every 20 ms at most.
   GuardAction Update(Time now);
@@ -59,7 +59,7 @@ class FlightGuard {
   GuardAction Work(Time now);
   SetPoint Stop(Time now);
   std::optional<Eigen::Vector3d> Velocity(Time now) const;
-  std::optional<FlightMode> ModeToAsk(Time now) const;
+  std::optional<FlightMode> ModeToRequest(Time now) const;
   GuardAction HandBack(const char* text, Time now);
 
   Duration patience_;
@@ -69,11 +69,11 @@ class FlightGuard {
   Time life_{};  // the newest sign of life
   bool has_ended_ = false;
   bool has_taken_over_ = false;
-  bool is_guided_ = true;  // it is where guidance flies, until the autopilot says otherwise
+  bool is_guided_ = true;  // true when guidance flies, until the autopilot reports otherwise
   bool is_armed_ = true;
-  Time mode_told_{};
+  Time mode_reported_{};
   Eigen::Vector3d velocity_{0, 0, 0};
-  std::optional<Time> velocity_told_;
+  std::optional<Time> velocity_reported_;
   std::optional<SetPoint> stop_;  // the last one
   bool is_refused_ = false;       // the mode wanted first
   Time since_{};                  // beginning of the state

@@ -57,7 +57,7 @@ class FlightGuardTest : public ::testing::Test {
   FlightGuard guard_{milliseconds(200)};
 };
 
-TEST_F(FlightGuardTest, DoesNothingWhileTheProgramLives) {
+TEST_F(FlightGuardTest, DoesNothingWhileProgramLives) {
   Fly(GuardTask::kStop, AutopilotKind::kArduPilot, 2000);
   EXPECT_EQ(BeSilent(150).set_points, 0);
   Fly(GuardTask::kStop, AutopilotKind::kArduPilot, 200);
@@ -65,7 +65,7 @@ TEST_F(FlightGuardTest, DoesNothingWhileTheProgramLives) {
 }
 
 // Its BRAKE would let it sink on: it is stopped by set-points first.
-TEST_F(FlightGuardTest, StopsAnArduCopterThatIsLeftAlone) {
+TEST_F(FlightGuardTest, StopsAbandonedArduCopter) {
   Fly(GuardTask::kStop, AutopilotKind::kArduPilot, 100);
   velocity_ = {0, -4.2, -1.4};
   EXPECT_EQ(BeSilent(170).set_points, 0);
@@ -80,7 +80,7 @@ TEST_F(FlightGuardTest, StopsAnArduCopterThatIsLeftAlone) {
 }
 
 // A path that follows with ArduCopter's jerk does not swing back: the braking ends as it began.
-TEST_F(FlightGuardTest, BrakesToRestWithinTheJerkOfTheAutopilot) {
+TEST_F(FlightGuardTest, BrakesToRestWithinJerkOfAutopilot) {
   Fly(GuardTask::kStop, AutopilotKind::kArduPilot, 100);
   velocity_ = {0, -4.2, -1.4};
   BeSilent(195);
@@ -100,13 +100,13 @@ TEST_F(FlightGuardTest, BrakesToRestWithinTheJerkOfTheAutopilot) {
   EXPECT_EQ(sent.stop.acceleration.norm(), 0);
 }
 
-TEST_F(FlightGuardTest, AVelocityThatIsOldIsNotBrakedAgainst) {
+TEST_F(FlightGuardTest, DoesNotBrakeAgainstOldVelocity) {
   guard_.TakeVelocity({3, 0, 0}, now_);
   Fly(GuardTask::kStop, AutopilotKind::kArduPilot, 200);
   EXPECT_EQ(BeSilent(1000).stop.acceleration.norm(), 0);
 }
 
-TEST_F(FlightGuardTest, AsksForLoiterWhereBrakeIsRefused) {
+TEST_F(FlightGuardTest, RequestsLoiterWhenBrakeIsRefused) {
   Fly(GuardTask::kStop, AutopilotKind::kArduPilot, 100);
   guard_.TakeEnd();
   velocity_ = {0, 0, 0};
@@ -115,7 +115,7 @@ TEST_F(FlightGuardTest, AsksForLoiterWhereBrakeIsRefused) {
   EXPECT_THAT(BeSilent(300).modes, ::testing::ElementsAre(FlightMode::kPilot));
 }
 
-TEST_F(FlightGuardTest, GivesPx4HoldOnlyOnceItStands) {
+TEST_F(FlightGuardTest, SwitchesPx4ToHoldOnlyOnceItStands) {
   Fly(GuardTask::kStop, AutopilotKind::kPx4, 100);
   guard_.TakeEnd();
   velocity_ = {4.2, 0, 0};
@@ -129,14 +129,14 @@ TEST_F(FlightGuardTest, GivesPx4HoldOnlyOnceItStands) {
   EXPECT_GT(BeSilent(200).set_points, 0);  // there was none
 }
 
-TEST_F(FlightGuardTest, GivesPx4HoldAfterAWhileIfNoSpeedIsTold) {
+TEST_F(FlightGuardTest, SwitchesPx4ToHoldAfterTimeoutWithoutSpeed) {
   Fly(GuardTask::kStop, AutopilotKind::kPx4, 100);
   guard_.TakeEnd();
   EXPECT_THAT(BeSilent(2900).modes, ::testing::IsEmpty());
   EXPECT_THAT(BeSilent(200).modes, ::testing::ElementsAre(FlightMode::kHold));
 }
 
-TEST_F(FlightGuardTest, LandsWhatStandsOnTheDeckWithoutASetPoint) {
+TEST_F(FlightGuardTest, LandsUavOnDeckWithoutSetPoint) {
   for (const AutopilotKind kind : {AutopilotKind::kArduPilot, AutopilotKind::kPx4}) {
     guard_ = FlightGuard(milliseconds(200));
     Fly(GuardTask::kLand, kind, 100);
@@ -149,7 +149,7 @@ TEST_F(FlightGuardTest, LandsWhatStandsOnTheDeckWithoutASetPoint) {
 }
 
 // PX4 goes back to OFFBOARD by itself when set-points come again.
-TEST_F(FlightGuardTest, SendsNothingWhereThePilotHasTakenItBack) {
+TEST_F(FlightGuardTest, SendsNothingAfterPilotTookBack) {
   Fly(GuardTask::kStop, AutopilotKind::kPx4, 100);
   is_guided_ = false;
   const Sent sent = BeSilent(3000);
@@ -159,7 +159,7 @@ TEST_F(FlightGuardTest, SendsNothingWhereThePilotHasTakenItBack) {
   EXPECT_TRUE(guard_.is_done());
 }
 
-TEST_F(FlightGuardTest, SendsNothingOnceTheModeIsLeftWhileItWorks) {
+TEST_F(FlightGuardTest, SendsNothingOnceModeIsLeftDuringItsWork) {
   Fly(GuardTask::kStop, AutopilotKind::kPx4, 100);
   EXPECT_GT(BeSilent(400).set_points, 5);
   is_guided_ = false;
@@ -170,14 +170,14 @@ TEST_F(FlightGuardTest, SendsNothingOnceTheModeIsLeftWhileItWorks) {
   EXPECT_TRUE(guard_.is_done());
 }
 
-TEST_F(FlightGuardTest, ALateProgramDoesNotGetTheUavBack) {
+TEST_F(FlightGuardTest, LateProgramDoesNotRegainUav) {
   Fly(GuardTask::kStop, AutopilotKind::kArduPilot, 100);
   BeSilent(400);
   guard_.TakeLife(GuardTask::kStop, AutopilotKind::kArduPilot, now_);
   EXPECT_GT(BeSilent(100).set_points, 3);
 }
 
-TEST_F(FlightGuardTest, EndsWithAProgramThatDoesNotFly) {
+TEST_F(FlightGuardTest, EndsWithProgramThatDoesNotFly) {
   Fly(GuardTask::kStop, AutopilotKind::kArduPilot, 100);
   Fly(GuardTask::kNothing, AutopilotKind::kArduPilot, 100);
   EXPECT_EQ(BeSilent(1000).text, "");  // it hangs, on the ground or while the pilot flies
@@ -188,7 +188,7 @@ TEST_F(FlightGuardTest, EndsWithAProgramThatDoesNotFly) {
   EXPECT_FALSE(guard_.has_taken_over());
 }
 
-TEST_F(FlightGuardTest, EndsQuietlyAfterALanding) {
+TEST_F(FlightGuardTest, EndsQuietlyAfterLanding) {
   Fly(GuardTask::kLand, AutopilotKind::kPx4, 100);
   guard_.TakeArmed(false);
   EXPECT_EQ(BeSilent(500).text, "");
@@ -198,7 +198,7 @@ TEST_F(FlightGuardTest, EndsQuietlyAfterALanding) {
   EXPECT_FALSE(guard_.has_taken_over());
 }
 
-TEST_F(FlightGuardTest, EndsWhereTheMotorsAreOffOrTheAutopilotIsGone) {
+TEST_F(FlightGuardTest, EndsWhenMotorsAreOffOrAutopilotIsGone) {
   Fly(GuardTask::kLand, AutopilotKind::kArduPilot, 100);
   guard_.TakeEnd();
   BeSilent(500);

@@ -187,8 +187,8 @@ std::size_t GuardLink::Take(const ReceivedDatagram& datagram) {
   return 0;
 }
 
-// The guard's process has ended. Its status says whether it had taken over: its last words may not
-// have fitted into the socket.
+// The guard's process has ended. Its status shows whether it had taken over: its last message may
+// not have fitted into the socket.
 void GuardLink::TakeEnd() {
   has_guard_ = is_connected_ = false;
   int status = 0;

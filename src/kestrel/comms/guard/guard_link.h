@@ -33,7 +33,7 @@ class GuardLink : public Transport {
   // Starts the guard. 'signing_key': file with the key of signed packets; empty: none. Throws
   // InputError as OpenTransport does, and when the guard's program is not there.
   GuardLink(const std::string& url, const GuardOptions& options, const std::string& signing_key);
-  // Says goodbye, and waits for the line to be free unless the guard has taken over.
+  // Sends goodbye, and waits for the line to be free unless the guard has taken over.
   ~GuardLink() override;
   GuardLink(const GuardLink&) = delete;
   GuardLink& operator=(const GuardLink&) = delete;
@@ -41,8 +41,8 @@ class GuardLink : public Transport {
   // A sign of life, by the thread that sends set-points; sent on 50 times a second. 'life.sent_ns'
   // is filled in.
   void TellLife(GuardLife life, Time now);
-  // The program ends: no sign of life comes any more. The guard ends, too, unless the last sign of
-  // life says that guidance flies.
+  // The program ends: no sign of life comes any more. The guard ends, too, unless by the last
+  // sign of life guidance flies.
   void SayGoodbye();
 
   GuardState state() const { return state_; }
@@ -73,7 +73,7 @@ class GuardLink : public Transport {
   std::atomic<bool> is_connected_{false};
   std::atomic<int> open_error_{0};
   bool has_guard_ = true;   // its process lives
-  bool has_ended_ = false;  // goodbye was said
+  bool has_ended_ = false;  // goodbye was sent
   Time life_due_{};
   Time attempt_due_{};  // to open the line
   Time checked_{};

@@ -27,7 +27,7 @@ enum class GuardMessage : std::uint8_t {
   kAnswer = 'A',     // to a sign of life: a byte, whether the line is connected, and its open_error
   kTakenOver = 'T',  // the program was taken for dead
   // Both ways.
-  kBytes = 'M',  // of the line
+  kBytes = 'M',  // bytes of the serial line
 };
 
 // A sign of life: what is to be done if it is the last one, and what is needed for that.

@@ -56,12 +56,12 @@ GuardProcess::GuardProcess(int program, const std::string& url, Duration patienc
 }
 
 void GuardProcess::OpenLine() {
-  for (bool has_told = false; !line_;) {
+  for (bool has_reported = false; !line_;) {
     try {
       line_ = OpenTransport(url_);
     } catch (const InputError&) {
       if (MarkWork(url_.text).is_open()) throw;
-      if (!std::exchange(has_told, true)) SendTo(program_, GuardMessage::kWaits);
+      if (!std::exchange(has_reported, true)) SendTo(program_, GuardMessage::kWaits);
       if (ReceiveFrom(program_, buffer_).is_end) throw;
       std::this_thread::sleep_for(kTick);
     }
@@ -137,7 +137,7 @@ void GuardProcess::TakeLife(const GuardLife& life) {
   SendTo(program_, GuardMessage::kAnswer, answer);
 }
 
-// Reads a packet of the line: what the autopilot says of itself.
+// Reads a packet of the line: the state of the autopilot.
 void GuardProcess::Read(const mavlink::Packet& packet) {
   was_mavlink_ |= packet.is_known;
   if (packet.system != life_.autopilot_system || packet.component != life_.autopilot_component) {

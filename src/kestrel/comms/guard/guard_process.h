@@ -24,8 +24,8 @@ namespace kestrel {
 class GuardProcess {
  public:
   // 'program': the socket to the program that flies. 'signing_key': file with the key; empty:
-  // nothing is signed. Waits while the guard of an earlier flight works on the line, and tells the
-  // program so. Throws InputError when the line or the key cannot be opened.
+  // nothing is signed. Waits while the guard of an earlier flight works on the line, and reports
+  // that to the program. Throws InputError when the line or the key cannot be opened.
   GuardProcess(int program, const std::string& url, Duration patience,
                const std::string& signing_key);
 
@@ -53,7 +53,7 @@ class GuardProcess {
   bool has_program_ = true;
   bool was_mavlink_ = false;
   bool works_ = false;        // it has taken over
-  FileDescriptor work_mark_;  // tells the guard of the next flight that this one still works
+  FileDescriptor work_mark_;  // shows the guard of the next flight that this one still works
   mavlink::PacketParser parser_;
   mavlink::PacketParser::Handler read_;
   mavlink::PacketWriter writer_{0, 0};  // with the ids of the program, once it has taken over

@@ -153,7 +153,7 @@ class GuardProcessTest : public ::testing::TestWithParam<const char*> {
 INSTANTIATE_TEST_SUITE_P(Autopilots, GuardProcessTest, ::testing::Values("ardupilot", "px4"),
                          [](const auto& info) { return std::string(info.param); });
 
-TEST_P(GuardProcessTest, StopsTheUavOfAProgramThatIsKilled) {
+TEST_P(GuardProcessTest, StopsUavWhenProgramIsKilled) {
   Start();
   AwaitDescent();
   program_->Signal(SIGKILL);
@@ -161,14 +161,14 @@ TEST_P(GuardProcessTest, StopsTheUavOfAProgramThatIsKilled) {
   EXPECT_EQ(autopilot_->result().set_points_after_take_back, 0);
 }
 
-TEST_P(GuardProcessTest, StopsTheUavOfAProgramThatCrashes) {
+TEST_P(GuardProcessTest, StopsUavWhenProgramCrashes) {
   Start();
   AwaitDescent();
   program_->Signal(SIGUSR1);
   ExpectStopped(Watch(4));
 }
 
-TEST_P(GuardProcessTest, StopsTheUavOfAProgramThatHangsAndKeepsItFromIt) {
+TEST_P(GuardProcessTest, StopsUavWhenProgramHangsAndKeepsControl) {
   Start();
   AwaitDescent();
   program_->Signal(SIGSTOP);
@@ -179,7 +179,7 @@ TEST_P(GuardProcessTest, StopsTheUavOfAProgramThatHangsAndKeepsItFromIt) {
   EXPECT_EQ(autopilot_->result().set_points_after_take_back, 0);
 }
 
-TEST_P(GuardProcessTest, AProgramThatWakesWhileTheGuardWorksDoesNotDisturbIt) {
+TEST_P(GuardProcessTest, ResumedProgramDoesNotDisturbGuard) {
   Start();
   AwaitDescent();
   program_->Signal(SIGSTOP);
@@ -189,14 +189,14 @@ TEST_P(GuardProcessTest, AProgramThatWakesWhileTheGuardWorksDoesNotDisturbIt) {
   ExpectStopped(Watch(4));
 }
 
-TEST_P(GuardProcessTest, AProgramThatEndsWhileItFliesLeavesNothingFlying) {
+TEST_P(GuardProcessTest, StopsUavWhenProgramEndsInFlight) {
   Start();
   AwaitDescent();
   program_->Signal(SIGINT);
   ExpectStopped(Watch(4));
 }
 
-TEST_P(GuardProcessTest, APilotWhoTookItBackBeforeIsNotDisturbed) {
+TEST_P(GuardProcessTest, DoesNotDisturbPilotWhoTookBack) {
   Start(/*take_back_after_s=*/3);
   AwaitTakeBack();
   const int before = autopilot_->result().set_points_after_take_back;
@@ -207,7 +207,7 @@ TEST_P(GuardProcessTest, APilotWhoTookItBackBeforeIsNotDisturbed) {
   EXPECT_TRUE(IsIn(FlightMode::kPilot));
 }
 
-TEST_P(GuardProcessTest, EndsWithAProgramThatEndsInOrderAndFreesTheLine) {
+TEST_P(GuardProcessTest, EndsWithProgramAndFreesLine) {
   Start(/*take_back_after_s=*/3);
   AwaitTakeBack();
   const pid_t guard = program_->Guard();
@@ -221,7 +221,7 @@ TEST_P(GuardProcessTest, EndsWithAProgramThatEndsInOrderAndFreesTheLine) {
   EXPECT_EQ(next.state(), GuardState::kWatches);
 }
 
-TEST_P(GuardProcessTest, TheFlightGoesOnWithoutAGuardThatIsKilled) {
+TEST_P(GuardProcessTest, FlightContinuesWhenGuardIsKilled) {
   Start();
   AwaitDescent();
   kill(program_->Guard(), SIGKILL);
@@ -230,7 +230,7 @@ TEST_P(GuardProcessTest, TheFlightGoesOnWithoutAGuardThatIsKilled) {
   EXPECT_GT(Speed(), 3.5);  // it still gets the set-points
 }
 
-TEST_P(GuardProcessTest, AGuardThatHangsIsKilled) {
+TEST_P(GuardProcessTest, ReplacesHangingGuard) {
   Start();
   AwaitDescent();
   const pid_t guard = program_->Guard();
@@ -241,7 +241,7 @@ TEST_P(GuardProcessTest, AGuardThatHangsIsKilled) {
   EXPECT_GT(Speed(), 3.5);
 }
 
-TEST_P(GuardProcessTest, SignsAsTheProgramDoes) {
+TEST_P(GuardProcessTest, SignsLikeProgram) {
   const std::string key = folder_.Write("key", std::string(64, 'a'));
   std::filesystem::permissions(key, std::filesystem::perms::owner_read);
   Start(-1, key);
@@ -250,7 +250,7 @@ TEST_P(GuardProcessTest, SignsAsTheProgramDoes) {
   ExpectStopped(Watch(4));
 }
 
-TEST_P(GuardProcessTest, TheNextFlightWaitsForAGuardAtWork) {
+TEST_P(GuardProcessTest, NextFlightWaitsForWorkingGuard) {
   Start();
   AwaitDescent();
   program_->Signal(SIGKILL);
@@ -265,7 +265,7 @@ TEST_P(GuardProcessTest, TheNextFlightWaitsForAGuardAtWork) {
   EXPECT_TRUE(IsIn(FlightMode::kHold));
 }
 
-TEST(GuardLife, IsReadOnlyWhereItIsOne) {
+TEST(GuardLife, RejectsMalformedLifeMessage) {
   GuardLife life;
   life.task = GuardTask::kLand;
   std::array<std::uint8_t, sizeof(life)> bytes{};
@@ -276,7 +276,7 @@ TEST(GuardLife, IsReadOnlyWhereItIsOne) {
   EXPECT_FALSE(ReadLife(bytes));
 }
 
-TEST(GuardLink, FaultsAreNamed) {
+TEST(GuardLink, ReportsFaults) {
   const auto error_of = [](const std::string& url, const std::string& program) {
     try {
       const GuardLink link(url, {.program = program}, "");

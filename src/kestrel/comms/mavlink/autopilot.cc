@@ -20,7 +20,7 @@ constexpr double kStatusRate_hz = 2;
 constexpr double kTruePoseRate_hz = 100;
 // After so long without a heartbeat the autopilot is away.
 constexpr double kAwayAfter_s = 3;
-// An older position does not tell where the vehicle is now.
+// An older position does not show where the vehicle is now.
 constexpr double kPositionAge_s = 0.5;
 
 using std::chrono::seconds;
@@ -75,7 +75,7 @@ void Autopilot::Tell(AutopilotEventKind kind, std::string text) {
 }
 
 template <class Text>
-void Autopilot::TellOnce(AutopilotEventKind kind, const Text& make_text) {
+void Autopilot::ReportOnce(AutopilotEventKind kind, const Text& make_text) {
   const std::uint32_t bit = 1u << static_cast<unsigned>(kind);
   if ((told_ & bit) != 0) return;
   told_ |= bit;
@@ -89,7 +89,7 @@ void Autopilot::Handle(const mavlink::Packet& packet, Time received) {
   if (packet.system == connection_->system() && packet.component == connection_->component() &&
       !(packet.system == system_ && packet.component == component_)) {
     ++counters_.own_ids;
-    TellOnce(AutopilotEventKind::kIdClash, [&] {
+    ReportOnce(AutopilotEventKind::kIdClash, [&] {
       return fmt::format(
           "somebody else sends as system {} component {}, or the link sends our own messages back: "
           "they are ignored",
@@ -99,7 +99,7 @@ void Autopilot::Handle(const mavlink::Packet& packet, Time received) {
   }
   if (packet.id == mavlink::LandingTarget::kId) {
     ++counters_.target_echoes;
-    TellOnce(AutopilotEventKind::kTargetEcho, [&] {
+    ReportOnce(AutopilotEventKind::kTargetEcho, [&] {
       return fmt::format("system {} component {} sends landing targets too: they are ignored",
                          packet.system, packet.component);
     });
@@ -120,7 +120,7 @@ void Autopilot::HandleHeartbeat(const mavlink::Packet& packet, const mavlink::He
   if (options_.system_id != 0 && packet.system != options_.system_id) return;
   if (system_ == 0) Adopt(packet, heartbeat);
   if (packet.system != system_ || packet.component != component_) {
-    TellOnce(AutopilotEventKind::kOtherAutopilot, [&] {
+    ReportOnce(AutopilotEventKind::kOtherAutopilot, [&] {
       return fmt::format(
           "another autopilot, system {} component {}, is on the link: only system {} component {} "
           "is listened to",
@@ -130,7 +130,7 @@ void Autopilot::HandleHeartbeat(const mavlink::Packet& packet, const mavlink::He
   }
   const mavlink::Heartbeat before = std::exchange(heartbeat_, heartbeat);
   heard_ = mode_told_ = received;
-  if (is_here_) return TellChange(before);
+  if (is_here_) return ReportChange(before);
   is_here_ = true;
   const bool is_first = kind_ == AutopilotKind::kUnknown;
   kind_ = AutopilotKindOf(heartbeat.autopilot);
@@ -143,7 +143,7 @@ void Autopilot::HandleHeartbeat(const mavlink::Packet& packet, const mavlink::He
   }
 }
 
-void Autopilot::TellChange(const mavlink::Heartbeat& before) {
+void Autopilot::ReportChange(const mavlink::Heartbeat& before) {
   if (heartbeat_.custom_mode != before.custom_mode && heartbeat_.custom_mode != requested_mode_) {
     commands_.Drop(mavlink::kCommandDoSetMode);
   }
@@ -162,7 +162,7 @@ void Autopilot::Adopt(const mavlink::Packet& packet, const mavlink::Heartbeat& h
   heartbeat_ = heartbeat;
   if (connection_->takes_system_of_autopilot()) connection_->SetSystem(system_);
   if (connection_->system() == system_ && connection_->component() == component_) {
-    TellOnce(AutopilotEventKind::kOwnIdIsAutopilots, [&] {
+    ReportOnce(AutopilotEventKind::kOwnIdIsAutopilots, [&] {
       return fmt::format(
           "system {} component {} is the autopilot itself, which ignores whoever sends as it: "
           "expected another component_id, as 191",
@@ -180,7 +180,7 @@ void Autopilot::HandleFromAutopilot(const mavlink::Packet& packet, Time received
     const mavlink::Heartbeat before = heartbeat_;
     heartbeat_.custom_mode = mode->custom_mode;
     mode_told_ = received;
-    TellChange(before);
+    ReportChange(before);
   } else if (const auto timesync = packet.As<mavlink::Timesync>()) {
     HandleTimesync(*timesync, received);
   } else if (const auto ack = packet.As<mavlink::CommandAck>()) {
@@ -198,20 +198,20 @@ void Autopilot::HandleFromAutopilot(const mavlink::Packet& packet, Time received
 bool Autopilot::HandlePose(const mavlink::Packet& packet, Time received) {
   PoseSample pose;
   if (const auto quaternion = packet.As<mavlink::AttitudeQuaternion>()) {
-    TellPose(poses_.Handle(*quaternion, received, &clock_, &pose), "attitude", pose);
+    ReportPose(poses_.Handle(*quaternion, received, &clock_, &pose), "attitude", pose);
   } else if (const auto attitude = packet.As<mavlink::Attitude>()) {
-    TellPose(poses_.Handle(*attitude, received, &clock_, &pose), "attitude", pose);
+    ReportPose(poses_.Handle(*attitude, received, &clock_, &pose), "attitude", pose);
   } else if (const auto position = packet.As<mavlink::LocalPositionNed>()) {
     const PoseFate fate = poses_.Handle(*position);
     // A position alone makes no pose.
-    TellPose(fate == PoseFate::kUsed ? PoseFate::kNone : fate, "position", pose);
+    ReportPose(fate == PoseFate::kUsed ? PoseFate::kNone : fate, "position", pose);
   } else {
     return false;
   }
   return true;
 }
 
-void Autopilot::TellPose(PoseFate fate, const char* what, const PoseSample& pose) {
+void Autopilot::ReportPose(PoseFate fate, const char* what, const PoseSample& pose) {
   switch (fate) {
     case PoseFate::kUsed:
       newest_pose_ = pose.time;
@@ -220,10 +220,10 @@ void Autopilot::TellPose(PoseFate fate, const char* what, const PoseSample& pose
     case PoseFate::kNone:
       return;
     case PoseFate::kNotFinite:
-      return TellNotFinite(what);
+      return ReportNotFinite(what);
     case PoseFate::kBackwards:
       ++counters_.backwards;
-      return TellOnce(AutopilotEventKind::kTimeBackwards, [&] {
+      return ReportOnce(AutopilotEventKind::kTimeBackwards, [&] {
         return fmt::format(
             "a message of the autopilot is {:.3f} s older than the one before: ignored",
             poses_.back_s());
@@ -239,7 +239,7 @@ void Autopilot::TellPose(PoseFate fate, const char* what, const PoseSample& pose
       break;
   }
   if (!clock_.is_one_way()) return;
-  TellOnce(AutopilotEventKind::kNoTimeSync, [] {
+  ReportOnce(AutopilotEventKind::kNoTimeSync, [] {
     return std::string(
         "the autopilot does not answer TIMESYNC: its clock is known by the delay of the line only");
   });
@@ -256,7 +256,7 @@ bool Autopilot::HandleTruePose(const mavlink::Packet& packet, Time received) {
                             ? TruePoseOf(*sim_state, kind_, *origin, clock_.sync(), received, &pose)
                             : TruePoseOf(*hil_state, kind_, *origin, clock_.sync(), &pose);
   if (sim_state) pose.time = BetweenAttitudes(pose.time);
-  if (fate == PoseFate::kNotFinite) TellNotFinite("true pose");
+  if (fate == PoseFate::kNotFinite) ReportNotFinite("true pose");
   if (fate == PoseFate::kUsed) listener_.true_pose(pose);
   return true;
 }
@@ -311,7 +311,7 @@ bool Autopilot::IsForThis(std::uint8_t target_system, std::uint8_t target_compon
 
 void Autopilot::HandleAck(const mavlink::CommandAck& message) {
   if (!IsForThis(message.target_system, message.target_component)) return;
-  if (const auto ending = commands_.Handle(message)) TellEnding(*ending);
+  if (const auto ending = commands_.Handle(message)) ReportEnding(*ending);
 }
 
 void Autopilot::HandleTimesync(const mavlink::Timesync& message, Time received) {
@@ -333,8 +333,8 @@ void Autopilot::HandleTimesync(const mavlink::Timesync& message, Time received) 
 void Autopilot::Restart() {
   ++restarts_;
   clock_.Reset();
-  streams_.AskAgain();
-  parameters_.AskAgain();
+  streams_.RequestAgain();
+  parameters_.RequestAgain();
   poses_.Reset();
   newest_pose_.reset();
   status_.Reset();
@@ -345,10 +345,10 @@ void Autopilot::Restart() {
        "the autopilot started again: its clock is learned and its streams are asked for anew");
 }
 
-void Autopilot::TellNotFinite(const char* what) {
+void Autopilot::ReportNotFinite(const char* what) {
   ++counters_.not_finite;
-  TellOnce(AutopilotEventKind::kNotFinite,
-           [&] { return fmt::format("the autopilot's {} is not a number: ignored", what); });
+  ReportOnce(AutopilotEventKind::kNotFinite,
+             [&] { return fmt::format("the autopilot's {} is not a number: ignored", what); });
 }
 
 void Autopilot::Tick(Time now) {
@@ -381,7 +381,7 @@ void Autopilot::SendHeartbeat(Time now) {
 }
 
 void Autopilot::WantStreams() {
-  streams_.AskAgain();
+  streams_.RequestAgain();
   streams_.Want(mavlink::AttitudeQuaternion::kId, options_.attitude_rate_hz);
   streams_.Want(mavlink::LocalPositionNed::kId, options_.position_rate_hz);
   streams_.Want(mavlink::ExtendedSysState::kId, kLandedRate_hz);
@@ -465,10 +465,10 @@ bool Autopilot::is_request_pending() const {
 void Autopilot::SendCommands(Time now) {
   std::optional<CommandRequests::Ending> ended;
   if (const auto command = commands_.Next(now, &ended)) connection_->Send(*command);
-  if (ended) TellEnding(*ended);
+  if (ended) ReportEnding(*ended);
 }
 
-void Autopilot::TellEnding(const CommandRequests::Ending& ending) {
+void Autopilot::ReportEnding(const CommandRequests::Ending& ending) {
   const bool is_mode = ending.command.command == mavlink::kCommandDoSetMode;
   const std::string what =
       is_mode ? "mode " + ModeName(kind_, requested_mode_) : std::string("disarming");
@@ -504,22 +504,22 @@ void Autopilot::SendStreamRequest(const StreamRequests::Request& request) {
   if (!is_attitude && request.id != mavlink::LocalPositionNed::kId) return;
   if (request.is_unanswered) SendOldStreamRequest(is_attitude, request.rate_hz);
   constexpr int kManyRequests = 6;
-  if (request.requests >= kManyRequests) TellSlowStream(request);
+  if (request.requests >= kManyRequests) ReportSlowStream(request);
 }
 
 // An autopilot without a position sends none, however fast the line is: ArduCopter for 20 s after
 // its estimator has an origin.
-void Autopilot::TellSlowStream(const StreamRequests::Request& request) {
+void Autopilot::ReportSlowStream(const StreamRequests::Request& request) {
   const bool is_attitude = request.id == mavlink::AttitudeQuaternion::kId;
   if (!is_attitude && request.is_unanswered) {
-    return TellOnce(AutopilotEventKind::kNoPosition, [&] {
+    return ReportOnce(AutopilotEventKind::kNoPosition, [&] {
       return fmt::format(
           "the autopilot has no position yet{}: it needs GNSS or another source of position, and "
           "some time",
           origin() ? "" : ", its estimator has no origin");
     });
   }
-  TellOnce(AutopilotEventKind::kSlowStream, [&] {
+  ReportOnce(AutopilotEventKind::kSlowStream, [&] {
     return fmt::format(
         "the autopilot tells its {} {:.0f} times a second, asked {} times for {:.0f}: is the line "
         "too slow, or another ground station asking for less?",

@@ -77,7 +77,7 @@ struct AutopilotEvent {
 
 // Counts of received packets that were not used, by reason.
 struct AutopilotCounters {
-  std::uint64_t lost_packets = 0;  // of the autopilot, by its sequence numbers
+  std::uint64_t lost_packets = 0;  // packets of the autopilot missing by its sequence numbers
   std::uint64_t other_systems = 0;
   std::uint64_t own_ids = 0;
   std::uint64_t target_echoes = 0;
@@ -138,7 +138,7 @@ class Autopilot {
   const AutopilotStatus& status() const { return status_; }
   std::optional<AutopilotVersion> version() const { return status_.version(); }
   std::optional<AutopilotRange> range() const { return status_.range(); }
-  std::optional<GlobalPosition> origin() const { return status_.origin(); }  // of the local frame
+  std::optional<GlobalPosition> origin() const { return status_.origin(); }  // local frame
   std::optional<GlobalPosition> home() const { return status_.home(); }
   std::optional<AutopilotBattery> battery() const { return status_.battery(); }
   // True when the autopilot trusts its own attitude, velocity and position; nothing when it does
@@ -159,7 +159,7 @@ class Autopilot {
 
   // Requests this mode until an answer comes, which an event reports; the reported mode shows
   // whether it was entered. Stops at once when the autopilot enters another mode: somebody else
-  // wants that one. False: an autopilot of this kind cannot be asked.
+  // wants that one. False: this kind of autopilot takes no such request.
   bool RequestMode(FlightMode mode);
   // Stops the motors at once, also in flight.
   void DisarmByForce();
@@ -180,36 +180,36 @@ class Autopilot {
   void HandleHeartbeat(const mavlink::Packet& packet, const mavlink::Heartbeat& heartbeat,
                        Time received);
   void Adopt(const mavlink::Packet& packet, const mavlink::Heartbeat& heartbeat);
-  void TellChange(const mavlink::Heartbeat& before);
+  void ReportChange(const mavlink::Heartbeat& before);
   void HandleFromAutopilot(const mavlink::Packet& packet, Time received);
   bool HandlePose(const mavlink::Packet& packet, Time received);
   bool HandleTruePose(const mavlink::Packet& packet, Time received);
-  void TellPose(PoseFate fate, const char* what, const PoseSample& pose);
+  void ReportPose(PoseFate fate, const char* what, const PoseSample& pose);
   Time BetweenAttitudes(Time guess) const;
   void HandleStatus(const mavlink::Packet& packet, Time received);
   void HandleTimesync(const mavlink::Timesync& message, Time received);
   void HandleAck(const mavlink::CommandAck& message);
   void CountLost(const mavlink::Packet& packet);
   void WatchBoot(const mavlink::Packet& packet, Time received);
-  void TellNotFinite(const char* what);
+  void ReportNotFinite(const char* what);
   void Restart();
   void CheckPresence(Time now);
   void SendHeartbeat(Time now);
   void SendRequests(Time now);
   void WantStreams();
   void WantTimesync();
-  void TellSlowStream(const StreamRequests::Request& request);
+  void ReportSlowStream(const StreamRequests::Request& request);
   void SendStreamRequest(const StreamRequests::Request& request);
   void SendOldStreamRequest(bool is_attitude, double rate_hz);
   void SendInterval(std::uint32_t id, double rate_hz);
   mavlink::CommandLong MakeCommand(std::uint16_t command, float param1, float param2) const;
   void SendCommands(Time now);
-  void TellEnding(const CommandRequests::Ending& ending);
+  void ReportEnding(const CommandRequests::Ending& ending);
   void SendParameterRequests(Time now);
   void SendQuestions(Time now);
   void Tell(AutopilotEventKind kind, std::string text);
   template <class Text>
-  void TellOnce(AutopilotEventKind kind, const Text& make_text);
+  void ReportOnce(AutopilotEventKind kind, const Text& make_text);
 
   AutopilotOptions options_;
   Connection* connection_;

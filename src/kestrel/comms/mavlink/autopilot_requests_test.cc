@@ -41,7 +41,7 @@ mavlink::ParamValue ValueOf(const char* name, float value, std::uint8_t type) {
   return message;
 }
 
-TEST_F(AutopilotTest, AParameterHasTheValueThatWasTyped) {
+TEST_F(AutopilotTest, ParameterHasTypedValue) {
   for (const double typed : {0.3, 4.2, 0.05, 1e6, -12.5}) {
     const auto value = ValueOf("GUID_TIMEOUT", static_cast<float>(typed), 9);
     EXPECT_EQ(ParameterValue(AutopilotKind::kArduPilot, value), typed);
@@ -50,7 +50,7 @@ TEST_F(AutopilotTest, AParameterHasTheValueThatWasTyped) {
   EXPECT_TRUE(std::isnan(ParameterValue(AutopilotKind::kArduPilot, nan)));
 }
 
-TEST_F(AutopilotTest, ReadsAParameterByAllItsNames) {
+TEST_F(AutopilotTest, ReadsParameterByAllItsNames) {
   Start();
   autopilot_->parameters().Want("WP_SPD");
   autopilot_->parameters().Want("GUID_TIMEOUT");
@@ -62,7 +62,7 @@ TEST_F(AutopilotTest, ReadsAParameterByAllItsNames) {
   EXPECT_FALSE(autopilot_->parameters().Find("GUID_TIMEOUT"));
 }
 
-TEST_F(AutopilotTest, WritesAParameterUntilItIsToldBack) {
+TEST_F(AutopilotTest, WritesParameterUntilAcknowledged) {
   Start();
   Pass(1);
   autopilot_->SetParameter("WP_SPD", 8);
@@ -80,7 +80,7 @@ TEST_F(AutopilotTest, WritesAParameterUntilItIsToldBack) {
   EXPECT_EQ(autopilot_->parameters().Find("WP_SPD"), 8);
 }
 
-TEST_F(AutopilotTest, TellsWhichParametersWereNotWritten) {
+TEST_F(AutopilotTest, ReportsUnwrittenParameters) {
   kind_ = mavlink::kAutopilotPx4;
   Start();
   Pass(1);
@@ -104,7 +104,7 @@ TEST_F(AutopilotTest, TellsWhichParametersWereNotWritten) {
   EXPECT_TRUE(autopilot_->parameter_writes().is_done());
 }
 
-TEST_F(AutopilotTest, AsksForAModeUntilItIsAnswered) {
+TEST_F(AutopilotTest, RequestsModeUntilAnswered) {
   for (const bool is_px4 : {false, true}) {
     kind_ = is_px4 ? mavlink::kAutopilotPx4 : mavlink::kAutopilotArduPilot;
     mode_ = is_px4 ? 393216 : 4;
@@ -132,7 +132,7 @@ TEST_F(AutopilotTest, AsksForAModeUntilItIsAnswered) {
 }
 
 // Otherwise a pilot who takes over would lose the mode again.
-TEST_F(AutopilotTest, DoesNotAskForAModeAnyMoreWhenThePilotTookAnother) {
+TEST_F(AutopilotTest, StopsRequestingModeWhenPilotChoosesAnother) {
   Start();
   Pass(1);
   autopilot_->RequestMode(FlightMode::kLand);
@@ -146,7 +146,7 @@ TEST_F(AutopilotTest, DoesNotAskForAModeAnyMoreWhenThePilotTookAnother) {
   EXPECT_TRUE(autopilot_->is_request_pending());
 }
 
-TEST_F(AutopilotTest, AsksSeldomForWhatItNeverGets) {
+TEST_F(AutopilotTest, RequestsMissingStreamsLessOften) {
   Start();
   const auto asked = [&](double seconds) {
     intervals_us_.clear();

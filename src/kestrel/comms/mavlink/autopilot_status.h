@@ -70,7 +70,7 @@ class AutopilotStatus {
   const std::optional<AutopilotVersion>& version() const { return version_; }
   LandedState landed() const { return landed_; }
   const std::optional<AutopilotRange>& range() const { return range_; }
-  const std::optional<GlobalPosition>& origin() const { return origin_; }  // of the local frame
+  const std::optional<GlobalPosition>& origin() const { return origin_; }  // local frame
   const std::optional<GlobalPosition>& home() const { return home_; }
   const std::optional<AutopilotBattery>& battery() const { return battery_; }
   const std::optional<AutopilotGnss>& gnss() const { return gnss_; }

@@ -30,7 +30,7 @@ TEST_F(AutopilotTest, IsFoundByItsHeartbeat) {
   EXPECT_EQ(TextOfEvent(AutopilotEventKind::kModeChanged), "mode LAND, armed");
 }
 
-TEST_F(AutopilotTest, SendsAHeartbeatPerSecondFromTheBeginning) {
+TEST_F(AutopilotTest, SendsHeartbeatPerSecondFromStart) {
   Start();
   Pass(10, false);
   EXPECT_EQ(heard_[0], 10);
@@ -40,14 +40,14 @@ TEST_F(AutopilotTest, SendsAHeartbeatPerSecondFromTheBeginning) {
   EXPECT_EQ(last_heard_[0].component, 191);
 }
 
-TEST_F(AutopilotTest, TakesTheSystemOfTheAutopilot) {
+TEST_F(AutopilotTest, TakesSystemIdOfAutopilot) {
   Start();
   Say(mavlink::Heartbeat{2, 3, 0, 0, 4, 3}, 42, 1);
   EXPECT_EQ(autopilot_->system(), 42);
   EXPECT_EQ(connection_->system(), 42);
 }
 
-TEST_F(AutopilotTest, TellsPosesInKestrelsFrames) {
+TEST_F(AutopilotTest, ReportsPosesInKestrelFrames) {
   Start();
   Pass(1);
   SayPose();
@@ -66,7 +66,7 @@ TEST_F(AutopilotTest, TellsPosesInKestrelsFrames) {
   EXPECT_NEAR(ToSeconds(pose.time - now_), 0.1, 0.002);
 }
 
-TEST_F(AutopilotTest, UsesEulerAnglesWhereThereAreNoQuaternions) {
+TEST_F(AutopilotTest, UsesEulerAnglesWithoutQuaternions) {
   Start();
   Pass(1);
   SayPose();
@@ -90,7 +90,7 @@ TEST_F(AutopilotTest, UsesEulerAnglesWhereThereAreNoQuaternions) {
   EXPECT_EQ(autopilot_->counters().without_position, 1u);
 }
 
-TEST_F(AutopilotTest, AsksForItsStreamsAndAgainWhenTheyAreTakenAway) {
+TEST_F(AutopilotTest, RequestsStreamsAndRenewsLostOnes) {
   Start();
   Pass(1);
   EXPECT_EQ(intervals_us_[mavlink::AttitudeQuaternion::kId], 10000);
@@ -110,7 +110,7 @@ TEST_F(AutopilotTest, AsksForItsStreamsAndAgainWhenTheyAreTakenAway) {
   EXPECT_EQ(intervals_us_.count(mavlink::AttitudeQuaternion::kId), 1u);
 }
 
-TEST_F(AutopilotTest, AsksOlderAutopilotsInTheOldWay) {
+TEST_F(AutopilotTest, RequestsStreamsOfOlderAutopilotsByOldMessage) {
   Start();
   Pass(5);
   EXPECT_GT(heard_[mavlink::RequestDataStream::kId], 0);
@@ -119,7 +119,7 @@ TEST_F(AutopilotTest, AsksOlderAutopilotsInTheOldWay) {
   EXPECT_EQ(EventsOf(AutopilotEventKind::kSlowStream), 1);
 }
 
-TEST_F(AutopilotTest, SaysThatThereIsNoPositionYet) {
+TEST_F(AutopilotTest, ReportsMissingPosition) {
   Start();
   for (int i = 0; i < 2500; ++i) {
     Pass(0.01, i % 100 == 0);
@@ -138,7 +138,7 @@ TEST_F(AutopilotTest, SaysThatThereIsNoPositionYet) {
 }
 
 // The position begins between two of the requests, which come every 5 s by then.
-TEST_F(AutopilotTest, APositionThatBeginsIsNotSlow) {
+TEST_F(AutopilotTest, DoesNotReportNewPositionStreamAsSlow) {
   for (int tenths = 0; tenths < 50; tenths += 3) {
     Start();
     events_.clear();
@@ -156,7 +156,7 @@ TEST_F(AutopilotTest, APositionThatBeginsIsNotSlow) {
   }
 }
 
-TEST_F(AutopilotTest, SaysWhatAPilotHasToDoInAFailsafe) {
+TEST_F(AutopilotTest, AdvisesPilotInFailsafe) {
   Start();
   Say(mavlink::Heartbeat{mavlink::kTypeQuadrotor, kind_, 0, mode_, mavlink::kStateCritical, 3});
   EXPECT_THAT(TextOfEvent(AutopilotEventKind::kFailsafe), HasSubstr("GUIDED"));
@@ -167,7 +167,7 @@ TEST_F(AutopilotTest, SaysWhatAPilotHasToDoInAFailsafe) {
   EXPECT_THAT(FailsafeInWords(AutopilotKind::kPx4, 12), HasSubstr("(mode #12)"));
 }
 
-TEST_F(AutopilotTest, HurriesPx4ToTrustItsStamps) {
+TEST_F(AutopilotTest, SynchronisesPx4ClockFast) {
   kind_ = mavlink::kAutopilotPx4;
   Start();
   Pass(1);
@@ -183,7 +183,7 @@ TEST_F(AutopilotTest, HurriesPx4ToTrustItsStamps) {
   EXPECT_EQ(intervals_us_[mavlink::Timesync::kId], 100000);
 }
 
-TEST_F(AutopilotTest, AnswersTimesyncOnTheAutopilotsClock) {
+TEST_F(AutopilotTest, AnswersTimesyncByAutopilotClock) {
   Start();
   Pass(2);
   mavlink::Timesync question;
@@ -195,7 +195,7 @@ TEST_F(AutopilotTest, AnswersTimesyncOnTheAutopilotsClock) {
   EXPECT_EQ(answer->target_system, 1);
 }
 
-TEST_F(AutopilotTest, KnowsTheClockRoughlyWithoutTimesync) {
+TEST_F(AutopilotTest, EstimatesClockRoughlyWithoutTimesync) {
   answers_timesync_ = false;
   Start();
   for (int i = 0; i < 800; ++i) {
@@ -206,7 +206,7 @@ TEST_F(AutopilotTest, KnowsTheClockRoughlyWithoutTimesync) {
   EXPECT_EQ(EventsOf(AutopilotEventKind::kNoTimeSync), 1);
 }
 
-TEST_F(AutopilotTest, NoticesThatItStartedAgain) {
+TEST_F(AutopilotTest, DetectsReboot) {
   Start();
   Pass(3);
   SayPose();
@@ -223,7 +223,7 @@ TEST_F(AutopilotTest, NoticesThatItStartedAgain) {
   EXPECT_EQ(autopilot_->reboots(), 1);
 }
 
-TEST_F(AutopilotTest, AClockThatIsSetBackIsNoReboot) {
+TEST_F(AutopilotTest, ClockSetBackIsNoReboot) {
   Start();
   Pass(3);
   SayPose();
@@ -236,7 +236,7 @@ TEST_F(AutopilotTest, AClockThatIsSetBackIsNoReboot) {
   EXPECT_EQ(autopilot_->reboots(), 0);
 }
 
-TEST_F(AutopilotTest, NoticesByItsStampsThatItStartedAgain) {
+TEST_F(AutopilotTest, DetectsRebootByTimestamps) {
   Start();
   Pass(3);
   SayPose();
@@ -250,7 +250,7 @@ TEST_F(AutopilotTest, NoticesByItsStampsThatItStartedAgain) {
   EXPECT_EQ(autopilot_->reboots(), 1);
 }
 
-TEST_F(AutopilotTest, IgnoresAMessageFromThePast) {
+TEST_F(AutopilotTest, IgnoresOldMessage) {
   Start();
   Pass(1);
   SayPose();
@@ -265,7 +265,7 @@ TEST_F(AutopilotTest, IgnoresAMessageFromThePast) {
   EXPECT_EQ(autopilot_->restarts(), 0);
 }
 
-TEST_F(AutopilotTest, IgnoresWhatIsNotFinite) {
+TEST_F(AutopilotTest, IgnoresNonFiniteValues) {
   Start();
   Pass(1);
   SayPose();
@@ -282,7 +282,7 @@ TEST_F(AutopilotTest, IgnoresWhatIsNotFinite) {
   EXPECT_EQ(EventsOf(AutopilotEventKind::kNotFinite), 1);
 }
 
-TEST_F(AutopilotTest, IgnoresOthers) {
+TEST_F(AutopilotTest, IgnoresOtherSystems) {
   Start();
   Pass(1);
   Say(mavlink::Heartbeat{2, 12, 0, 0, 4, 3}, 7, 1);
@@ -299,7 +299,7 @@ TEST_F(AutopilotTest, IgnoresOthers) {
   EXPECT_EQ(EventsOf(AutopilotEventKind::kTargetEcho), 1);
 }
 
-TEST_F(AutopilotTest, TellsThatSomebodyElseHasItsIds) {
+TEST_F(AutopilotTest, ReportsIdClash) {
   Start();
   Pass(1);
   Say(mavlink::Heartbeat{18, 8, 0, 0, 4, 3}, 1, 191);
@@ -307,7 +307,7 @@ TEST_F(AutopilotTest, TellsThatSomebodyElseHasItsIds) {
               HasSubstr("somebody else sends as system 1 component 191"));
 }
 
-TEST_F(AutopilotTest, TellsThatItsOwnIdsAreTheAutopilots) {
+TEST_F(AutopilotTest, ReportsOwnIdsEqualToAutopilot) {
   ConnectionOptions options;
   options.component_id = 1;
   Start({}, options);
@@ -316,7 +316,7 @@ TEST_F(AutopilotTest, TellsThatItsOwnIdsAreTheAutopilots) {
               HasSubstr("system 1 component 1 is the autopilot itself"));
 }
 
-TEST_F(AutopilotTest, TellsThatItIsAwayAndBack) {
+TEST_F(AutopilotTest, ReportsLossAndReturnOfAutopilot) {
   Start();
   Pass(1);
   Pass(4, false);
@@ -327,7 +327,7 @@ TEST_F(AutopilotTest, TellsThatItIsAwayAndBack) {
   EXPECT_EQ(EventsOf(AutopilotEventKind::kBack), 1);
 }
 
-TEST_F(AutopilotTest, KnowsHowItsVehicleIs) {
+TEST_F(AutopilotTest, ReportsVehicleState) {
   Start();
   EXPECT_FALSE(autopilot_->is_position_good(now_));
   Say(mavlink::Heartbeat{mavlink::kTypeSurfaceBoat, mavlink::kAutopilotArduPilot, 0, 0, 4, 3});
@@ -364,7 +364,7 @@ TEST_F(AutopilotTest, KnowsHowItsVehicleIs) {
   EXPECT_EQ(EventsOf(AutopilotEventKind::kFailsafe), 1);
 }
 
-TEST_F(AutopilotTest, KnowsWhetherItsEstimateIsGood) {
+TEST_F(AutopilotTest, ReportsQualityOfEstimate) {
   Start();
   Pass(1);
   mavlink::EkfStatusReport report;
@@ -384,7 +384,7 @@ TEST_F(AutopilotTest, KnowsWhetherItsEstimateIsGood) {
   EXPECT_EQ(autopilot_->is_position_good(now_), true);
 }
 
-TEST_F(AutopilotTest, KnowsVersionLandedStateRangeAndTexts) {
+TEST_F(AutopilotTest, ReportsVersionLandedStateRangeAndTexts) {
   Start();
   Pass(1);
   mavlink::AutopilotVersion version;
@@ -402,7 +402,7 @@ TEST_F(AutopilotTest, KnowsVersionLandedStateRangeAndTexts) {
   EXPECT_THAT(texts_, testing::ElementsAre("PrecLand: Target Found"));
 }
 
-TEST_F(AutopilotTest, TellsTheTruePoseOfASimulation) {
+TEST_F(AutopilotTest, ReportsTruePoseOfSimulation) {
   AutopilotOptions options;
   options.wants_true_pose = true;
   Start(options);
@@ -423,8 +423,9 @@ TEST_F(AutopilotTest, TellsTheTruePoseOfASimulation) {
   EXPECT_NEAR(ToSeconds(now_ - true_poses_[0].time), 0.002, 0.001);
 }
 
-// SIM_STATE has no time of its own, and on a link with varying delay its arrival says little.
-TEST_F(AutopilotTest, TheTruePoseOfASimulationIsOfTheAttitudesAroundIt) {
+// SIM_STATE has no time of its own, and on a link with varying delay its arrival time is
+// inaccurate.
+TEST_F(AutopilotTest, TimesTruePoseBySurroundingAttitudes) {
   AutopilotOptions options;
   options.wants_true_pose = true;
   Start(options);
@@ -444,7 +445,7 @@ TEST_F(AutopilotTest, TheTruePoseOfASimulationIsOfTheAttitudesAroundIt) {
 }
 
 // PX4's heartbeat comes once a second, whatever rate is requested.
-TEST_F(AutopilotTest, KnowsTheModeOfPx4BeforeTheNextHeartbeat) {
+TEST_F(AutopilotTest, KnowsModeOfPx4BeforeNextHeartbeat) {
   kind_ = mavlink::kAutopilotPx4;
   mode_ = Px4CustomMode(6, 0);
   AutopilotOptions options;
@@ -461,7 +462,7 @@ TEST_F(AutopilotTest, KnowsTheModeOfPx4BeforeTheNextHeartbeat) {
   EXPECT_EQ(EventsOf(AutopilotEventKind::kModeChanged), 1);
 }
 
-TEST_F(AutopilotTest, AnnouncesLongTextsInPieces) {
+TEST_F(AutopilotTest, SendsLongTextsInPieces) {
   Start();
   autopilot_->Announce(mavlink::kSeverityInfo, "Kestrel: target found");
   auto text = last_heard_[mavlink::Statustext::kId].As<mavlink::Statustext>();

@@ -11,7 +11,7 @@
 
 namespace kestrel {
 
-// The command that asks an autopilot with these ids for a mode (HEARTBEAT.custom_mode).
+// The command that requests a mode (HEARTBEAT.custom_mode) of an autopilot with these ids.
 mavlink::CommandLong ModeCommand(AutopilotKind kind, std::uint32_t custom_mode, std::uint8_t system,
                                  std::uint8_t component);
 

@@ -81,7 +81,7 @@ TEST(LinkUrlTest, ReadsMavsdkUrls) {
             LinkScheme::kSerialFlowControl);
 }
 
-TEST(LinkUrlTest, SaysWhatIsWrong) {
+TEST(LinkUrlTest, ReportsMalformedUrls) {
   const auto error = [](const std::string& url) { return ErrorOf([&] { ParseLinkUrl(url); }); };
   EXPECT_THAT(error("14550"), testing::HasSubstr("autopilot '14550': has no scheme"));
   EXPECT_THAT(error("mavlink://x:1"), testing::HasSubstr("unknown scheme 'mavlink'"));
@@ -93,7 +93,7 @@ TEST(LinkUrlTest, SaysWhatIsWrong) {
   EXPECT_THAT(error("serial:///dev/ttyS0:fast"), testing::HasSubstr("'fast' is no baud rate"));
 }
 
-TEST(LinkUrlTest, OffersTheUrlThatWasMeant) {
+TEST(LinkUrlTest, SuggestsIntendedUrl) {
   const std::pair<const char*, const char*> cases[] = {
       {"/dev/ttyACM0", "serial:///dev/ttyACM0:57600"},
       {"/dev/ttyAMA0:921600", "serial:///dev/ttyAMA0:921600"},
@@ -122,7 +122,7 @@ TEST(LinkUrlTest, OffersTheUrlThatWasMeant) {
   }
 }
 
-TEST(SilenceTest, SaysWhyNoAutopilotIsHeard) {
+TEST(SilenceTest, ReportsCauseOfSilence) {
   const auto receive = [](Connection* connection) {
     for (int i = 0; i < 100; ++i) connection->Receive(milliseconds(2), [](const auto&, Time) {});
     return WhySilent(*connection);
@@ -141,7 +141,7 @@ TEST(SilenceTest, SaysWhyNoAutopilotIsHeard) {
   EXPECT_EQ(receive(&in), "MAVLink on " + Url("udpin", port) + ", but no autopilot's heartbeat");
 }
 
-TEST(SilenceTest, AWrongBaudRateIsGuessed) {
+TEST(SilenceTest, SuspectsWrongBaudRate) {
   const int master = posix_openpt(O_RDWR | O_NOCTTY);
   ASSERT_GE(master, 0);
   grantpt(master);
@@ -156,7 +156,7 @@ TEST(SilenceTest, AWrongBaudRateIsGuessed) {
   close(master);
 }
 
-TEST(ConnectionTest, SaysWhatIsNotThere) {
+TEST(ConnectionTest, ReportsMissingDeviceOrHost) {
   EXPECT_THAT(ErrorOfUrl("serial:///dev/no_such_line:57600"),
               testing::HasSubstr("there is no /dev/no_such_line"));
   EXPECT_THAT(ErrorOfUrl("serial:///dev/null:57600"), testing::HasSubstr("is no serial line"));
@@ -168,7 +168,7 @@ TEST(ConnectionTest, SaysWhatIsNotThere) {
               testing::HasSubstr("component_id is 0"));
 }
 
-TEST(ConnectionTest, SaysThatThePortIsInUse) {
+TEST(ConnectionTest, ReportsPortInUse) {
   const int port = FreeLoopbackPort();
   const Connection first(Url("udpin", port), {});
   EXPECT_THAT(ErrorOfUrl(Url("udpin", port)), testing::HasSubstr("is in use by another program"));
@@ -176,7 +176,7 @@ TEST(ConnectionTest, SaysThatThePortIsInUse) {
   EXPECT_THAT(ErrorOfUrl(Url("tcpin", port)), testing::HasSubstr("is in use by another program"));
 }
 
-TEST(ConnectionTest, SpeaksOverUdp) {
+TEST(ConnectionTest, CommunicatesOverUdp) {
   const int port = FreeLoopbackPort();
   Connection in(Url("udpin", port), {});
   EXPECT_FALSE(in.Send(mavlink::Heartbeat{}));  // nobody has sent to it yet
@@ -185,7 +185,7 @@ TEST(ConnectionTest, SpeaksOverUdp) {
   ExpectBothWays(&out, &in);
 }
 
-TEST(ConnectionTest, AnswersOnlyThoseWhoSpeakMavlink) {
+TEST(ConnectionTest, AnswersMavlinkPeersOnly) {
   const int port = FreeLoopbackPort();
   Connection in(Url("udpin", port), {});
   const auto stranger = OpenTransport(ParseLinkUrl(Url("udpout", port)));
@@ -198,7 +198,7 @@ TEST(ConnectionTest, AnswersOnlyThoseWhoSpeakMavlink) {
   ExpectBothWays(&out, &in);
 }
 
-TEST(ConnectionTest, FindsAUdpAutopilotThatWasStartedAgain) {
+TEST(ConnectionTest, FindsRestartedUdpAutopilot) {
   const int port = FreeLoopbackPort();
   Connection in(Url("udpin", port), {});
   for (int i = 0; i < 6; ++i) {
@@ -208,7 +208,7 @@ TEST(ConnectionTest, FindsAUdpAutopilotThatWasStartedAgain) {
   }
 }
 
-TEST(ConnectionTest, SpeaksOverTcpAndConnectsAgain) {
+TEST(ConnectionTest, CommunicatesOverTcpAndReconnects) {
   const int port = FreeLoopbackPort();
   Connection client(Url("tcpout", port), {});  // opened before there is a server
   client.Receive(milliseconds(1), [](const mavlink::Packet&, Time) {});
@@ -219,7 +219,7 @@ TEST(ConnectionTest, SpeaksOverTcpAndConnectsAgain) {
   }
 }
 
-TEST(ConnectionTest, AServerTakesTheNextClient) {
+TEST(ConnectionTest, ServerAcceptsNextClient) {
   const int port = FreeLoopbackPort();
   Connection server(Url("tcpin", port), {});
   for (int i = 0; i < 3; ++i) {
@@ -228,7 +228,7 @@ TEST(ConnectionTest, AServerTakesTheNextClient) {
   }
 }
 
-TEST(ConnectionTest, DropsWhatTheLineDoesNotTake) {
+TEST(ConnectionTest, DropsPacketsWhenLineIsFull) {
   const int port = FreeLoopbackPort();
   Connection server(Url("tcpin", port), {});
   Connection client(Url("tcpout", port), {});
@@ -266,7 +266,7 @@ class SerialLineTest : public testing::Test {
   std::string device_;
 };
 
-TEST_F(SerialLineTest, Speaks) {
+TEST_F(SerialLineTest, Communicates) {
   Connection line("serial://" + device_ + ":57600", {});
   EXPECT_TRUE(line.Send(mavlink::Heartbeat{2, 3, 0, 0, 4, 3}));
   std::array<std::uint8_t, 300> bytes;
@@ -281,7 +281,7 @@ TEST_F(SerialLineTest, Speaks) {
   EXPECT_EQ(heard, 1);
 }
 
-TEST_F(SerialLineTest, SaysThatAnotherProgramHasIt) {
+TEST_F(SerialLineTest, ReportsLineInUse) {
   const std::string url = "serial://" + device_ + ":57600";
   const Connection first(url, {});
   EXPECT_THAT(ErrorOfUrl(url), testing::HasSubstr(device_ + ": in use by another program"));
@@ -316,7 +316,7 @@ class SignedConnectionTest : public testing::Test {
   ConnectionOptions options_;
 };
 
-TEST_F(SignedConnectionTest, SpeaksWithItsLikeOnly) {
+TEST_F(SignedConnectionTest, CommunicatesWithSameKeyOnly) {
   const int port = FreeLoopbackPort();
   Connection in(Url("udpin", port), options_);
   Connection out(Url("udpout", port), options_);
@@ -340,7 +340,7 @@ TEST_F(SignedConnectionTest, RefusesAnotherKey) {
   EXPECT_EQ(in.counters().forged_packets, 1u);
 }
 
-TEST_F(SignedConnectionTest, RefusesWhatWasSentBefore) {
+TEST_F(SignedConnectionTest, RefusesReplayedPackets) {
   const int port = FreeLoopbackPort();
   std::vector<std::uint8_t> frame;
   Connection in(Url("udpin", port), options_,
@@ -372,7 +372,7 @@ TEST_F(SignedConnectionTest, RemembersItsTimestamps) {
   EXPECT_GT(file.stored(), timestamp);
 }
 
-TEST_F(SignedConnectionTest, SaysWhatIsWrongWithTheKey) {
+TEST_F(SignedConnectionTest, ReportsFaultyKeyFile) {
   const auto error = [&] { return ErrorOf([&] { mavlink::ReadSigningKey(path_); }); };
   EXPECT_EQ(error(), "no error");
   chmod(path_.c_str(), 0644);
@@ -386,7 +386,7 @@ TEST_F(SignedConnectionTest, SaysWhatIsWrongWithTheKey) {
 }
 
 // A thread that has news for the line does not let it wait for the line's patience.
-TEST(ConnectionTest, WakeEndsAWait) {
+TEST(ConnectionTest, WakeEndsWait) {
   Connection connection("udpin://127.0.0.1:" + std::to_string(FreeLoopbackPort()), {});
   connection.Wake();
   const Time start = Now();

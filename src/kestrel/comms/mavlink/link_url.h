@@ -24,8 +24,8 @@ struct LinkUrl {
 
 bool IsSerial(LinkScheme scheme);
 
-// Throws InputError when 'text' is not valid: says what is wrong and how it is written, where it
-// can be guessed with the URL that was probably meant.
+// Throws InputError when 'text' is not valid, with the fault, the right syntax and, if it can be
+// guessed, the URL that was probably meant.
 LinkUrl ParseLinkUrl(const std::string& text);
 
 }  // namespace kestrel

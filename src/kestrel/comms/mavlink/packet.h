@@ -23,14 +23,14 @@ inline constexpr std::uint8_t kIncompatSigned = 0x01;  // the only incompatibili
 
 // A message as received.
 struct Packet {
-  std::uint8_t system = 0;  // of the sender
+  std::uint8_t system = 0;  // system id of the sender
   std::uint8_t component = 0;
   std::uint8_t sequence = 0;
   std::uint32_t id = 0;
   bool is_known = false;   // in messages.h: the checksum of others cannot be verified
   bool is_signed = false;  // carries a signature; Signing decides whether it is valid
   std::array<std::uint8_t, kMaxFrame> bytes{};
-  std::size_t size = 0;  // of the frame in 'bytes', from the magic byte to checksum or signature
+  std::size_t size = 0;  // bytes of the frame, from the magic byte to checksum or signature
   std::size_t header_size = 0;
   std::size_t payload_size = 0;
 

@@ -40,7 +40,7 @@ void Append(const std::vector<std::uint8_t>& more, std::vector<std::uint8_t>* by
   bytes->insert(bytes->end(), more.begin(), more.end());
 }
 
-TEST(PacketParserTest, ReadsThePacketOfAnotherImplementation) {
+TEST(PacketParserTest, ReadsPacketOfAnotherImplementation) {
   const auto packets = PacketsIn(kLandingTarget);
   ASSERT_EQ(packets.size(), 1u);
   EXPECT_EQ(packets[0].system, 42);
@@ -59,7 +59,7 @@ TEST(PacketParserTest, ReadsThePacketOfAnotherImplementation) {
   EXPECT_FALSE(packets[0].As<Heartbeat>());
 }
 
-TEST(PacketWriterTest, WritesThePacketOfAnotherImplementation) {
+TEST(PacketWriterTest, WritesSamePacketAsAnotherImplementation) {
   const auto target = PacketsIn(kLandingTarget).at(0).As<LandingTarget>();
   PacketWriter writer(42, 191);
   for (int i = 0; i < 7; ++i) writer.Write(Heartbeat{});
@@ -67,7 +67,7 @@ TEST(PacketWriterTest, WritesThePacketOfAnotherImplementation) {
   EXPECT_EQ(std::vector<std::uint8_t>(frame.begin(), frame.end()), kLandingTarget);
 }
 
-TEST(PacketWriterTest, LeavesOutTheZerosAtTheEnd) {
+TEST(PacketWriterTest, TrimsTrailingZeros) {
   Attitude attitude;
   attitude.time_boot_ms = 3;
   const auto frame = FrameOf(attitude);
@@ -107,7 +107,7 @@ TEST(PacketParserTest, FindsPacketsByteByByteBetweenGarbage) {
   EXPECT_EQ(PacketsIn(bytes, 7).size(), 200u);
 }
 
-TEST(PacketParserTest, FindsThePacketInABrokenOne) {
+TEST(PacketParserTest, FindsPacketAfterTruncatedOne) {
   std::vector<std::uint8_t> bytes(kLandingTarget.begin(), kLandingTarget.begin() + 20);
   for (int i = 0; i < 3; ++i) Append(kLandingTarget, &bytes);
   EXPECT_EQ(PacketsIn(bytes).size(), 3u);
@@ -139,7 +139,7 @@ TEST(PacketParserTest, RefusesUnknownIncompatibilities) {
   EXPECT_TRUE(PacketsIn(bytes).empty());
 }
 
-TEST(PacketParserTest, ATornDatagramDoesNotHoldTheNextOneUp) {
+TEST(PacketParserTest, TruncatedDatagramDoesNotDelayNext) {
   PacketParser parser;
   int found = 0;
   const auto count = [&](const Packet&) { ++found; };

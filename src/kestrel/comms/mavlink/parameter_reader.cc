@@ -118,7 +118,7 @@ void ParameterReader::Handle(AutopilotKind kind, const mavlink::ParamValue& mess
   }
 }
 
-void ParameterReader::AskAgain() {
+void ParameterReader::RequestAgain() {
   for (Parameter& parameter : parameters_) Start(&parameter);
 }
 

@@ -52,7 +52,7 @@ class ParameterReader {
 
   void Handle(AutopilotKind kind, const mavlink::ParamValue& message);
   // The autopilot has restarted: all parameters are requested again.
-  void AskAgain();
+  void RequestAgain();
 
   // Returns the name of a parameter to request at 'now'; empty: none. At most one per 50 ms.
   std::string_view Next(Time now);

@@ -32,7 +32,7 @@ TEST(SetPointMessageTest, IsInLocalNed) {
   EXPECT_FLOAT_EQ(message.yaw, std::numbers::pi / 2);
 }
 
-TEST(SetPointMessageTest, ATurnGoesWithTheYaw) {
+TEST(SetPointMessageTest, SendsTurnRateWithYaw) {
   SetPoint set_point;
   set_point.yaw = 0;
   set_point.yaw_rate = 0.5;  // from east to north
@@ -44,14 +44,14 @@ TEST(SetPointMessageTest, ATurnGoesWithTheYaw) {
   }
 }
 
-TEST(SetPointMessageTest, TheNoseStaysWithoutAYaw) {
+TEST(SetPointMessageTest, KeepsHeadingWithoutYaw) {
   EXPECT_EQ(SetPointMessage({}, AutopilotKind::kPx4, 1, 1, 0).type_mask, 0xc07);
   const auto message = SetPointMessage({}, AutopilotKind::kArduPilot, 1, 1, 0);
   EXPECT_EQ(message.type_mask, 0x407) << "else ArduPilot turns it along the velocity";
   EXPECT_EQ(message.yaw_rate, 0);
 }
 
-TEST(SetPointMessageTest, OnADeckArduPilotIsLevelAndGoesDown) {
+TEST(SetPointMessageTest, CommandsLevelDescentOnDeck) {
   SetPoint set_point;
   set_point.yaw = 0;  // east
   set_point.velocity = {4, 0, -0.7};
@@ -65,7 +65,7 @@ TEST(SetPointMessageTest, OnADeckArduPilotIsLevelAndGoesDown) {
   EXPECT_EQ(message.thrust, 0);
 }
 
-TEST(SetPointMessageTest, WhatIsNotFiniteIsNotSent) {
+TEST(SetPointMessageTest, DoesNotSendNonFiniteValues) {
   int sent = 0;
   Connection connection("udpout://127.0.0.1:9", {}, [&](auto, Time) { ++sent; });
   const Autopilot autopilot({}, &connection, {});

@@ -52,8 +52,8 @@ void StreamRequests::Measure(Time now, Stream* stream) {
   stream->counted_from = now;
 }
 
-// The requests before the first message say nothing about the rate, nor does the second in which it
-// came.
+// Neither the requests before the first message nor the second in which it came are evidence of the
+// rate.
 void StreamRequests::Begin(Time now, Stream* stream) {
   stream->begins = false;
   if (stream->requests == 0) return;
@@ -84,7 +84,7 @@ bool StreamRequests::Next(Time now, Request* request) {
   return false;
 }
 
-void StreamRequests::AskAgain() {
+void StreamRequests::RequestAgain() {
   for (Stream& stream : streams_) {
     stream.requests = 0;
     stream.has_come = false;

@@ -35,7 +35,7 @@ class StreamRequests {
   bool Next(Time now, Request* request);
 
   // The autopilot has forgotten all requests.
-  void AskAgain();
+  void RequestAgain();
 
   // Rate over the last whole second, or over the last four messages that should have come; 1/s.
   double RateOf(std::uint32_t id) const;

@@ -12,7 +12,7 @@
 
 namespace kestrel {
 
-// Common part of lines without datagrams. Subclasses say how a line is opened.
+// Common part of lines without datagrams. Subclasses define how a line is opened.
 class StreamTransport : public Transport {
  public:
   std::size_t Receive(Duration timeout, std::span<std::uint8_t> buffer) override;

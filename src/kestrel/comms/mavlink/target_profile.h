@@ -37,10 +37,10 @@ struct TargetReport {
   Time time;                       // local clock
   RigidTransform world_from_body;  // UAV (FLU) in the world (ENU)
   Eigen::Vector3d position_in_world{0, 0, 0};
-  Eigen::Vector3d normal_in_world{0, 0, 1};  // of the board, upwards
+  Eigen::Vector3d normal_in_world{0, 0, 1};  // normal of the board, upwards
   Eigen::Vector3d velocity_in_world{0, 0, 0};
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of the position relative to the UAV, m^2
-  std::optional<double> yaw = std::nullopt;  // of the target in the world, rad from east to north
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of the position from the UAV, m^2
+  std::optional<double> yaw = std::nullopt;  // heading in the world, rad from east to north
   double yaw_sigma = 0;                      // rad
   double size_m = 0;                         // diameter of the pattern; 0: not known
 

@@ -32,7 +32,7 @@ TargetReport Report() {
   return report;
 }
 
-TEST(TargetProfileTest, TellsArduPilotWhereTheTargetIsFromTheBody) {
+TEST(TargetProfileTest, SendsArduPilotTargetRelativeToBody) {
   const auto message = LandingTargetForArduPilot(Report(), 1234);
   EXPECT_EQ(message.frame, mavlink::kFrameBodyFrd);
   EXPECT_EQ(message.position_valid, 1);
@@ -51,7 +51,7 @@ TEST(TargetProfileTest, TellsArduPilotWhereTheTargetIsFromTheBody) {
   EXPECT_NEAR(message.q[3], std::sqrt(0.5), kTolerance);
 }
 
-TEST(TargetProfileTest, TiltOfTheBodyCounts) {
+TEST(TargetProfileTest, AccountsForTiltOfBody) {
   TargetReport report = Report();
   report.position_in_world = report.world_from_body.translation - Eigen::Vector3d(0, 0, 4);
   // Nose down by 0.2 rad.
@@ -63,7 +63,7 @@ TEST(TargetProfileTest, TiltOfTheBodyCounts) {
   EXPECT_NEAR(message.z, 4 * std::cos(0.2), kTolerance);
 }
 
-TEST(TargetProfileTest, TellsPx4APlace) {
+TEST(TargetProfileTest, SendsPx4TargetInLocalFrame) {
   const auto message = LandingTargetForPx4(Report(), 1234);
   EXPECT_EQ(message.frame, mavlink::kFrameLocalNed);
   EXPECT_EQ(message.position_valid, 1);
@@ -74,7 +74,7 @@ TEST(TargetProfileTest, TellsPx4APlace) {
   EXPECT_NEAR(message.q[3], std::sqrt(0.5), kTolerance);
 }
 
-TEST(TargetProfileTest, TellsPx4sEstimatorTheUncertainty) {
+TEST(TargetProfileTest, SendsUncertaintyToPx4Estimator) {
   const auto message = TargetRelativeForPx4(Report(), 1234);
   EXPECT_EQ(message.frame, mavlink::kTargetFrameBodyFrd);
   EXPECT_EQ(message.timestamp, 1234u);
@@ -88,7 +88,7 @@ TEST(TargetProfileTest, TellsPx4sEstimatorTheUncertainty) {
   EXPECT_NEAR(message.q_sensor[0], 1, kTolerance);  // the body heads north
 }
 
-TEST(TargetProfileTest, MeasuresTheDistanceDown) {
+TEST(TargetProfileTest, MeasuresDistanceDown) {
   const auto message = DistanceSensorOf(Report(), 40, 99);
   ASSERT_TRUE(message);
   EXPECT_EQ(message->current_distance, 400);
@@ -100,7 +100,7 @@ TEST(TargetProfileTest, MeasuresTheDistanceDown) {
   EXPECT_FALSE(DistanceSensorOf(above, 40, 99));
 }
 
-TEST(TargetProfileTest, TellsFollowersWhereOnEarthItIs) {
+TEST(TargetProfileTest, SendsGlobalPositionToFollowers) {
   const GlobalPosition origin{473977418, 85455939, 488};
   const auto message = FollowTargetOf(Report(), AutopilotKind::kPx4, origin, 5);
   const Eigen::Vector3d back =

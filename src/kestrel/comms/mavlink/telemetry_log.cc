@@ -49,7 +49,7 @@ std::size_t ReadTelemetryLog(
     const std::size_t size = FrameSize(rest);
     std::optional<Packet> packet;
     if (size > 0 && size <= rest.size()) packet = PacketOf(rest.first(size), &parser);
-    // The checksum alone tells a packet from damaged bytes.
+    // Only the checksum distinguishes a packet from damaged bytes.
     if (packet && (is_aligned || packet->is_known)) {
       handler(*packet, TimeIn(log));
       log = log.subspan(kTimeSize + size);

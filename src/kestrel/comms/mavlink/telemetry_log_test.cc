@@ -39,14 +39,14 @@ Reading Read(const std::string& log) {
   reading.skipped =
       mavlink::ReadTelemetryLog({bytes, log.size()}, [&](const Packet& packet, std::int64_t time) {
         const auto heartbeat = packet.As<mavlink::Heartbeat>();
-        if (!heartbeat) return;  // of a damaged id: nobody knows its checksum
+        if (!heartbeat) return;  // the id is damaged: its checksum cannot be checked
         reading.modes.push_back(heartbeat->custom_mode);
         reading.times_us.push_back(time);
       });
   return reading;
 }
 
-TEST(TelemetryLogTest, GivesPacketsWithTheirTimes) {
+TEST(TelemetryLogTest, ReadsPacketsWithTimes) {
   const Reading reading = Read(ThreeHeartbeats());
   EXPECT_THAT(reading.modes, ElementsAre(0, 1, 2));
   EXPECT_THAT(reading.times_us,
@@ -55,7 +55,7 @@ TEST(TelemetryLogTest, GivesPacketsWithTheirTimes) {
   EXPECT_THAT(Read("").modes, IsEmpty());
 }
 
-TEST(TelemetryLogTest, GivesWhatIsBeforeACut) {
+TEST(TelemetryLogTest, ReadsPacketsBeforeTruncation) {
   const std::string log = ThreeHeartbeats();
   const std::size_t record = log.size() / 3;
   for (std::size_t missing = 1; missing < record; ++missing) {
@@ -65,7 +65,7 @@ TEST(TelemetryLogTest, GivesWhatIsBeforeACut) {
   }
 }
 
-TEST(TelemetryLogTest, GoesOnAfterDamage) {
+TEST(TelemetryLogTest, ContinuesAfterDamage) {
   const std::string whole = ThreeHeartbeats();
   const std::size_t record = whole.size() / 3;
   constexpr std::size_t kTimeSize = 8;

@@ -15,7 +15,7 @@ constexpr double kCell_s = 0.2;
 // Behaviour of a clock.
 struct ClockKind {
   double window_s;      // time over which its drift is constant
-  double max_drift;     // of any clock of this kind that works
+  double max_drift;     // largest drift of a working clock of this kind
   double drift_sigma;   // usual drift
   double drift_wander;  // uncertainty of the drift once no messages come any more
 };
@@ -25,7 +25,7 @@ constexpr ClockKind kCrystal = {90, 500e-6, 50e-6, 20e-6};
 // not its stalls.
 constexpr ClockKind kSimulated = {8, 0.1, 0.02, 5e-3};
 constexpr double kSimulatedOffset_s = 2;  // part of the window used for the present offset
-constexpr int kSimulatedCells = 40;       // of its window
+constexpr int kSimulatedCells = 40;       // cells that its window is divided into
 
 constexpr const ClockKind& KindOf(bool is_crystal) { return is_crystal ? kCrystal : kSimulated; }
 
@@ -338,7 +338,7 @@ double TimeSync::SigmaAt(double time_s) const {
 }
 
 double TimeSync::sigma_s(Time now) const {
-  constexpr double kAsymmetry = 0.05;  // of the fastest round trip
+  constexpr double kAsymmetry = 0.05;  // share of the fastest round trip
   return std::hypot(SigmaAt(Seconds(now)), kAsymmetry * line_.width_s);
 }
 

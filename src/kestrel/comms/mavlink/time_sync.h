@@ -13,9 +13,10 @@ namespace kestrel {
 
 // Estimates offset and rate of another computer's clock from messages that carry its time: the
 // remote time of a round trip lies between two local times, and a stamped message was not received
-// before it was sent. A delayed message says little. The clock is therefore fitted by the middle of
-// the widest straight strip that contains no message of the last minute and a half, between the
-// fastest messages there and the fastest messages back. Fixed memory; not thread-safe.
+// before it was sent. A delayed message hardly constrains the clock. The clock is therefore fitted
+// by the middle of the widest straight strip that contains no message of the last minute and a
+// half, between the fastest messages there and the fastest messages back. Fixed memory; not
+// thread-safe.
 class TimeSync {
  public:
   // A request sent at 'sent' was answered with the remote time 'remote_ns', received at 'received'.
@@ -116,7 +117,9 @@ class TimeSync {
 
   bool has_origin_ = false;
   bool is_known_ = false;
-  bool is_crystal_ = true;  // it runs as steadily as a crystal, as far as is known
+  // The remote clock has run as steadily as a crystal so far. False once it has drifted more, as
+  // the clock of a simulated autopilot does.
+  bool is_crystal_ = true;
   Time local_origin_{};
   std::int64_t remote_origin_ = 0;
   std::array<Cell, kCells> cells_;

@@ -44,7 +44,7 @@ class SimulatedClocks {
   std::uniform_real_distribution<double> delay_s_;
 };
 
-TEST(TimeSyncTest, IsWithinAMillisecondAfterTenSecondsOfJitter) {
+TEST(TimeSyncTest, ConvergesWithinMillisecondInTenSeconds) {
   constexpr int kRuns = 200;
   std::vector<double> errors_s;
   double within_sigma = 0;
@@ -65,7 +65,7 @@ TEST(TimeSyncTest, IsWithinAMillisecondAfterTenSecondsOfJitter) {
   EXPECT_LT(within_sigma / kRuns, 0.99);
 }
 
-TEST(TimeSyncTest, FollowsADrift) {
+TEST(TimeSyncTest, FollowsDrift) {
   for (unsigned seed = 0; seed < 10; ++seed) {
     SimulatedClocks clocks(seed, 50e-6, 0.005, 0.05);
     TimeSync sync;
@@ -90,7 +90,7 @@ TEST(TimeSyncTest, ConvertsBothWays) {
   EXPECT_NEAR(ToSeconds(sync.ToLocal(remote_ns) - clocks.Local(12)), 0, 0.3e-3);
 }
 
-TEST(TimeSyncTest, NoticesThatTheOtherComputerStartedAgain) {
+TEST(TimeSyncTest, DetectsRestartOfOtherComputer) {
   for (const double jump_s : {-100.0, -2.0, 2.0, 1000.0}) {
     SimulatedClocks clocks(2, 0, 0.005, 0.05);
     TimeSync sync;
@@ -110,7 +110,7 @@ TEST(TimeSyncTest, NoticesThatTheOtherComputerStartedAgain) {
 }
 
 // A simulated ArduPilot on a computer with other work.
-TEST(TimeSyncTest, FollowsAClockThatStallsAndCatchesUp) {
+TEST(TimeSyncTest, FollowsClockThatStallsAndCatchesUp) {
   for (const double stall_s : {-0.2, 0.2}) {
     SimulatedClocks clocks(2, 0, 0.005, 0.05);
     TimeSync sync;
@@ -123,7 +123,7 @@ TEST(TimeSyncTest, FollowsAClockThatStallsAndCatchesUp) {
 }
 
 // A simulated PX4 loses a percent of its time, more while the computer has other work.
-TEST(TimeSyncTest, FollowsASimulatedClockFromSecondToSecond) {
+TEST(TimeSyncTest, FollowsSimulatedClockFromSecondToSecond) {
   for (const double drift : {-0.011, -0.03, 0.011}) {
     SimulatedClocks clocks(5, drift, 0.0001, 0.0003);
     TimeSync sync;
@@ -178,7 +178,7 @@ class StallingClock {
   double stall_end_s_ = -10;
 };
 
-TEST(TimeSyncTest, IsCalmWhileASimulatedClockStalls) {
+TEST(TimeSyncTest, IsStableWhileSimulatedClockStalls) {
   for (const double rate : {0.99, 1.0}) {
     std::vector<double> errors_s;
     for (unsigned seed = 0; seed < 10; ++seed) {
@@ -203,7 +203,7 @@ TEST(TimeSyncTest, IsCalmWhileASimulatedClockStalls) {
   }
 }
 
-TEST(TimeSyncTest, FollowsASimulatedClockThatSlowsDown) {
+TEST(TimeSyncTest, FollowsSimulatedClockThatSlowsDown) {
   SimulatedClocks clocks(5, -0.01, 0.0001, 0.0003);
   TimeSync sync;
   for (int i = 0; i < 200; ++i) clocks.Ask(0.1 * i, &sync);
@@ -231,7 +231,7 @@ TEST(TimeSyncTest, OneForgedAnswerChangesNothing) {
   EXPECT_LT(std::abs(clocks.ErrorOf(sync, 10)), 2e-3);
 }
 
-TEST(TimeSyncTest, KeepsWhatItKnowsOverAPause) {
+TEST(TimeSyncTest, KeepsEstimateDuringPause) {
   SimulatedClocks clocks(4, 20e-6, 0.005, 0.05);
   TimeSync sync;
   for (int i = 0; i < 300; ++i) clocks.Ask(0.1 * i, &sync);
@@ -243,7 +243,7 @@ TEST(TimeSyncTest, KeepsWhatItKnowsOverAPause) {
   }
 }
 
-TEST(TimeSyncTest, KnowsRoughlyFromOneWayMessages) {
+TEST(TimeSyncTest, EstimatesRoughlyFromOneWayMessages) {
   SimulatedClocks clocks(5, 0, 0.005, 0.02);
   TimeSync sync;
   for (int i = 0; i < 30; ++i) clocks.Tell(0.1 * i, &sync);

@@ -33,8 +33,8 @@ class UdpTransport : public Transport {
   void Forget(Time now);
 
   FileDescriptor socket_;
-  std::optional<SocketAddress> server_;  // of udpout://
-  SocketAddress sender_;                 // of the newest datagram
+  std::optional<SocketAddress> server_;  // peer of udpout://
+  SocketAddress sender_;                 // sender of the newest datagram
   mutable std::mutex mutex_;             // guards the peers
   std::array<std::optional<Peer>, 4> peers_;
 };

@@ -65,13 +65,13 @@ class TeamFusion {
   // A UAV that waits to be placed in a group, or is placed: in the world of the group's first UAV.
   struct Place {
     UavKey uav;
-    std::size_t matches = 0;  // of the best alignment with a UAV of the group; 0: there is none
+    std::size_t matches = 0;  // matches of the best alignment with a UAV of the group; 0: none
     WorldAlignment group_from_world;
   };
   using Group = std::vector<Place>;
   // The children of node i are 2 i and 2 i + 1; the leaves are the last half.
   struct Node {
-    std::vector<MappedObject> objects;    // of its part of the tree; a leaf has none
+    std::vector<MappedObject> objects;    // objects of its subtree; a leaf has none
     std::vector<std::size_t> from_right;  // where the objects of the second child are
     bool is_changed = true;
   };
@@ -91,7 +91,7 @@ class TeamFusion {
   WorldPrior prior_;
   std::map<UavKey, Part> parts_;
   std::map<std::pair<UavKey, UavKey>, Pair> pairs_;  // a UAV, and the one with which it is aligned
-  std::vector<UavKey> order_;                        // of the leaves, one for each placed UAV
+  std::vector<UavKey> order_;                        // order of the leaves, one for each placed UAV
   std::vector<UavKey> fused_order_;
   std::vector<Node> nodes_;
   std::vector<MappedObject> standing_;

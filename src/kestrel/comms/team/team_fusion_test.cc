@@ -44,7 +44,7 @@ std::vector<MappedObject> Field(std::uint64_t seed = 1) {
   return TestField(60, &random);
 }
 
-TEST(TeamFusion, WhatIsKeptIsWhatIsWorkedOutAnew) {
+TEST(TeamFusion, IncrementalFusionEqualsFullFusion) {
   const std::vector<MappedObject> field = Field();
   TeamMap map;
   TeamFusion kept({}, {});
@@ -67,7 +67,7 @@ TEST(TeamFusion, WhatIsKeptIsWhatIsWorkedOutAnew) {
 }
 
 // The first and the last world have nothing in common.
-TEST(TeamFusion, WorldsAreAlignedByWayOfOthers) {
+TEST(TeamFusion, AlignsWorldsThroughOtherUavs) {
   const std::vector<MappedObject> field = Field();
   TeamMap map;
   map.Merge(PartOf(0, 1, field, 0, 20), Time());
@@ -140,7 +140,7 @@ std::vector<int> CountIn(const std::vector<MappedObject>& map,
 
 // The objects that it saw before cannot be aligned, or only by chance, and nobody corrects them any
 // more.
-TEST(TeamFusion, AUavThatDiesEarlyAndReturnsLeavesNothingTwice) {
+TEST(TeamFusion, ReturningUavLeavesNoDuplicates) {
   for (int seed = 1; seed <= 4; ++seed) {
     for (int dead = 0; dead < 5; ++dead) {
       for (const double reach_m : {0.5, 1.0, 2.0, 4.0, 8.0}) {
@@ -166,7 +166,7 @@ TEST(TeamFusion, AUavThatDiesEarlyAndReturnsLeavesNothingTwice) {
   }
 }
 
-TEST(TeamFusion, AMapThatIsEmptyIsNone) {
+TEST(TeamFusion, EmptyMapIsIgnored) {
   const std::vector<MappedObject> field = Field();
   TeamMap map;
   map.Merge(PartOf(0, 1, field, 0, 0), Time());

@@ -127,7 +127,7 @@ void TeamLink::Finish(std::vector<MappedObject> objects, const std::function<boo
   const Duration silence = DurationFromSeconds(options_.team.silence_s);
   Tell(std::move(objects));
   member_.SetDone();
-  bool was_said = false;
+  bool was_reported = false;
   Time awaited = Now();  // last time at which a UAV was not done
   Time lacking = Now();  // last time at which data were missing or changed
   std::vector<std::optional<Claim>> claims;
@@ -140,7 +140,7 @@ void TeamLink::Finish(std::vector<MappedObject> objects, const std::function<boo
     }
     const bool are_done = member_.AreAllDone(now);
     if (!are_done) awaited = now;
-    if (!are_done && !std::exchange(was_said, true)) SayWhoIsAwaited();
+    if (!are_done && !std::exchange(was_reported, true)) ReportAwaited();
     if (!are_done || !member_.IsWhole() || member_.Known().size() == 1) lacking = now;
     if (member_.lacked()) lacking = std::max(lacking, *member_.lacked());
     if (is_stopped() || now - lacking >= kStay || now - awaited >= silence) break;
@@ -149,7 +149,7 @@ void TeamLink::Finish(std::vector<MappedObject> objects, const std::function<boo
   if (!member_.IsWhole()) say_("team: of what the team has seen not all was heard");
 }
 
-void TeamLink::SayWhoIsAwaited() const {
+void TeamLink::ReportAwaited() const {
   std::vector<std::string> names;
   for (const UavKey& uav : member_.Known()) {
     if (uav != member_.self() && member_.IsAlive(uav, Now())) names.push_back(uav.name);

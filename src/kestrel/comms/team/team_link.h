@@ -41,7 +41,7 @@ struct TeamLinkOptions {
 };
 
 // A UAV's part in its team, by DDS: it sends its map, receives those of the others, claims an
-// object if the options say so, and writes the map of the whole team. One thread at a time.
+// object if the options request it, and writes the map of the whole team. One thread at a time.
 class TeamLink {
  public:
   using Say = std::function<void(const std::string&)>;
@@ -84,7 +84,7 @@ class TeamLink {
   TeamView View() { return ViewTeam(member_, Now(), &fusion_); }
   void ChooseAgain();
   std::vector<std::optional<Claim>> Claims() const;
-  void SayWhoIsAwaited() const;
+  void ReportAwaited() const;
 
   TeamLinkOptions options_;
   TeamMember member_;

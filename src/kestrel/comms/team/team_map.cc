@@ -25,15 +25,15 @@ void TeamMap::Merge(const PartMessage& message, Time local) {
   if (!parts_.contains(message.uav) && parts_.size() == kMaxUavs) return;
   const auto [place, is_new] = parts_.try_emplace(message.uav);
   Part& part = place->second;
-  const Time told_at = local - message.age;
+  const Time sent_at = local - message.age;
   if (is_new || message.contents.version > part.contents.version) {
     part.contents = message.contents;
-    part.told_at = told_at;
+    part.sent_at = sent_at;
     ++part.revision;
     std::erase_if(part.objects,
                   [&](const auto& held) { return !part.contents.objects.contains(held.first); });
   } else if (message.contents.version == part.contents.version) {
-    part.told_at = std::min(part.told_at, told_at);
+    part.sent_at = std::min(part.sent_at, sent_at);
   }
   for (const MappedObject& object : message.objects) {
     const auto listed = part.contents.objects.find(object.id);

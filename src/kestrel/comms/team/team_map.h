@@ -24,7 +24,7 @@ class TeamMap {
   };
   struct Part {
     Contents contents;
-    Time told_at;  // time at which the contents were sent first, on this computer's clock: the
+    Time sent_at;  // time at which the contents were sent first, on this computer's clock: the
                    // earliest estimate
     // The objects that have come. If the contents list a newer version of an object, the old one
     // stays.

@@ -35,7 +35,7 @@ std::vector<PartMessage> Told(const UavKey& uav, Random* random) {
   return messages;
 }
 
-TEST(TeamMap, OrderAndRepetitionOfMessagesMakeNoDifference) {
+TEST(TeamMap, IsIndependentOfOrderAndRepetitionOfMessages) {
   Random random(1);
   for (int i = 0; i < 30; ++i) {
     std::vector<PartMessage> messages = Told({"a", 1}, &random);
@@ -54,7 +54,7 @@ TEST(TeamMap, OrderAndRepetitionOfMessagesMakeNoDifference) {
   }
 }
 
-TEST(TeamMap, WhatIsNotListedAnyMoreIsGoneAndStaysSo) {
+TEST(TeamMap, RemovesUnlistedObjectsForGood) {
   TeamMap map;
   const UavKey uav{"a", 1};
   PartMessage with;
@@ -72,7 +72,7 @@ TEST(TeamMap, WhatIsNotListedAnyMoreIsGoneAndStaysSo) {
   EXPECT_THAT(map.Find(uav)->objects, IsEmpty());
 }
 
-TEST(TeamMap, KnowsWhatItLacks) {
+TEST(TeamMap, ListsMissingObjects) {
   TeamMap map;
   const UavKey uav{"a", 1};
   PartMessage part;
@@ -85,7 +85,7 @@ TEST(TeamMap, KnowsWhatItLacks) {
   EXPECT_THAT(map.Find(uav)->Missing(1), ElementsAre(1));
 }
 
-TEST(TeamMap, IsBounded) {
+TEST(TeamMap, LimitsUavs) {
   TeamMap map;
   PartMessage part;
   part.uav.name = "a";

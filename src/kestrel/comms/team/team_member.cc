@@ -59,10 +59,10 @@ TeamMember::TeamMember(const UavKey& self, const TeamOptions& options, std::opti
 }
 
 void TeamMember::Tell(std::vector<MappedObject> objects, Time now) {
-  if (objects.size() > kMaxToldObjects) {
+  if (objects.size() > kMaxSentObjects) {
     std::stable_sort(objects.begin(), objects.end(),
                      [](const auto& a, const auto& b) { return a.detections > b.detections; });
-    objects.resize(kMaxToldObjects);
+    objects.resize(kMaxSentObjects);
   }
   untold_ = {std::move(objects), now};
 }
@@ -122,7 +122,7 @@ void TeamMember::Defend(const PartMessage& part, Time local) {
   Warn("somebody tells a map under this UAV's name: use a key that the team shares");
   const std::uint64_t version = std::max(part.contents.version, own->contents.version) + 1;
   if (version > kMaxVersion) return;
-  PartMessage renewed{self_, local - own->told_at, {version, own->contents.now, {}}, {}};
+  PartMessage renewed{self_, local - own->sent_at, {version, own->contents.now, {}}, {}};
   for (const auto& [id, entry] : own->objects) {
     renewed.contents.objects[id] = version;
     renewed.objects.push_back(entry.object);
@@ -241,7 +241,7 @@ void TeamMember::Tick(Time local, const Send& send) {
   const auto is_due = [&](const std::optional<Time>& last, double period_s) {
     return !last || local - *last >= DurationFromSeconds(period_s);
   };
-  if (untold_ && is_due(told_, TeamOptions::kTellPeriod_s)) TellOwn(local);
+  if (untold_ && is_due(told_, TeamOptions::kTellPeriod_s)) SendOwn(local);
   if (allowance_ > 0 && (has_news_ || is_due(last_digest_, TeamOptions::kDigestPeriod_s))) {
     SendDigest(local, send);
   }
@@ -249,7 +249,7 @@ void TeamMember::Tick(Time local, const Send& send) {
 }
 
 // Sends a new version, with what has changed.
-void TeamMember::TellOwn(Time local) {
+void TeamMember::SendOwn(Time local) {
   const TeamMap::Part* part = map_.Find(self_);
   const TeamMap::Part nothing;
   if (part == nullptr) part = &nothing;
@@ -304,7 +304,7 @@ void TeamMember::SendQueued(Time local, const Send& send) {
   if (next == queue_.end()) next = queue_.begin();
   const UavKey uav = next->uav;
   const TeamMap::Part& part = *map_.Find(uav);
-  PartMessage message{uav, local - part.told_at, part.contents, {}};
+  PartMessage message{uav, local - part.sent_at, part.contents, {}};
   std::size_t bytes = 0;
   while (next != queue_.end() && next->uav == uav && bytes < kPartBytes) {
     const auto entry = part.objects.find(next->id);

@@ -32,7 +32,7 @@ class TeamMember {
   // InputError when the options or the name are not valid.
   TeamMember(const UavKey& self, const TeamOptions& options, std::optional<TeamKey> key = {});
 
-  // Sets the own map at its time 'now', which does not decrease. Of more than kMaxToldObjects,
+  // Sets the own map at its time 'now', which does not decrease. Of more than kMaxSentObjects,
   // those seen most are kept. The next Tick sends it.
   void Tell(std::vector<MappedObject> objects, Time now);
 
@@ -93,7 +93,7 @@ class TeamMember {
   Peer* Know(const UavKey& uav);
   bool IsBehind(const UavKey& uav, const Peer& peer) const;
 
-  void TellOwn(Time local);
+  void SendOwn(Time local);
   void MergeOwn(const PartMessage& own, Time local);
   void SendDigest(Time local, const Send& send);
   void SendQueued(Time local, const Send& send);

@@ -56,14 +56,14 @@ void ExpectAllWhole(const SimulatedTeam& team, std::size_t parts) {
   }
 }
 
-TEST(TeamMember, MapsAreEqualSoonAfterTheLastChange) {
+TEST(TeamMember, MapsAgreeSoonAfterLastChange) {
   SimulatedTeam team = TeamOfFive(1);
   Fly(&team, 5);
   EXPECT_LT(UntilEqual(&team), 1);
   ExpectAllWhole(team, kTeam);
 }
 
-TEST(TeamMember, LossAndDelayAreMadeUpFor) {
+TEST(TeamMember, RecoversFromLossAndDelay) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     SimulatedTeam team = TeamOfFive(seed);
     team.loss = 0.2;
@@ -74,7 +74,7 @@ TEST(TeamMember, LossAndDelayAreMadeUpFor) {
   }
 }
 
-TEST(TeamMember, MapsAreEqualASecondAfterLossesEnd) {
+TEST(TeamMember, MapsAgreeASecondAfterLossesEnd) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     SimulatedTeam team = TeamOfFive(seed);
     team.loss = 0.2;
@@ -85,7 +85,7 @@ TEST(TeamMember, MapsAreEqualASecondAfterLossesEnd) {
   }
 }
 
-TEST(TeamMember, APartitionHeals) {
+TEST(TeamMember, MapsAgreeAfterPartition) {
   SimulatedTeam team = TeamOfFive(2);
   Fly(&team, 3);
   team.is_cut = [](std::size_t from, std::size_t to) { return (from < 2) != (to < 2); };
@@ -96,7 +96,7 @@ TEST(TeamMember, APartitionHeals) {
   ExpectAllWhole(team, kTeam);
 }
 
-TEST(TeamMember, OneThatHearsButIsNotHeardIsPassedOnOnceItIs) {
+TEST(TeamMember, ForwardsUavThatIsHeardByOneOnly) {
   SimulatedTeam team = TeamOfFive(3);
   // 'a' hears nobody; later it hears only 'e', which hears all.
   team.is_cut = [](std::size_t /*from*/, std::size_t to) { return to == 0; };
@@ -107,7 +107,7 @@ TEST(TeamMember, OneThatHearsButIsNotHeardIsPassedOnOnceItIs) {
   ExpectAllWhole(team, kTeam);
 }
 
-TEST(TeamMember, APartOfOneThatIsGoneIsPassedOn) {
+TEST(TeamMember, ForwardsPartOfLostUav) {
   SimulatedTeam team = TeamOfFive(4);
   team.uavs.pop_back();
   Fly(&team, 3);
@@ -120,7 +120,7 @@ TEST(TeamMember, APartOfOneThatIsGoneIsPassedOn) {
   EXPECT_THAT(team.uavs[late].member->map().Find({"a", 1})->objects, SizeIs(19));
 }
 
-TEST(TeamMember, ARebootBeginsAgainAndLosesNothing) {
+TEST(TeamMember, RebootLosesNothing) {
   SimulatedTeam team = TeamOfFive(5);
   Fly(&team, 3);
   UntilEqual(&team);
@@ -131,7 +131,7 @@ TEST(TeamMember, ARebootBeginsAgainAndLosesNothing) {
   for (const auto& uav : team.uavs) EXPECT_THAT(uav.warnings, IsEmpty());
 }
 
-TEST(TeamMember, TwoOfOneNameDoNoHarmAndAreTold) {
+TEST(TeamMember, WarnsOfTwoUavsWithSameName) {
   SimulatedTeam team = TeamOfFive(6);
   team.Add({"a", 2});
   Fly(&team, 5);
@@ -152,7 +152,7 @@ TEST(TeamMember, SendsLessThan10kBPerSecondWith100Objects) {
   EXPECT_LT(UntilEqual(&team), 6);
 }
 
-TEST(TeamMember, StrangersDoNoHarm) {
+TEST(TeamMember, IgnoresStrangers) {
   SimulatedTeam team = TeamOfFive(8);
   Fly(&team, 2);
   Random random(8);
@@ -185,7 +185,7 @@ TEST(TeamMember, StrangersDoNoHarm) {
   EXPECT_TRUE(team.uavs[1].member->IsAlive({"a", 1}, team.LocalTime(1)));
 }
 
-TEST(TeamMember, WithAKeyOnlyTheTeamIsHeard) {
+TEST(TeamMember, AcceptsOnlyMessagesSignedWithKey) {
   SimulatedTeam team(9);
   const TeamKey key{1, 2, 3};
   team.Add({"a", 1}, key);
@@ -201,12 +201,12 @@ TEST(TeamMember, WithAKeyOnlyTheTeamIsHeard) {
   EXPECT_THAT(team.uavs[0].warnings, ElementsAre(HasSubstr("not signed by the team's key")));
 }
 
-TEST(TeamMember, NamesAndOptionsAreChecked) {
+TEST(TeamMember, ChecksNamesAndOptions) {
   EXPECT_THROW(TeamMember({"two words", 1}, {}), InputError);
   EXPECT_THROW(TeamMember({"a", 1}, {.rate_bytes_per_s = -1}), InputError);
 }
 
-TEST(TeamMember, IsDoneWhenAllThatLiveAre) {
+TEST(TeamMember, IsDoneWhenAllLiveMembersAreDone) {
   SimulatedTeam team(9);
   for (const char* name : {"a", "b", "c"}) team.Add({name, 1});
   const auto are_done = [&](std::size_t i) {
@@ -227,7 +227,7 @@ TEST(TeamMember, IsDoneWhenAllThatLiveAre) {
 }
 
 // A UAV that declares its map the last one has sent that map before.
-TEST(TeamMember, WhatIsToldLastComesBeforeTheWordThatItIs) {
+TEST(TeamMember, SendsLastMapBeforeDeclaringItLast) {
   SimulatedTeam team(10);
   team.Add({"a", 1});
   team.Add({"b", 1});

@@ -173,7 +173,7 @@ PartMessage ReadPart(ByteReader* in) {
   constexpr std::int64_t kMaxNow = std::numeric_limits<std::int64_t>::max() / 2;
   in->Require(std::abs(now / 2) <= kMaxNow / 2);
   contents.now = in->has_failed() ? Time() : TimeFromNanoseconds(now);
-  const std::size_t count = in->Varint(kMaxToldObjects);
+  const std::size_t count = in->Varint(kMaxSentObjects);
   std::int64_t id = 0;
   for (std::size_t i = 0; i < count && !in->has_failed(); ++i) {
     id += ReadId(in);

@@ -67,7 +67,7 @@ struct DigestLine {
   UavKey uav;
   std::uint32_t beat = 0;     // number of digests that the UAV had sent, modulo 2^32: it grows
                               // while the UAV lives
-  std::uint64_t version = 0;  // of the UAV's contents
+  std::uint64_t version = 0;  // version of the UAV's contents
   bool is_done = false;       // the UAV's map is its last one
   std::optional<Claim> claim;
   std::vector<std::int64_t> missing;  // objects that the contents list and the sender lacks
@@ -84,7 +84,7 @@ struct TeamMessage {
 // Limits of what is sent and accepted.
 inline constexpr std::size_t kMaxTeamMessage = 16384;  // bytes
 inline constexpr std::size_t kMaxUavs = 128;
-inline constexpr std::size_t kMaxToldObjects = 512;  // of one UAV
+inline constexpr std::size_t kMaxSentObjects = 512;  // per UAV
 inline constexpr std::size_t kMaxMissing = 1024;     // in one digest
 inline constexpr std::uint64_t kMaxVersion = std::uint64_t{1} << 48;
 inline constexpr int kMaxTries = 255;

@@ -24,7 +24,7 @@ TeamMessage PartOf(const std::vector<MappedObject>& objects) {
   return {{"a", 1}, part};
 }
 
-TEST(TeamMessage, APartComesAsItWasSent) {
+TEST(TeamMessage, PartRoundTrips) {
   MappedObject moving = TestDisc(300, {5e6, -2, 0.5}, kNow);
   moving.may_move = moving.moves = true;
   moving.move_log_odds = 4.75;
@@ -58,7 +58,7 @@ TEST(TeamMessage, APartComesAsItWasSent) {
   EXPECT_EQ(part.objects[1].digit_log_likelihoods, cuboid.digit_log_likelihoods);
 }
 
-TEST(TeamMessage, ADigestComesAsItWasSent) {
+TEST(TeamMessage, DigestRoundTrips) {
   const UavKey a{"a", 1};
   const UavKey b{"b", 2};
   Digest digest(2);
@@ -87,12 +87,12 @@ TEST(TeamMessage, ADigestComesAsItWasSent) {
   EXPECT_FALSE(lines[1].claim);
 }
 
-TEST(TeamMessage, AStandingObjectTakes120Bytes) {
+TEST(TeamMessage, StandingObjectTakesAtMost120Bytes) {
   EXPECT_THAT(EncodeObject(TestDisc(1000, {0, 0, 0}, kNow - std::chrono::seconds(30)), kNow),
               SizeIs(Lt(121)));
 }
 
-TEST(TeamMessage, WhatHasNoMeaningIsNotTold) {
+TEST(TeamMessage, DoesNotSendInvalidObjects) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   std::vector<MappedObject> objects(9, TestDisc(1, {0, 0, 0}, kNow));
   objects[0].state[1] = nan;
@@ -110,7 +110,7 @@ TEST(TeamMessage, WhatHasNoMeaningIsNotTold) {
   }
 }
 
-TEST(TeamMessage, DamagedOnesAreRefusedOrWellFormed) {
+TEST(TeamMessage, DamagedMessagesAreRefusedOrWellFormed) {
   const std::vector<std::uint8_t> good =
       EncodeMessage(PartOf({TestDisc(1, {1, 2, 3}, kNow), TestDisc(2, {4, 5, 6}, kNow)}));
   for (std::size_t size = 0; size < good.size(); ++size) {

@@ -11,8 +11,8 @@ namespace {
 // Returns the difference to add to times of the UAV's clock for times of the clock that shows 'now'
 // at 'local'.
 Duration ShiftOf(const TeamMap::Part& part, Time local, Time now) {
-  const Duration since_told = std::max(local - part.told_at, Duration::zero());
-  return now - since_told - part.contents.now;
+  const Duration since_sent = std::max(local - part.sent_at, Duration::zero());
+  return now - since_sent - part.contents.now;
 }
 
 // Returns the moving objects of a UAV's map, at 'now' and in the common world.
@@ -69,7 +69,7 @@ TeamView ViewTeam(const TeamMember& member, Time local, TeamFusion* fusion) {
   const TeamMap& map = member.map();
   const TeamMap::Part* const own = map.Find(member.self());
   const Time now =
-      own == nullptr ? local : own->contents.now + std::max(local - own->told_at, Duration::zero());
+      own == nullptr ? local : own->contents.now + std::max(local - own->sent_at, Duration::zero());
   fusion->Update(map);
   TeamView view;
   view.objects = fusion->standing();

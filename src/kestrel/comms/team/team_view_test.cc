@@ -51,7 +51,7 @@ struct FieldTeam {
   std::vector<TeamFusion> fusions;
 };
 
-TEST(TeamView, TheCommonMapIsTheSameToTheLastBitForAll) {
+TEST(TeamView, CommonMapIsBitIdenticalForAll) {
   FieldTeam flown(3, 1, 4);
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -69,7 +69,7 @@ TEST(TeamView, TheCommonMapIsTheSameToTheLastBitForAll) {
   }
 }
 
-TEST(TeamView, AllSeeTheFieldOnceEachInItsOwnWorld) {
+TEST(TeamView, EveryUavSeesEachObjectOnceInItsOwnWorld) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     FieldTeam flown(5, 1, seed);
     for (std::size_t i = 0; i < 5; ++i) {
@@ -91,7 +91,7 @@ TEST(TeamView, AllSeeTheFieldOnceEachInItsOwnWorld) {
 }
 
 // A living UAV and one that is gone report a moving object at different times.
-TEST(TeamView, ObjectsAreAtTheTimeOfTheView) {
+TEST(TeamView, ObjectsArePredictedToTimeOfView) {
   SimulatedTeam team(1);
   team.Add({"a", 1});
   team.Add({"b", 1});
@@ -142,7 +142,7 @@ struct Hunters : FieldTeam {
   double spacing_m = 20;  // between neighbouring UAVs
 };
 
-TEST(ChooseObject, EachGoesForAnotherObject) {
+TEST(ChooseObject, EachUavChoosesAnotherObject) {
   Hunters hunters(1);
   hunters.Hunt(1);
   EXPECT_EQ(hunters.Rivals(), 0);
@@ -152,7 +152,7 @@ TEST(ChooseObject, EachGoesForAnotherObject) {
   for (std::size_t i = 0; i < 5; ++i) EXPECT_LT((*before[i] - *hunters.holds[i]).norm(), 0.1);
 }
 
-TEST(ChooseObject, AllSeeWhoGoesForWhich) {
+TEST(ChooseObject, AllUavsKnowWhoClaimsWhichObject) {
   Hunters hunters(1);
   hunters.Hunt(2);
   for (std::size_t i = 0; i < 5; ++i) {
@@ -164,7 +164,7 @@ TEST(ChooseObject, AllSeeWhoGoesForWhich) {
   }
 }
 
-TEST(ChooseObject, RivalsOfAPartitionAgreeAfterIt) {
+TEST(ChooseObject, RivalsAgreeAfterPartition) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     Hunters hunters(seed);
     hunters.spacing_m = 1;  // all want the same object
@@ -177,7 +177,7 @@ TEST(ChooseObject, RivalsOfAPartitionAgreeAfterIt) {
   }
 }
 
-TEST(ChooseObject, WhatASilentOneClaimedIsFreeAfterItsTimeOut) {
+TEST(ChooseObject, ClaimOfSilentUavExpires) {
   Hunters hunters(4);
   hunters.Hunt(1);
   const auto claim = hunters.team.uavs[0].member->ClaimOf({"a", 1}, hunters.team.now);

@@ -296,7 +296,7 @@ void MoveToWorld(const WorldAlignment& alignment, MappedObject* object) {
   const auto jacobian = JacobianAt(alignment, object->position());
   const Eigen::Matrix3d turn = Turn(alignment.yaw);
   const Eigen::Vector3d position = alignment * Eigen::Vector3d(object->position());
-  const int size = object->may_move ? MappedObject::kStateSize : 3;  // of the part that is not zero
+  const int size = object->may_move ? MappedObject::kStateSize : 3;  // the rest is zero
   for (int i = 0; i < size; i += 3) {
     object->state.segment<3>(i) = (turn * object->state.segment<3>(i)).eval();
     for (int k = 0; k < size; k += 3) {

@@ -23,7 +23,7 @@ std::vector<MappedObject> SeenIn(const WorldAlignment& world, std::vector<Mapped
   return objects;
 }
 
-TEST(EstimateAlignment, FindsABiasWithItsCovariance) {
+TEST(EstimateAlignment, FindsBiasWithCovariance) {
   double squares = 0;
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -51,7 +51,7 @@ TEST(EstimateAlignment, FindsABiasWithItsCovariance) {
   EXPECT_LT(squares / (3 * found), 1.5);  // 1 when the covariance agrees with the errors
 }
 
-TEST(EstimateAlignment, IsNotSureOfTooLittle) {
+TEST(EstimateAlignment, RejectsTooFewMatches) {
   Random random(3);
   const std::vector<MappedObject> field = TestField(60, &random);
   const std::vector<MappedObject> two(field.begin(), field.begin() + 2);
@@ -63,14 +63,14 @@ TEST(EstimateAlignment, IsNotSureOfTooLittle) {
 }
 
 // A row of equal objects looks the same when shifted by one.
-TEST(EstimateAlignment, IsNotSureWhereTwoFit) {
+TEST(EstimateAlignment, RejectsAmbiguousMatches) {
   std::vector<MappedObject> row;
   for (int i = 0; i < 5; ++i) row.push_back(TestDisc(5 * (i + 1), {3.5 * i, 0, 0}, Time()));
   const std::vector<MappedObject> first(row.begin(), row.begin() + 4);
   EXPECT_FALSE(EstimateAlignment(first, {row.begin() + 1, row.end()}, {3, Radians(2)}));
 }
 
-TEST(WorldAlignment, InverseLeadsBackAndAProductOn) {
+TEST(WorldAlignment, InverseAndProductCompose) {
   WorldAlignment there;
   there.pivot = {1, 2, 3};
   there.translation = {4, 5, 6};

@@ -11,7 +11,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-TEST(BoundedQueue, KeepsTheOrder) {
+TEST(BoundedQueue, KeepsOrder) {
   BoundedQueue<int> queue(3);
   for (const int value : {1, 2, 3}) EXPECT_FALSE(queue.Push(value));
   for (const int value : {1, 2, 3}) EXPECT_EQ(queue.TryPop(), value);
@@ -19,7 +19,7 @@ TEST(BoundedQueue, KeepsTheOrder) {
   EXPECT_EQ(queue.dropped(), 0u);
 }
 
-TEST(BoundedQueue, TheOldestMakesRoom) {
+TEST(BoundedQueue, DropsOldestWhenFull) {
   BoundedQueue<int> newest(1);
   newest.Push(1);
   EXPECT_EQ(newest.Push(2), 1);
@@ -27,14 +27,14 @@ TEST(BoundedQueue, TheOldestMakesRoom) {
   EXPECT_EQ(newest.TryPop(), 2);
 }
 
-TEST(BoundedQueue, WaitsNoLongerThanAsked) {
+TEST(BoundedQueue, WaitsUntilTimeout) {
   BoundedQueue<int> queue(1);
   const Time start = Now();
   EXPECT_FALSE(queue.Pop(milliseconds(20)));
   EXPECT_GE(Now() - start, milliseconds(20));
 }
 
-TEST(BoundedQueue, ClosedItGivesWhatIsLeftAndTakesNothing) {
+TEST(BoundedQueue, ClosedQueueDrainsAndRefusesNewValues) {
   BoundedQueue<int> queue(2);
   queue.Push(1);
   queue.Close();
@@ -43,7 +43,7 @@ TEST(BoundedQueue, ClosedItGivesWhatIsLeftAndTakesNothing) {
   EXPECT_FALSE(queue.Pop(std::chrono::hours(1)));
 }
 
-TEST(BoundedQueue, DestroysWhatItDroppedWithoutItsLock) {
+TEST(BoundedQueue, DestroysDroppedValueWithoutLock) {
   struct Asks {
     explicit Asks(BoundedQueue<std::unique_ptr<Asks>>* asked) : queue(asked) {}
     ~Asks() { queue->size(); }  // would deadlock under the lock
@@ -56,7 +56,7 @@ TEST(BoundedQueue, DestroysWhatItDroppedWithoutItsLock) {
   queue.TryPop().reset();
 }
 
-TEST(BoundedQueue, EveryValueArrivesOrIsCounted) {
+TEST(BoundedQueue, DeliversOrCountsEveryValue) {
   constexpr std::size_t kCount = 20'000;
   BoundedQueue<int> queue(16);
   std::size_t taken = 0;

@@ -75,7 +75,7 @@ class ByteReader {
 // The same, but throws InputError, "<name>: ends too early", when there are not enough bytes.
 class ByteCursor {
  public:
-  // 'name' says what the bytes are, for the message; it must outlive this.
+  // 'name' describes the bytes in the error message; it must outlive this.
   ByteCursor(std::string_view bytes, const std::string& name) : reader_(bytes), name_(&name) {}
 
   std::size_t left() const { return reader_.left(); }

@@ -41,7 +41,8 @@ std::vector<std::string> Others(const std::string& path) {
   return others;
 }
 
-// The group that may use the device; where the system does not say, the one that Debian gives it.
+// The group that may use the device; if the system has no information, the one that Debian gives
+// it.
 std::string GroupOf(const std::string& path) {
   struct stat status {};
   const bool is_groups =

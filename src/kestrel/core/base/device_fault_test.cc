@@ -18,7 +18,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-TEST(DeviceFaultTest, SaysCauseAndRemedyOfEachErrorAndKind) {
+TEST(DeviceFaultTest, DescribesCauseAndRemedyOfEachError) {
   EXPECT_THAT(DeviceFault("/dev/video987", ENOENT), StartsWith("there is no /dev/video987, "));
   EXPECT_THAT(DeviceFault("/dev/ttyTHS9", ENOENT), StartsWith("there is no /dev/ttyTHS9, "));
   EXPECT_THAT(DeviceFault("/dev/video987", EACCES),
@@ -29,7 +29,7 @@ TEST(DeviceFaultTest, SaysCauseAndRemedyOfEachErrorAndKind) {
   EXPECT_THAT(DeviceFault("/dev/ttyACM9", ENXIO), HasSubstr("does not answer"));
 }
 
-TEST(DeviceFaultTest, NamesTheProgramThatHasTheDevice) {
+TEST(DeviceFaultTest, NamesProgramThatUsesDevice) {
   const TestFolder folder;
   const std::string device = folder.Write("video5", "");
   const pid_t other = fork();

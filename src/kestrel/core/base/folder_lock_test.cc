@@ -15,7 +15,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-TEST(FolderLock, KeepsOthersOutUntilItIsGone) {
+TEST(FolderLock, ExcludesOthersUntilReleased) {
   const TestFolder test_folder;
   const std::string folder = test_folder.path();
   {
@@ -26,7 +26,7 @@ TEST(FolderLock, KeepsOthersOutUntilItIsGone) {
   EXPECT_NO_THROW(FolderLock again(folder));
 }
 
-TEST(FolderLock, FolderThatIsNotThereIsNamed) {
+TEST(FolderLock, ReportsMissingFolder) {
   EXPECT_THAT([] { FolderLock lock("/no/such/folder"); },
               ThrowsMessage<InputError>(HasSubstr("/no/such/folder: cannot be locked")));
 }

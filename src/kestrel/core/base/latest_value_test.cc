@@ -13,12 +13,12 @@ struct Pair {
   int negative = 0;
 };
 
-TEST(LatestValueTest, IsTheDefaultBeforeTheFirst) {
+TEST(LatestValueTest, IsDefaultBeforeFirstValue) {
   LatestValue<Pair> latest;
   EXPECT_EQ(latest.Get().value, 0);
 }
 
-TEST(LatestValueTest, IsTheNewest) {
+TEST(LatestValueTest, ReturnsNewestValue) {
   LatestValue<Pair> latest;
   latest.Set({1, -1});
   latest.Set({2, -2});
@@ -28,7 +28,7 @@ TEST(LatestValueTest, IsTheNewest) {
   EXPECT_EQ(latest.Get().value, 3);
 }
 
-TEST(LatestValueTest, IsNeverTornNorOlderThanBefore) {
+TEST(LatestValueTest, IsNeverTornOrOlderThanBefore) {
   constexpr int kLast = 200'000;
   LatestValue<Pair> latest;
   std::thread writer([&latest] {

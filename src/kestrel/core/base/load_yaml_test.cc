@@ -17,19 +17,19 @@ std::string Refusal(const std::string& text) {
   return InputErrorOf([&] { LoadYaml(text, "file.yaml"); });
 }
 
-TEST(LoadYaml, DirectiveOfOpenCvAndByteOrderMarkAreSkipped) {
+TEST(LoadYaml, SkipsOpenCvDirectiveAndByteOrderMark) {
   const YAML::Node root = LoadYaml("\xEF\xBB\xBF%YAML:1.0\n---\na: 1\n", "file.yaml");
   EXPECT_EQ(root["a"].Scalar(), "1");
   EXPECT_EQ(root["a"].Mark().line, 2);
 }
 
-TEST(LoadYaml, TabsAreNamed) {
+TEST(LoadYaml, ReportsTabs) {
   EXPECT_EQ(Refusal("lens:\n\twidth: 1\n"), "file.yaml:2: a tab; YAML indents by spaces");
   EXPECT_EQ(Refusal("a: 1\nb:\n  c: 1\n  \td: 2\n"), "file.yaml:4: a tab; YAML indents by spaces");
   EXPECT_EQ(LoadYaml("a:\tb\n", "file.yaml")["a"].Scalar(), "b");
 }
 
-TEST(LoadYaml, WhatIsNotYamlIsRefused) {
+TEST(LoadYaml, RefusesNonYaml) {
   EXPECT_THAT(Refusal("a: [1, 2\n"),
               HasSubstr("file.yaml:2: the file is not YAML or is truncated"));
   EXPECT_EQ(Refusal(std::string("PK\0\x03", 4)),

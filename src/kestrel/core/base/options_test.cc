@@ -62,7 +62,7 @@ std::string ReadError(const std::string& yaml) {
   return "";
 }
 
-TEST(Options, ReadsWhatTheFileNamesAndLeavesTheRest) {
+TEST(Options, ReadsGivenKeysAndKeepsOtherValues) {
   const DeviceOptions options = Read("verbose: true\nspare:\n  rings: 7\n  focal_px: 1e2\n");
   EXPECT_TRUE(options.verbose);
   EXPECT_EQ(options.spare.rings, 7);
@@ -76,14 +76,14 @@ TEST(Options, EmptyFileAndEmptyGroupSetNothing) {
   EXPECT_EQ(Read("# nothing\nlens:\n").lens.rings, 3);
 }
 
-TEST(Options, UnknownKeyNamesLineAndNearest) {
+TEST(Options, UnknownKeyErrorNamesLineAndNearestKey) {
   EXPECT_EQ(ReadError("verbose: true\nlens:\n  focal_pix: 3\n"),
             "c.yaml:3: unknown key 'lens.focal_pix', did you mean 'lens.focal_px'?");
   EXPECT_THAT(ReadError("lenz:\n  rings: 3\n"), HasSubstr("did you mean 'lens'?"));
   EXPECT_THAT(ReadError("focal_px: 3\n"), HasSubstr("did you mean 'lens.focal_px'?"));
 }
 
-TEST(Options, WrongTypeNamesFileLineKeyAndWhatWasExpected) {
+TEST(Options, WrongTypeErrorNamesFileLineKeyAndExpectation) {
   EXPECT_EQ(ReadError("\nrange_m: far\n"),
             "c.yaml:2: range_m is 'far', expected a finite number (m)");
   EXPECT_EQ(ReadError("lens:\n  rings: 2.5\n"),
@@ -93,7 +93,7 @@ TEST(Options, WrongTypeNamesFileLineKeyAndWhatWasExpected) {
   EXPECT_THAT(ReadError("lens: 3\n"), HasSubstr("expected a group"));
 }
 
-TEST(Options, ReadsNumbersAsTheyAreWritten) {
+TEST(Options, ReadsNumbersInAnyNotation) {
   for (const char* value : {"8.5", "+8.5", " 8.5 ", "85e-1", "008.50"}) {
     EXPECT_EQ(Read(std::string("range_m: ") + value + "\n").range_m, 8.5) << value;
   }
@@ -101,14 +101,14 @@ TEST(Options, ReadsNumbersAsTheyAreWritten) {
   EXPECT_THAT(ReadError("range_m: a,b\n"), Not(HasSubstr("write")));
 }
 
-TEST(Options, RefusesNumbersThatAreNone) {
+TEST(Options, RefusesMalformedNumbers) {
   for (const char* value :
        {"nan", "+", "+-1", "++1", ".nan", "inf", "-inf", ".inf", "1e999", "1 2", "''", "~"}) {
     EXPECT_NE(ReadError(std::string("range_m: ") + value + "\n"), "") << value;
   }
 }
 
-TEST(Options, RefusesKeyGivenTwiceAndTextThatIsNotYaml) {
+TEST(Options, RefusesDuplicateKeyAndNonYaml) {
   EXPECT_THAT(ReadError("range_m: 1\nrange_m: 2\n"), HasSubstr("c.yaml:2: range_m is given twice"));
   EXPECT_THAT(ReadError("lens: {rings: 1\n"), HasSubstr("not YAML"));
   EXPECT_THAT(ReadError("- 1\n- 2\n"), HasSubstr("expected 'name: value'"));
@@ -124,7 +124,7 @@ TEST(Options, SetsOneField) {
   EXPECT_THROW(SetOption("lens.ring=3", &options), InputError);
 }
 
-TEST(Options, PrintedTextReadsBackToTheSameValues) {
+TEST(Options, PrintedTextRoundTrips) {
   DeviceOptions options;
   options.verbose = true;
   options.range_m = 0.1 + 0.2;
@@ -142,7 +142,7 @@ TEST(Options, PrintedTextReadsBackToTheSameValues) {
   EXPECT_EQ(again.lens.rings, options.lens.rings);
 }
 
-TEST(Options, AllViolationsAreReportedTogether) {
+TEST(Options, ReportsAllViolationsTogether) {
   DeviceOptions options;
   EXPECT_NO_THROW(RequireValid(options));
   options.color = "green";
@@ -158,7 +158,7 @@ TEST(Options, AllViolationsAreReportedTogether) {
   }
 }
 
-TEST(Options, FieldsAreComparedWhenEachIsWithinItsLimits) {
+TEST(Options, ComparesFieldsWithinTheirLimits) {
   DeviceOptions options;
   options.lens.rings = 4;
   EXPECT_THAT(ViolationsOf(options), ElementsAre("lens has more rings than spare"));
@@ -166,7 +166,7 @@ TEST(Options, FieldsAreComparedWhenEachIsWithinItsLimits) {
   EXPECT_THAT(ViolationsOf(options), ElementsAre("spare.rings is 0, expected 1 or more"));
 }
 
-TEST(Options, NotANumberIsBeyondAllLimits) {
+TEST(Options, RejectsNanAndInfinity) {
   DeviceOptions options;
   options.lens.focal_px = std::numeric_limits<double>::quiet_NaN();
   options.range_m = std::numeric_limits<double>::infinity();
@@ -174,7 +174,7 @@ TEST(Options, NotANumberIsBeyondAllLimits) {
                                                  "range_m is inf, expected more than 0 to 30"));
 }
 
-TEST(Options, KeysOfFormerVersionsAreNamedTogether) {
+TEST(Options, ReportsAllKeysOfFormerVersionsTogether) {
   EXPECT_EQ(ReadError("lens:\n  half_angle_deg: 90\n  rings: 4\nspare:\n  coating:\n    blue: 1\n"),
             "c.yaml: lens.half_angle_deg, spare.coating: no option any more, remove it "
             "(docs/versions.md has what holds instead)");
@@ -182,7 +182,7 @@ TEST(Options, KeysOfFormerVersionsAreNamedTogether) {
   EXPECT_THROW(SetOption("lens.half_angle_deg=90", &options), InputError);
 }
 
-TEST(Options, FileThatIsNotThereIsNamed) {
+TEST(Options, ReportsMissingFile) {
   DeviceOptions options;
   EXPECT_THROW(ReadOptions("/nowhere/c.yaml", &options), InputError);
   EXPECT_THROW(ReadOptions("/", &options), InputError);

@@ -12,13 +12,13 @@ namespace {
 constexpr int kDraws = 100000;
 
 // The C++ standard specifies the 10000th number of the engine with its default seed.
-TEST(RandomTest, IsTheEngineOfTheStandard) {
+TEST(RandomTest, MatchesStandardEngine) {
   Random random(5489);
   for (int i = 0; i < 9999; ++i) random.Bits();
   EXPECT_EQ(random.Bits(), 9981545732273789042u);
 }
 
-TEST(RandomTest, UniformFillsItsRangeEvenly) {
+TEST(RandomTest, UniformFillsRangeEvenly) {
   Random random(1);
   double sum = 0;
   double square_sum = 0;

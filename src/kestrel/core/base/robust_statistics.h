@@ -2,7 +2,7 @@
 #pragma once
 
 // Quantiles without sorting. Each function reorders the values that it is given (std::nth_element)
-// and does not allocate; the values must not be empty unless it says otherwise.
+// and does not allocate; the values must not be empty unless documented otherwise.
 
 #include <algorithm>
 #include <cmath>

@@ -25,25 +25,25 @@ std::vector<int> Shuffled(int count) {
   return values;
 }
 
-TEST(RobustStatistics, RankIsThatOfTheSortedValues) {
+TEST(RobustStatistics, RankMatchesSortedValues) {
   for (std::size_t rank = 0; rank < 50; ++rank) {
     EXPECT_EQ(RankedInPlace(Shuffled(50), rank), static_cast<int>(rank));
   }
 }
 
-TEST(RobustStatistics, MedianOfAnEvenNumberIsTheUpperOfTheMiddle) {
+TEST(RobustStatistics, MedianOfEvenCountIsUpperMiddleValue) {
   EXPECT_EQ(MedianInPlace(Shuffled(1)), 0);
   EXPECT_EQ(MedianInPlace(Shuffled(50)), 25);
   EXPECT_EQ(MedianInPlace(Shuffled(51)), 25);
 }
 
-TEST(RobustStatistics, OnlyTheSpanThatIsGivenCounts) {
+TEST(RobustStatistics, UsesGivenSpanOnly) {
   std::array<float, 6> values{5, 1, 3, -100, -100, -100};
   EXPECT_EQ(MedianInPlace(std::span(values).first(3)), 3);
   EXPECT_EQ(values[3], -100);
 }
 
-TEST(RobustStatistics, QuantilesTakeTheRankThatIsAskedFor) {
+TEST(RobustStatistics, QuantileUsesRequestedRank) {
   EXPECT_EQ(QuantileInPlace(Shuffled(10), 0.75, QuantileRank::kNearest), 7);     // 6.75
   EXPECT_EQ(QuantileInPlace(Shuffled(10), 0.75, QuantileRank::kLower), 6);       // 6.75
   EXPECT_EQ(QuantileInPlace(Shuffled(10), 0.75, QuantileRank::kShareBelow), 7);  // 7.5
@@ -54,7 +54,7 @@ TEST(RobustStatistics, QuantilesTakeTheRankThatIsAskedFor) {
   }
 }
 
-TEST(RobustStatistics, SigmaIsThatOfANormalDistributionDespiteOutliers) {
+TEST(RobustStatistics, EstimatesNormalSigmaDespiteOutliers) {
   Random random(2);
   std::vector<double> magnitudes;
   for (int i = 0; i < 20000; ++i) magnitudes.push_back(std::abs(3 * random.Normal()));
@@ -63,7 +63,7 @@ TEST(RobustStatistics, SigmaIsThatOfANormalDistributionDespiteOutliers) {
   EXPECT_NEAR(RobustSigmaInPlace(magnitudes), 3, 0.1);
 }
 
-TEST(RobustStatistics, SigmaOfNothingIs0) {
+TEST(RobustStatistics, SigmaOfEmptyRangeIsZero) {
   EXPECT_EQ(RobustSigmaInPlace(std::vector<float>()), 0);
 }
 

@@ -22,7 +22,7 @@ class ServiceManagerTest : public ::testing::Test {
   TestFolder folder_;
 };
 
-TEST_F(ServiceManagerTest, GetsTheState) {
+TEST_F(ServiceManagerTest, ReceivesState) {
   const std::string path = folder_ / "notify";
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
@@ -40,7 +40,7 @@ TEST_F(ServiceManagerTest, GetsTheState) {
   EXPECT_FALSE(ServiceManager().Tell("WATCHDOG=1"));  // it is gone
 }
 
-TEST_F(ServiceManagerTest, IsNotMissedWhereThereIsNone) {
+TEST_F(ServiceManagerTest, WorksWithoutServiceManager) {
   unsetenv("NOTIFY_SOCKET");
   EXPECT_FALSE(ServiceManager().Tell("READY=1"));
 }

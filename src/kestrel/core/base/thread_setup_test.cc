@@ -19,7 +19,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-TEST(ThreadSetup, NamesAndPinsTheCallingThreadOnly) {
+TEST(ThreadSetup, NamesAndPinsCallingThreadOnly) {
   cpu_set_t allowed;
   ASSERT_EQ(pthread_getaffinity_np(pthread_self(), sizeof(allowed), &allowed), 0);
   int cpu = 0;
@@ -36,7 +36,7 @@ TEST(ThreadSetup, NamesAndPinsTheCallingThreadOnly) {
   EXPECT_TRUE(CPU_EQUAL(&allowed, &after));
 }
 
-TEST(ThreadSetup, APriorityIsSetOrRefusedInOneLine) {
+TEST(ThreadSetup, SetsPriorityOrReportsRefusal) {
   std::thread([] {
     const std::string refused = SetUpThisThread("vision", {.priority = 10});
     EXPECT_THAT(refused, AnyOf(IsEmpty(), HasSubstr("thread vision: priority 10 is not permitted"),
@@ -48,7 +48,7 @@ TEST(ThreadSetup, APriorityIsSetOrRefusedInOneLine) {
   }).join();
 }
 
-TEST(ThreadSetup, NamesWhatIsNotThere) {
+TEST(ThreadSetup, ReportsInvalidOptions) {
   EXPECT_THAT(ViolationsOf(ThreadOptions()), IsEmpty());
   EXPECT_THAT(ViolationsOf(ThreadOptions{.cpu = 100'000}), SizeIs(1));
   EXPECT_THAT(ViolationsOf(ThreadOptions{.cpu = -2, .priority = 100}), SizeIs(2));

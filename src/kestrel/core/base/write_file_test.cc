@@ -26,7 +26,7 @@ class WriteFileTest : public ::testing::Test {
   const fs::path folder_ = test_folder_.path();
 };
 
-TEST_F(WriteFileTest, ReplacesTheFileAndLeavesNothingElse) {
+TEST_F(WriteFileTest, ReplacesFileAndLeavesNoOther) {
   WriteFile(Path("a"), "a longer first text");
   const std::string bytes("x\0y\n", 4);
   WriteFile(Path("a"), bytes);
@@ -34,7 +34,7 @@ TEST_F(WriteFileTest, ReplacesTheFileAndLeavesNothingElse) {
   EXPECT_EQ(FileCount(), 1);
 }
 
-TEST_F(WriteFileTest, ReplacesTheFileWithoutWaitingToo) {
+TEST_F(WriteFileTest, ReplacesFileWithoutSync) {
   ReplaceFile(Path("a"), "old");
   ReplaceFile(Path("a"), "new");
   EXPECT_EQ(ReadFile(Path("a")), "new");
@@ -42,11 +42,11 @@ TEST_F(WriteFileTest, ReplacesTheFileWithoutWaitingToo) {
   EXPECT_THROW(ReplaceFile(Path("missing/a"), "text"), InputError);
 }
 
-TEST_F(WriteFileTest, WhatCannotBeWrittenIsSaid) {
+TEST_F(WriteFileTest, ReportsUnwritablePath) {
   EXPECT_THROW(WriteFile(Path("missing/a"), "text"), InputError);
 }
 
-TEST_F(WriteFileTest, OldFileStaysWhenTheNewOneCannotTakeItsPlace) {
+TEST_F(WriteFileTest, KeepsOldFileWhenReplacementFails) {
   fs::create_directories(folder_ / "a" / "b");  // a file cannot replace a folder
   EXPECT_THROW(WriteFile(Path("a"), "text"), InputError);
   EXPECT_TRUE(fs::is_directory(folder_ / "a" / "b"));

@@ -30,7 +30,7 @@ class YamlReader {
   // keys.
   void RequireKeys(const std::set<std::string>& names) const;
 
-  std::vector<YamlReader> Items() const;  // of a list
+  std::vector<YamlReader> Items() const;  // items of a list
   std::string Text() const;               // not empty
   double Number() const;                  // finite
   std::int64_t Integer() const;           // also from 3.0

@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 
 YamlReader ReaderOf(const std::string& text) { return YamlReader(text, "file.yaml"); }
 
-TEST(YamlReader, ReadsWhatIsThere) {
+TEST(YamlReader, ReadsValues) {
   const YamlReader root = ReaderOf("name: red\nsize: 0.2\ncount: 3\non: true\nmean: [1, 2.5]\n");
   EXPECT_EQ(root["name"].Text(), "red");
   EXPECT_EQ(root["size"].Number(), 0.2);
@@ -27,7 +27,7 @@ TEST(YamlReader, ReadsWhatIsThere) {
   EXPECT_FALSE(root.Has("other"));
 }
 
-TEST(YamlReader, WholeNumbersMayHaveAFractionOfZero) {
+TEST(YamlReader, AcceptsIntegersWithZeroFraction) {
   EXPECT_EQ(ReaderOf("id: 7.0\n")["id"].Integer(), 7);
   EXPECT_EQ(ReaderOf("id: 9007199254740993\n")["id"].Integer(), 9007199254740993);
   EXPECT_THAT(InputErrorOf([] { ReaderOf("id: 1e30\n")["id"].Integer(); }),
@@ -44,7 +44,7 @@ TEST(YamlReader, ErrorsNameFileLineAndKey) {
   EXPECT_THAT(InputErrorOf([] { ReaderOf("a: [1, 2"); }), HasSubstr("file.yaml:"));
 }
 
-TEST(YamlReader, WrongTypesAreRefused) {
+TEST(YamlReader, RefusesWrongTypes) {
   const YamlReader root = ReaderOf("list: [1, x]\nnumber: 1.5\nhuge: .inf\n");
   EXPECT_THAT(InputErrorOf([&] { root["list"].Text(); }), HasSubstr("a word"));
   EXPECT_THAT(InputErrorOf([&] { root["list"].Numbers(2); }), HasSubstr("a finite number"));
@@ -56,7 +56,7 @@ TEST(YamlReader, WrongTypesAreRefused) {
   EXPECT_THAT(InputErrorOf([&] { root["huge"].Number(); }), HasSubstr("a finite number"));
 }
 
-TEST(YamlReader, KeysAreThoseThatAreKnownAndOnce) {
+TEST(YamlReader, RefusesUnknownAndDuplicateKeys) {
   EXPECT_EQ(InputErrorOf([] { ReaderOf("a: 1\nb: 2\n").RequireKeys({"a", "b", "c"}); }), "");
   EXPECT_THAT(InputErrorOf([] { ReaderOf("a: 1\nz: 2\n").RequireKeys({"a"}); }), HasSubstr("'z'"));
   EXPECT_THAT(InputErrorOf([] { ReaderOf("a: 1\na: 2\n").RequireKeys({"a"}); }),

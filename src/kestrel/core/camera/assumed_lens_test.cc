@@ -9,7 +9,7 @@
 namespace kestrel {
 namespace {
 
-TEST(AssumedLens, SeesTheFieldOfViewFromEdgeToEdge) {
+TEST(AssumedLens, SpansFieldOfViewFromEdgeToEdge) {
   for (const double fov_deg : {kMinFov_deg, 60.0, 100.0, 101.0, 180.0, kMaxFov_deg}) {
     const CameraModel camera(AssumedLens(640, 480, fov_deg));
     Eigen::Vector3d left, right;

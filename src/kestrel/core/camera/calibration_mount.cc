@@ -18,7 +18,7 @@ namespace kestrel {
 namespace {
 
 constexpr double kMaxClockOffset_s = 4e9;    // fits into a Duration and spans two epochs
-constexpr double kRotationTolerance = 1e-3;  // of matrices typed with four digits
+constexpr double kRotationTolerance = 1e-3;  // error of matrices typed with four digits
 
 RigidTransform RigidOf(const CalibrationEntry& entry, const Eigen::Matrix3d& rotation,
                        const Eigen::Vector3d& translation) {

@@ -6,7 +6,7 @@
 
 namespace kestrel {
 
-// Sets mount and clock offset from the keys of 'camera' that say them. Throws InputError as
+// Sets mount and clock offset from the keys of 'camera' that hold them. Throws InputError as
 // ReadCalibration does.
 void ReadMountAndClock(const CalibrationEntry& camera, CameraCalibration* calibration);
 

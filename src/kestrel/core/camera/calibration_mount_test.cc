@@ -35,7 +35,7 @@ void ExpectMount(const std::string& yaml) {
       << yaml;
 }
 
-TEST(CalibrationMount, EveryNameOfAMountIsRead) {
+TEST(CalibrationMount, ReadsEveryNameOfMount) {
   for (const char* name : {"T_BS", "T_imu_cam", "T_BC", "T_B_C", "T_SC", "T_ic", "T_i_c",
                            "body_T_cam0", "Tbc", "IMU.T_b_c1", "imu_T_cam", "T_body_camera"}) {
     ExpectMount(fmt::format("{}: {}\n", name, kBodyFromCamera));
@@ -47,20 +47,20 @@ TEST(CalibrationMount, EveryNameOfAMountIsRead) {
 }
 
 // A camera of another number, another camera, another sensor.
-TEST(CalibrationMount, OtherTransformsAreNoMount) {
+TEST(CalibrationMount, IgnoresOtherTransforms) {
   for (const char* name : {"body_T_cam1", "T_cn_cnm1", "T_imu_body", "T_BX", "T_WB", "T_GS"}) {
     EXPECT_FALSE(Read(fmt::format("{}: {}\n", name, kBodyFromCamera)).body_from_camera) << name;
   }
 }
 
-TEST(CalibrationMount, TwoMountsAgreeOrAreRefused) {
+TEST(CalibrationMount, RefusesContradictoryMounts) {
   ExpectMount(fmt::format("T_cam_imu: {}\nT_imu_cam: {}\n", kCameraFromBody, kBodyFromCamera));
   EXPECT_THAT(
       InputErrorOf([] { Read(fmt::format("T_cam_imu: {0}\nT_imu_cam: {0}\n", kCameraFromBody)); }),
       AllOf(HasSubstr("lens.yaml:2: 'T_imu_cam' is another mount than 'T_cam_imu'")));
 }
 
-TEST(CalibrationMount, RotationAndTranslationOfVinsAreTheMount) {
+TEST(CalibrationMount, ReadsRotationAndTranslationOfVins) {
   ExpectMount(
       "extrinsicRotation: [[0, -1, 0], [-1, 0, 0], [0, 0, -1]]\n"
       "extrinsicTranslation: [0.1, 0, -0.05]\n");
@@ -68,7 +68,7 @@ TEST(CalibrationMount, RotationAndTranslationOfVinsAreTheMount) {
               HasSubstr("has no key 'extrinsicTranslation'"));
 }
 
-TEST(CalibrationMount, ClockOffsetIsThatOfKalibrAndVins) {
+TEST(CalibrationMount, ReadsClockOffsetOfKalibrAndVins) {
   EXPECT_EQ(Read("timeshift_cam_imu: -0.5\n").clock_offset, DurationFromSeconds(-0.5));
   EXPECT_EQ(Read("td: 0.25\n").clock_offset, DurationFromSeconds(0.25));
 }

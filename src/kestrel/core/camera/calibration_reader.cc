@@ -334,7 +334,7 @@ std::optional<CameraCalibration> ReadLens(const Entry& camera) {
   return std::nullopt;
 }
 
-// Keys that say nothing about lens, mount and clock, as PlainKey has them.
+// Keys unrelated to lens, mount and clock, as PlainKey has them.
 bool IsIrrelevant(const std::string& key) {
   static const std::set<std::string> kKeys{
       // Kestrel, EuRoC
@@ -367,7 +367,7 @@ struct Teller {
   const std::function<void(const std::string&)>& tell;
 };
 
-void TellUnusedKeys(const Entry& map, const Teller& teller) {
+void ReportUnusedKeys(const Entry& map, const Teller& teller) {
   constexpr std::size_t kMost = 8;
   std::vector<std::string> unused = UnusedKeys(map);
   if (unused.empty() || !teller.tell) return;
@@ -390,7 +390,7 @@ CameraCalibration ReadCamera(const Entry& camera, const Teller& teller) {
   if (const std::optional<Entry> name = camera.Find({"camera_name"})) {
     calibration->name = name->Text();
   }
-  TellUnusedKeys(camera, teller);
+  ReportUnusedKeys(camera, teller);
   return *calibration;
 }
 
@@ -419,8 +419,9 @@ CameraCalibration ReadChain(const Entry& root, const std::vector<std::string>& n
   CameraCalibration calibration =
       ReadCamera(root.Get({name.c_str()}, "the camera's calibration"), teller);
   calibration.name = name;
-  for (const std::string& other : names) root.Find({other.c_str()});  // of no concern
-  TellUnusedKeys(root, teller);
+  // The other cameras' keys count as used.
+  for (const std::string& other : names) root.Find({other.c_str()});
+  ReportUnusedKeys(root, teller);
   return calibration;
 }
 

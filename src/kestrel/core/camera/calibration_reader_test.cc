@@ -129,7 +129,7 @@ std::string Refusal(const std::string& text, const std::string& camera = "") {
   return "";
 }
 
-// Returns what is told of a text that is read.
+// Returns the message about a text that is read.
 std::string ToldOf(const std::string& text) {
   std::string told;
   ParseCalibration(text, "lens.yaml", "", [&](const std::string& line) { told += line; });
@@ -156,7 +156,7 @@ TEST(CalibrationReader, ReadsEuroc) {
   EXPECT_FALSE(read.clock_offset);
 }
 
-TEST(CalibrationReader, ReadsTheFirstCameraOfAKalibrChain) {
+TEST(CalibrationReader, ReadsFirstCameraOfKalibrChain) {
   const CameraCalibration read = ParseCalibration(kKalibr, "camchain.yaml");
   EXPECT_EQ(read.name, "cam0");
   EXPECT_EQ(read.intrinsics.distortion_model, DistortionModel::kEquidistant);
@@ -170,7 +170,7 @@ TEST(CalibrationReader, ReadsTheFirstCameraOfAKalibrChain) {
   EXPECT_EQ(read.clock_offset->count(), -120000);
 }
 
-TEST(CalibrationReader, ReadsANamedCameraOfAKalibrChain) {
+TEST(CalibrationReader, ReadsNamedCameraOfKalibrChain) {
   const CameraCalibration read = ParseCalibration(kKalibr, "camchain.yaml", "cam1");
   EXPECT_EQ(read.name, "cam1");
   EXPECT_EQ(read.intrinsics.distortion_model, DistortionModel::kNone);
@@ -191,7 +191,7 @@ TEST(CalibrationReader, ReadsRosCameraInfo) {
   EXPECT_EQ(read.intrinsics.distortion.size(), 5u);
 }
 
-TEST(CalibrationReader, ReadsAnEchoedRosMessage) {
+TEST(CalibrationReader, ReadsEchoedRosMessage) {
   const CameraCalibration read = ParseCalibration(kRosMessage, "camera_info");
   EXPECT_EQ(read.intrinsics.distortion_model, DistortionModel::kEquidistant);
   EXPECT_EQ(read.intrinsics.height_px, 480);
@@ -207,7 +207,7 @@ TEST(CalibrationReader, ReadsOpenCv) {
 }
 
 // The output of OpenCV itself, with the rational model's 14 coefficients of which 8 are used.
-TEST(CalibrationReader, ReadsWhatOpenCvWrites) {
+TEST(CalibrationReader, ReadsFileWrittenByOpenCv) {
   cv::FileStorage storage("lens.yml", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
   const cv::Mat matrix = (cv::Mat_<double>(3, 3) << 607.6, 0, 637.1, 0, 607.4, 366.9, 0, 0, 1);
   cv::Mat coefficients = cv::Mat::zeros(1, 14, CV_64F);
@@ -221,7 +221,7 @@ TEST(CalibrationReader, ReadsWhatOpenCvWrites) {
   EXPECT_THAT(read.intrinsics.distortion, ElementsAre(0, 0, 0, 0, 0, 0, 0, 0.25));
 }
 
-TEST(CalibrationReader, OpenCvLensIsToldByFlagOrByTheNumberOfCoefficients) {
+TEST(CalibrationReader, DeterminesOpenCvLensByFlagOrCoefficientCount) {
   EXPECT_EQ(ParseCalibration(Replaced(kOpenCv, "fisheye_model: 1", "fisheye_model: 0"), "")
                 .intrinsics.distortion_model,
             DistortionModel::kRadialTangential);
@@ -238,7 +238,7 @@ TEST(CalibrationReader, OpenCvLensIsToldByFlagOrByTheNumberOfCoefficients) {
               HasSubstr("'fisheye_model' is '2', expected 0 or 1"));
 }
 
-TEST(CalibrationReader, KnowsEveryNameOfALens) {
+TEST(CalibrationReader, KnowsEveryNameOfLens) {
   const auto model = [](const std::string& name) {
     return ParseCalibration(Replaced(kEuroc, "radial-tangential", name), "")
         .intrinsics.distortion_model;
@@ -259,7 +259,7 @@ TEST(CalibrationReader, KnowsEveryNameOfALens) {
   }
 }
 
-TEST(CalibrationReader, UnsupportedLensesAreNamed) {
+TEST(CalibrationReader, ReportsUnsupportedLenses) {
   for (const char* name : {"omni", "eucm", "ds"}) {
     EXPECT_THAT(
         Refusal(Replaced(kEuroc, "camera_model: pinhole", fmt::format("camera_model: {}", name))),
@@ -285,7 +285,7 @@ void ExpectRefusals(const std::string& good, const std::vector<BadText>& cases) 
   }
 }
 
-TEST(CalibrationReader, BadEurocFilesAreRefusedInWords) {
+TEST(CalibrationReader, RefusesMalformedEurocFiles) {
   ExpectRefusals(
       kEuroc,
       {{"resolution: [752, 480]\n", "",
@@ -327,7 +327,7 @@ TEST(CalibrationReader, BadEurocFilesAreRefusedInWords) {
        {"cols: 4\n  rows: 4\n", "", "'T_BS' has no key 'rows', expected the number of rows"}});
 }
 
-TEST(CalibrationReader, BadKalibrFilesAreRefusedInWords) {
+TEST(CalibrationReader, RefusesMalformedKalibrFiles) {
   ExpectRefusals(
       kKalibr,
       {{"0.0034, ", "", "'cam0.distortion_coeffs' has 3 coefficients, expected 4: k1, k2, k3, k4"},
@@ -338,7 +338,7 @@ TEST(CalibrationReader, BadKalibrFilesAreRefusedInWords) {
        {"  resolution: [512, 512]\n", "", "'cam0' has no size of the images"}});
 }
 
-TEST(CalibrationReader, BadMatrixFilesAreRefusedInWords) {
+TEST(CalibrationReader, RefusesMalformedMatrixFiles) {
   ExpectRefusals(
       kRos,
       {{"[438.783367,", "[0.0,", "'camera_matrix' has a focal length of 0: the camera is not"},
@@ -474,7 +474,7 @@ TEST(CalibrationReader, ReadsOpenCvXml) {
 }
 
 // Files as Python's tutorials write them: nested lists, floating-point sizes, names of the author.
-TEST(CalibrationReader, KeysAreReadInEverySpelling) {
+TEST(CalibrationReader, ReadsKeysInEverySpelling) {
   for (const char* matrix : {"camera_matrix", "mtx", "cameraMatrix", "CameraMatrix", "K"}) {
     for (const char* coefficients :
          {"dist_coeff", "dist_coeffs", "distCoeffs", "dist", "distortion_coefficients", "D"}) {
@@ -491,7 +491,7 @@ TEST(CalibrationReader, KeysAreReadInEverySpelling) {
   }
 }
 
-TEST(CalibrationReader, KeysThatContradictEachOtherAreNamed) {
+TEST(CalibrationReader, ReportsContradictoryKeys) {
   const std::string both = Replaced(kRos, "camera_name", "image_size: [480, 640]\ncamera_name");
   EXPECT_THAT(Refusal(both), AllOf(HasSubstr("'image_size'"), HasSubstr("480x640"),
                                    HasSubstr("'image_width', 'image_height'")));
@@ -503,7 +503,7 @@ TEST(CalibrationReader, KeysThatContradictEachOtherAreNamed) {
               HasSubstr("'imageWidth' contradicts 'image_width'"));
 }
 
-TEST(CalibrationReader, BinningAndRegionsOfInterestAreRefused) {
+TEST(CalibrationReader, RefusesBinningAndRegionsOfInterest) {
   const std::string message = Replaced(kRosMessage, "---\n", "");
   const auto refusal = [&](const std::string& more) { return Refusal(message + more); };
   EXPECT_THAT(refusal("binning_x: 2\n"),
@@ -520,7 +520,7 @@ TEST(CalibrationReader, BinningAndRegionsOfInterestAreRefused) {
   }
 }
 
-TEST(CalibrationReader, KeysThatAreNotUsedAreNamed) {
+TEST(CalibrationReader, ReportsUnusedKeys) {
   for (const char* text : {kEuroc, kKalibr, kRos, kRosMessage, kOpenCv, kCamodocal}) {
     EXPECT_EQ(ToldOf(text), "") << text;
   }
@@ -533,7 +533,7 @@ TEST(CalibrationReader, KeysThatAreNotUsedAreNamed) {
   EXPECT_THAT(ToldOf(many), HasSubstr("'key7' and 12 more"));
 }
 
-TEST(CalibrationReader, WhatIsNotACalibrationIsRefused) {
+TEST(CalibrationReader, RefusesFileWithoutCalibration) {
   EXPECT_THAT(Refusal(""), HasSubstr("is not a camera calibration, expected EuRoC"));
   EXPECT_THAT(Refusal("just words"), HasSubstr("is not a camera calibration"));
   EXPECT_THAT(Refusal("[1, 2]"), HasSubstr("is not a camera calibration"));
@@ -546,7 +546,7 @@ TEST(CalibrationReader, WhatIsNotACalibrationIsRefused) {
 }
 
 // A truncated calibration is refused wherever it ends, and never crashes the reader.
-TEST(CalibrationReader, TruncatedFilesAreRefused) {
+TEST(CalibrationReader, RefusesTruncatedFiles) {
   for (const std::string text : {kEuroc, kRos, kOpenCv}) {
     const std::size_t last_number = text.find_last_of("0123456789");
     const std::size_t end = std::min(last_number, text.find("rectification_matrix"));
@@ -556,7 +556,7 @@ TEST(CalibrationReader, TruncatedFilesAreRefused) {
   }
 }
 
-TEST(CalibrationReader, ReadsFilesAndNamesMissingOnes) {
+TEST(CalibrationReader, ReadsFilesAndReportsMissingOnes) {
   const TestFolder folder;
   const std::string file = folder.Write("any_name.txt", kEuroc);
   EXPECT_EQ(ReadCalibration(file).intrinsics.fx_px, 458.654);

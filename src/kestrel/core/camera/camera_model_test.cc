@@ -35,7 +35,7 @@ std::vector<double> AnglesTo(double limit) {
   return angles;
 }
 
-TEST_P(EveryCamera, UnprojectInvertsProjectToTheRim) {
+TEST_P(EveryCamera, UnprojectInvertsProjectUpToRim) {
   for (const double angle : AnglesTo(camera_.max_angle())) {
     for (int step = 0; step < 24; ++step) {
       const Eigen::Vector3d ray = RayAt(angle, step * kPi / 12 + 0.01);
@@ -52,7 +52,7 @@ TEST_P(EveryCamera, UnprojectInvertsProjectToTheRim) {
   }
 }
 
-TEST_P(EveryCamera, JacobianIsTheDerivative) {
+TEST_P(EveryCamera, JacobianMatchesNumericalDerivative) {
   for (const double angle : AnglesTo(camera_.max_angle() * 0.98)) {
     const Eigen::Vector3d point = 2.0 * RayAt(angle, 1 + 7 * angle);
     Eigen::Vector2d pixel;
@@ -72,7 +72,7 @@ TEST_P(EveryCamera, JacobianIsTheDerivative) {
   }
 }
 
-TEST_P(EveryCamera, JacobianOnTheAxisIsThatOfAPinhole) {
+TEST_P(EveryCamera, JacobianOnAxisEqualsPinhole) {
   Eigen::Vector2d pixel;
   Eigen::Matrix<double, 2, 3> jacobian;
   ASSERT_EQ(camera_.Project({0, 0, 2}, &pixel, &jacobian), ProjectionStatus::kOk);
@@ -107,7 +107,7 @@ TEST_P(EveryCamera, AgreesWithOpenCv) {
   }
 }
 
-TEST_P(EveryCamera, SaysNothingBeyondItsLimit) {
+TEST_P(EveryCamera, ReportsRaysBeyondLimitAsOutside) {
   Eigen::Vector2d pixel(-7, -7);
   for (int step = 0; step < 24 && camera_.max_angle() < kPi; ++step) {
     EXPECT_EQ(camera_.Project(RayAt(camera_.max_angle() + 1e-4, step * kPi / 12), &pixel),
@@ -128,7 +128,7 @@ TEST_P(EveryCamera, SaysNothingBeyondItsLimit) {
   EXPECT_EQ(ray, Eigen::Vector3d(-7, -7, -7));
 }
 
-TEST(CameraModel, PaperLensIsMonotonicToTheBackAndItsImageEndsBefore) {
+TEST(CameraModel, PaperLensIsMonotonicBeyondItsImage) {
   const CameraModel camera(PaperCamera());
   EXPECT_DOUBLE_EQ(camera.max_angle(), kPi);
   // 92.5 degrees, half of the lens's field of view, projects outside of the image's corner.
@@ -140,7 +140,7 @@ TEST(CameraModel, PaperLensIsMonotonicToTheBackAndItsImageEndsBefore) {
   EXPECT_LT(ray.z(), 0);
 }
 
-TEST(CameraModel, LimitIsWhereThePolynomialTurns) {
+TEST(CameraModel, LimitIsTurningPointOfPolynomial) {
   CameraIntrinsics fisheye = PaperCamera();
   fisheye.distortion = {-0.1, 0, 0, 0};  // 1 - 0.3 theta^2 = 0
   EXPECT_NEAR(CameraModel(fisheye).max_angle(), std::sqrt(1 / 0.3), 1e-12);
@@ -161,7 +161,7 @@ TEST(CameraModel, LimitIsFoundBetweenTwoNearTurns) {
   EXPECT_NEAR(CameraModel(fisheye).max_angle(), std::sqrt(a), 1e-9);
 }
 
-TEST(CameraModel, UnprojectRefusesPixelsBeyondTheFold) {
+TEST(CameraModel, UnprojectRefusesPixelsBeyondFold) {
   for (const TestCamera& test : TestCameras()) {
     if (!test.name.starts_with("folding")) continue;
     const CameraModel camera(test.intrinsics);
@@ -178,7 +178,7 @@ TEST(CameraModel, UnprojectRefusesPixelsBeyondTheFold) {
   }
 }
 
-TEST(CameraModel, ImageIncludesTheWholeOfItsBorderPixels) {
+TEST(CameraModel, ImageIncludesWholeBorderPixels) {
   const CameraModel camera({640, 360, 370, 370, 319.5, 179.5, DistortionModel::kNone, {}});
   Eigen::Vector3d ray;
   EXPECT_EQ(camera.Unproject({-0.5, 0}, &ray), ProjectionStatus::kOk);
@@ -187,7 +187,7 @@ TEST(CameraModel, ImageIncludesTheWholeOfItsBorderPixels) {
   EXPECT_EQ(camera.Unproject({10, -0.6}, &ray), ProjectionStatus::kOutsideImage);
 }
 
-TEST(CameraModel, ImageOfAnotherSizeIsRefused) {
+TEST(CameraModel, RefusesImageOfAnotherSize) {
   const CameraIntrinsics camera = PaperCamera();
   EXPECT_NO_THROW(CheckImageSize(camera, 752, 480, "a.png"));
   try {
@@ -205,7 +205,7 @@ TEST(CameraIntrinsics, ValidCamerasHaveNoViolations) {
   }
 }
 
-TEST(CameraIntrinsics, EveryViolationIsNamed) {
+TEST(CameraIntrinsics, ReportsEveryViolation) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto violations_of = [](auto change) {
     CameraIntrinsics camera = PaperCamera();
@@ -249,7 +249,7 @@ TEST(CameraIntrinsics, EveryViolationIsNamed) {
               ElementsAre("4 distortion coefficients, expected 0"));
 }
 
-TEST(CameraIntrinsics, AllViolationsAreInTheError) {
+TEST(CameraIntrinsics, ErrorListsAllViolations) {
   CameraIntrinsics camera = PaperCamera();
   camera.width_px = -1;
   camera.height_px = 0;

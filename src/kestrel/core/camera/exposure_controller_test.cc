@@ -66,14 +66,14 @@ int FramesToSettle(ExposureController* controller, DelayedCamera* camera) {
   return 1000;
 }
 
-TEST(ExposureControllerTest, LeavesAGoodExposure) {
+TEST(ExposureControllerTest, KeepsGoodExposure) {
   ExposureController controller({}, kFullLight_s);
   DelayedCamera camera(kFullLight_s, 2);
   EXPECT_EQ(FramesToSettle(&controller, &camera), 0);
   EXPECT_EQ(controller.exposure_s(), kFullLight_s);
 }
 
-TEST(ExposureControllerTest, FollowsStepsOfLightWithoutOscillating) {
+TEST(ExposureControllerTest, FollowsLightStepsWithoutOscillation) {
   for (const double gamma : {1.0, 0.45}) {
     for (const int delay : {0, 1, 2}) {
       ExposureController controller({.gamma = gamma}, kFullLight_s);
@@ -98,7 +98,7 @@ TEST(ExposureControllerTest, RecoversFromSaturatedAndBlackImages) {
   EXPECT_LE(FramesToSettle(&controller, &camera), 12);
 }
 
-TEST(ExposureControllerTest, StaysWithinWhatTheCameraCan) {
+TEST(ExposureControllerTest, StaysWithinLimitsOfCamera) {
   ExposureController controller({.min_exposure_s = 5e-4, .max_exposure_s = 2e-3}, 1);
   EXPECT_EQ(controller.exposure_s(), 2e-3);
   const cv::Mat black(120, 160, CV_8UC1, cv::Scalar(0));
@@ -109,7 +109,7 @@ TEST(ExposureControllerTest, StaysWithinWhatTheCameraCan) {
   EXPECT_EQ(controller.exposure_s(), 2e-3);
 }
 
-TEST(ExposureControllerTest, APatternCountsMoreThanAGlint) {
+TEST(ExposureControllerTest, WeightsPatternMoreThanGlint) {
   cv::Mat image(120, 160, CV_8UC1, cv::Scalar(60));
   const cv::Rect pattern(40, 40, 30, 30);
   image(pattern) = cv::Scalar(220);
@@ -120,7 +120,7 @@ TEST(ExposureControllerTest, APatternCountsMoreThanAGlint) {
   EXPECT_LT(controller.Update(image), kFullLight_s);
 }
 
-TEST(ExposureControllerTest, AnAreaMayLieOutsideOfTheImage) {
+TEST(ExposureControllerTest, AcceptsAreaOutsideImage) {
   const cv::Mat image(120, 160, CV_8UC1, cv::Scalar(110));
   for (const cv::Rect area : {cv::Rect(150, 110, 50, 50), cv::Rect(500, 500, 9, 9)}) {
     ExposureController controller({.black_gray = 0}, kFullLight_s);
@@ -128,7 +128,7 @@ TEST(ExposureControllerTest, AnAreaMayLieOutsideOfTheImage) {
   }
 }
 
-TEST(ExposureControllerTest, FaultyOptionsAreNamed) {
+TEST(ExposureControllerTest, ReportsFaultyOptions) {
   ExposureOptions options;
   options.low_gray = 250;
   options.min_exposure_s = 1;

@@ -21,7 +21,7 @@ Eigen::Vector2d PlanePoint(double angle, double azimuth) {
   return std::tan(angle) * Eigen::Vector2d(std::cos(azimuth), std::sin(azimuth));
 }
 
-TEST(UndistortIterative, ConvergesNearTheAxis) {
+TEST(UndistortIterative, ConvergesNearAxis) {
   const CameraModel camera(PaperCamera());
   for (double angle = 0; angle < 60 * kDegree; angle += kDegree) {
     const Eigen::Vector2d pixel = PixelAt(camera, angle, 2);
@@ -29,7 +29,7 @@ TEST(UndistortIterative, ConvergesNearTheAxis) {
   }
 }
 
-TEST(FisheyeUndistortionTable, IsAlgorithmOneUpToItsGrid) {
+TEST(FisheyeUndistortionTable, MatchesAlgorithmOneWithinGrid) {
   const CameraModel camera(PaperCamera());
   const FisheyeUndistortionTable table(camera.intrinsics());
   for (double angle = 0; angle < 75 * kDegree; angle += kDegree) {
@@ -40,14 +40,14 @@ TEST(FisheyeUndistortionTable, IsAlgorithmOneUpToItsGrid) {
   }
 }
 
-TEST(FisheyeUndistortionTable, UsesTheLastEntryBeyondTheCorner) {
+TEST(FisheyeUndistortionTable, UsesLastEntryBeyondCorner) {
   const FisheyeUndistortionTable table(PaperCamera());
   const Eigen::Vector2f corner = table.Undistort({0, 0});
   const Eigen::Vector2f beyond = table.Undistort({376 - 3 * 376, 240 - 3 * 240});
   EXPECT_LT((beyond - 3 * corner).norm(), 1e-5f * beyond.norm());
 }
 
-TEST(FisheyeUndistortionTable, RefusesAnotherLens) {
+TEST(FisheyeUndistortionTable, RefusesOtherLensModels) {
   EXPECT_THROW(FisheyeUndistortionTable{EurocCamera()}, InputError);
   CameraIntrinsics zero = PaperCamera();
   zero.fx_px = 0;

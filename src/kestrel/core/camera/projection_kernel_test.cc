@@ -58,7 +58,7 @@ Columns ProjectAll(const CameraModel& camera, const std::vector<Eigen::Vector3f>
 
 class ProjectionKernelTest : public ::testing::TestWithParam<TestCamera> {};
 
-TEST_P(ProjectionKernelTest, AgreesWithTheModel) {
+TEST_P(ProjectionKernelTest, AgreesWithModel) {
   const CameraModel camera(GetParam().intrinsics);
   std::vector<Eigen::Vector3f> points;
   for (const Eigen::Vector3d& point : TestPoints()) points.push_back(point.cast<float>());
@@ -86,7 +86,7 @@ TEST_P(ProjectionKernelTest, AgreesWithTheModel) {
   });
 }
 
-TEST_P(ProjectionKernelTest, AFewPointsAreAsMany) {
+TEST_P(ProjectionKernelTest, GivesSameResultForFewAndManyPoints) {
   const CameraModel camera(GetParam().intrinsics);
   const std::vector<Eigen::Vector3f> points{{0.1f, -0.2f, 1}, {0, 0, 3}, {0.2f, 0.3f, 2}};
   const Columns many = ProjectAll(camera, points);

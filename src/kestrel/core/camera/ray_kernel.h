@@ -34,7 +34,7 @@ inline void ComputeRay(const RayKernel& kernel, float u_px, float v_px, float* r
     const int cell = static_cast<int>(position);
     const float* knot = kernel.table + cell;
     const float t = knot[0] + (position - static_cast<float>(cell)) * (knot[1] - knot[0]);
-    const float tangent2 = t * t * q;  // of half the angle
+    const float tangent2 = t * t * q;  // squared tangent of half the angle
     if (i == kernel.corrections) {
       const float scale = 1 / (1 + tangent2);
       ray[2] = (1 - tangent2) * scale;

@@ -42,7 +42,7 @@ double MaxErrorPx(const CameraModel& camera, const RayTable& table, double low, 
   return max_error_px;
 }
 
-TEST_P(EveryRayTable, IsWithinAHundredthOfAPixelOfTheExactInverse) {
+TEST_P(EveryRayTable, MatchesExactInverseWithinHundredthOfPixel) {
   for (int decade = 0; decade < 9; ++decade) {
     const double high = std::min(10 * (decade + 1) * kDegree, 0.99 * camera_.max_angle());
     const double low = std::min(10 * decade * kDegree, high);
@@ -73,11 +73,11 @@ void ExpectRaysAreRay(const CameraModel& camera, const RayTable& table) {
   }
 }
 
-TEST_P(EveryRayTable, RaysIsRayForEveryCountAndInstructionSet) {
+TEST_P(EveryRayTable, RaysEqualsRayForEveryCountAndInstructionSet) {
   ForEveryTarget([this] { ExpectRaysAreRay(camera_, table_); });
 }
 
-TEST_P(EveryRayTable, RayIsOfUnitLengthOrZero) {
+TEST_P(EveryRayTable, RayHasUnitLengthOrIsZero) {
   for (float v = -200; v < 1000; v += 37) {
     for (float u = -200; u < 1500; u += 41) {
       const float norm = table_.Ray(u, v).norm();
@@ -86,7 +86,7 @@ TEST_P(EveryRayTable, RayIsOfUnitLengthOrZero) {
   }
 }
 
-TEST_P(EveryRayTable, GivesZeroForWhatIsNotAPixel) {
+TEST_P(EveryRayTable, ReturnsZeroForInvalidPixel) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinity = std::numeric_limits<float>::infinity();
   std::vector<float> u(33, 100), v(33, 100), x(33), y(33), z(33);
@@ -102,7 +102,7 @@ TEST_P(EveryRayTable, GivesZeroForWhatIsNotAPixel) {
   }
 }
 
-TEST(RayTable, GivesZeroWhereTheLensFoldsBack) {
+TEST(RayTable, ReturnsZeroWhereLensFoldsBack) {
   for (const TestCamera& test : TestCameras()) {
     if (!test.name.starts_with("folding")) continue;
     const CameraModel camera(test.intrinsics);
@@ -127,7 +127,7 @@ TEST(RayTable, ReachesPastNinetyDegrees) {
   EXPECT_LT(AngleBetween(ray.cast<double>().normalized(), RayAt(92.5 * kDegree, 0.3)), 1e-5);
 }
 
-TEST(RayTable, CopyOutlivesItsOriginal) {
+TEST(RayTable, CopyOutlivesOriginal) {
   auto original = std::make_unique<RayTable>(CameraModel(PaperCamera()));
   const Eigen::Vector3f expected = original->Ray(600, 100);
   const RayTable copy = *original;

@@ -15,13 +15,13 @@ struct EncodedImage {
   std::string_view bytes;
   const std::string& name;  // for messages
   std::size_t max_pixels;
-  std::size_t page = 0;  // of a TIFF
+  std::size_t page = 0;  // page in a TIFF
 };
 
 // Throws InputError with the image's name followed by 'fault'.
 [[noreturn]] void FailToDecode(const EncodedImage& image, std::string_view fault);
 
-// Throws InputError which says that the bytes end too early.
+// Throws InputError: the bytes end too early.
 [[noreturn]] void FailAsCutOff(const EncodedImage& image);
 
 // Returns the pixels that a decoder fills. Throws InputError when there are none, when there are

@@ -75,7 +75,7 @@ cv::Mat Noise(int width, int height, int type, int seed = 1) {
   return image;
 }
 
-TEST(DecodeImage, WhatIsNotLossyIsReadToTheBit) {
+TEST(DecodeImage, ReadsLosslessFormatsExactly) {
   const std::pair<const char*, int> kImages[] = {
       {"gray.png", CV_8UC1},       {"bgr.png", CV_8UC3},     {"bgra.png", CV_8UC4},
       {"gray16.png", CV_16UC1},    {"bgr16.png", CV_16UC3},  {"bgra16.png", CV_16UC4},
@@ -90,13 +90,13 @@ TEST(DecodeImage, WhatIsNotLossyIsReadToTheBit) {
   }
 }
 
-TEST(DecodeImage, PalettesBecomeColors) {
+TEST(DecodeImage, ConvertsPalettesToColors) {
   ExpectPalette("palette.png", 3);
   ExpectPalette("palette_alpha.png", 4);
   ExpectPalette("palette.bmp", 3);
 }
 
-TEST(DecodeImage, FewBitsBecomeEight) {
+TEST(DecodeImage, ConvertsLowBitDepthsToEight) {
   for (const int bits : {1, 2, 4}) {
     const cv::Mat image = Read("gray_" + std::to_string(bits) + "_bits.png");
     ASSERT_EQ(image.type(), CV_8UC1);
@@ -107,7 +107,7 @@ TEST(DecodeImage, FewBitsBecomeEight) {
   }
 }
 
-TEST(DecodeImage, AlphaIsKeptBesideGrayAndOfATransparentColor) {
+TEST(DecodeImage, KeepsAlphaOfGrayAndTransparentColor) {
   const cv::Mat gray = Read("gray_alpha.png");
   ASSERT_EQ(gray.type(), CV_8UC4);
   const int value = ValueAt(5, 4, 0);
@@ -122,7 +122,7 @@ TEST(DecodeImage, AlphaIsKeptBesideGrayAndOfATransparentColor) {
   EXPECT_EQ(webp.at<cv::Vec4b>(4, 5), expected.at<cv::Vec4b>(4, 5));
 }
 
-TEST(DecodeImage, PhotographsAreWhatOpenCvReads) {
+TEST(DecodeImage, ReadsPhotographsLikeOpenCv) {
   for (const std::string name :
        {"photo.jpg", "photo_gray.jpg", "photo_progressive.jpg", "photo_lossy.webp"}) {
     const cv::Mat image = Read(name);
@@ -132,7 +132,7 @@ TEST(DecodeImage, PhotographsAreWhatOpenCvReads) {
   }
 }
 
-TEST(DecodeImage, WhatIsCutOffIsNeverAnImage) {
+TEST(DecodeImage, RefusesTruncatedFiles) {
   for (const auto& entry : std::filesystem::directory_iterator(KESTREL_IMAGES_DIR)) {
     const std::string bytes = ReadFile(entry.path().string());
     for (const double part : {0.0, 0.02, 0.1, 0.5, 0.9}) {
@@ -145,7 +145,7 @@ TEST(DecodeImage, WhatIsCutOffIsNeverAnImage) {
 }
 
 // Corrupt files are either read or refused in one line, and the test ends.
-TEST(DecodeImage, WhatIsBrokenIsReadOrRefused) {
+TEST(DecodeImage, ReadsOrRefusesCorruptFiles) {
   cv::RNG random(7);
   for (const auto& entry : std::filesystem::directory_iterator(KESTREL_IMAGES_DIR)) {
     const std::string bytes = ReadFile(entry.path().string());
@@ -160,7 +160,7 @@ TEST(DecodeImage, WhatIsBrokenIsReadOrRefused) {
   }
 }
 
-TEST(DecodeImage, SaysNothingOnTheTerminal) {
+TEST(DecodeImage, PrintsNothingToTerminal) {
   testing::internal::CaptureStderr();
   for (const char* name : {"gray.png", "photo.jpg", "gray.tif", "bgr.webp"}) {
     std::string bytes = ReadFile(PathOf(name));
@@ -170,7 +170,7 @@ TEST(DecodeImage, SaysNothingOnTheTerminal) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-TEST(DecodeImage, WhatIsNoImageIsToldWhatIsExpected) {
+TEST(DecodeImage, NamesSupportedFormatsInError) {
   EXPECT_EQ(
       InputErrorOf([] { DecodeImage("GIF89a", "a.gif"); }),
       "a.gif: cannot be decoded as an image, expected PNG, JPEG, TIFF, WebP, BMP, PGM or PPM");
@@ -178,7 +178,7 @@ TEST(DecodeImage, WhatIsNoImageIsToldWhatIsExpected) {
             PathOf("gray16.tif") + ": is a 16-bit image, expected 8 bits a channel");
 }
 
-TEST(DecodeImage, LargeImagesAreRefusedBeforeTheyTakeMemory) {
+TEST(DecodeImage, RefusesLargeImagesBeforeAllocation) {
   const std::string png = ReadFile(PathOf("gray.png"));
   EXPECT_EQ(InputErrorOf([&] { DecodeImage(png, "a.png", kWidth * kHeight); }), "");
   EXPECT_THAT(InputErrorOf([&] { DecodeImage(png, "a.png", kWidth * kHeight - 1); }),
@@ -187,7 +187,7 @@ TEST(DecodeImage, LargeImagesAreRefusedBeforeTheyTakeMemory) {
               HasSubstr("1000000 x 1000000 px"));
 }
 
-TEST(EncodePng, IsReadBackToTheBit) {
+TEST(EncodePng, RoundTripsExactly) {
   for (const int type : {CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1, CV_16UC3, CV_16UC4}) {
     const cv::Mat image = Noise(37, 21, type);
     for (const int level : {kFastPng, 0, 1, 9}) {
@@ -198,7 +198,7 @@ TEST(EncodePng, IsReadBackToTheBit) {
   }
 }
 
-TEST(EncodePng, OtherTypesAreRefused) {
+TEST(EncodePng, RefusesOtherTypes) {
   for (const int type : {CV_32FC1, CV_8UC2}) {
     EXPECT_THAT(InputErrorOf([&] { EncodePng(cv::Mat::zeros(4, 4, type)); }),
                 HasSubstr("expected 8 or 16 bits"));
@@ -206,7 +206,7 @@ TEST(EncodePng, OtherTypesAreRefused) {
   EXPECT_NE(InputErrorOf([] { EncodePng(cv::Mat()); }), "");
 }
 
-TEST(EncodeJpeg, IsCloseToTheImage) {
+TEST(EncodeJpeg, IsCloseToImage) {
   for (const int type : {CV_8UC1, CV_8UC3}) {
     const cv::Mat image = Read(type == CV_8UC1 ? "photo_gray.jpg.png" : "photo.jpg.png");
     const cv::Mat read = DecodeImage(EncodeJpeg(image, 95), "image");
@@ -216,7 +216,7 @@ TEST(EncodeJpeg, IsCloseToTheImage) {
   EXPECT_NE(InputErrorOf([] { EncodeJpeg(cv::Mat(4, 4, CV_16UC1), 95); }), "");
 }
 
-TEST(JpegEncoder, AppendsOneImageAfterTheOther) {
+TEST(JpegEncoder, AppendsSuccessiveImages) {
   JpegEncoder encoder(90);
   const cv::Mat large = Noise(64, 48, CV_8UC1, 1);
   const cv::Mat small = Noise(16, 16, CV_8UC3, 2);
@@ -229,7 +229,7 @@ TEST(JpegEncoder, AppendsOneImageAfterTheOther) {
   EXPECT_FALSE(encoder.Append(cv::Mat(4, 4, CV_16UC1), &bytes));
 }
 
-TEST(WriteImage, IsOfTheKindThatItsNameSays) {
+TEST(WriteImage, ChoosesFormatByFileName) {
   const TestFolder folder;
   const cv::Mat image = Noise(31, 17, CV_8UC1);
   WriteImage(folder / "a.PNG", image);

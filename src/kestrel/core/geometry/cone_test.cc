@@ -75,7 +75,7 @@ TEST(FitCone, RecoversRandomCirclesInAllDirections) {
   }
 }
 
-TEST(FitCone, BothMirrorPosesLookTheSame) {
+TEST(FitCone, BothMirrorPosesHaveSameImage) {
   Random random(2);
   for (int trial = 0; trial < 200; ++trial) {
     const CirclePose truth = RandomCircle(75 * kDegree, &random);
@@ -132,7 +132,7 @@ TEST(FitCone, AveragesNoise) {
   EXPECT_LT(std::sqrt(squares / kTrials), 1.5 * kSigma * std::sqrt(4.0 / kRays));
 }
 
-TEST(FitCone, SaysNothingWithoutAnEllipse) {
+TEST(FitCone, RefusesRaysWithoutEllipse) {
   CirclePose circle;
   circle.center = Eigen::Vector3d(0, 0, 4);
   circle.normal = Eigen::Vector3d(0, 0, -1);
@@ -160,7 +160,7 @@ TEST(FitCone, SaysNothingWithoutAnEllipse) {
   EXPECT_FALSE(FitCone(broken));
 }
 
-TEST(Cone, HalfAnglesAreTheWidestAndTheNarrowest) {
+TEST(Cone, HalfAnglesAreWidestAndNarrowest) {
   Cone cone;
   const double wide = 0.7, narrow = 0.2;
   cone.matrix =
@@ -173,7 +173,7 @@ TEST(Cone, HalfAnglesAreTheWidestAndTheNarrowest) {
   EXPECT_NEAR(cone.HalfAngles().y(), narrow, 1e-12);
 }
 
-TEST(CirclePosesFromCone, TheAxisIsChosenByToward) {
+TEST(CirclePosesFromCone, TowardSelectsAxis) {
   CirclePose truth;
   truth.center = Eigen::Vector3d(1, 0, -3);  // behind the image plane of a fisheye lens
   truth.normal = Eigen::Vector3d(0, 0.3, 1).normalized();

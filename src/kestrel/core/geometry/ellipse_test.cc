@@ -19,7 +19,7 @@ RegionMoments MomentsOf(double area, double xx, double yy, double angle) {
   return moments;
 }
 
-TEST(EllipseFromMoments, RecoversAnEllipse) {
+TEST(EllipseFromMoments, RecoversEllipse) {
   const double a = 9, b = 4;
   for (const double angle : {-1.5, -0.4, 0.0, 0.3, 1.2}) {
     const RegionMoments moments = MomentsOf(std::numbers::pi * a * b, a * a / 4, b * b / 4, angle);
@@ -32,20 +32,20 @@ TEST(EllipseFromMoments, RecoversAnEllipse) {
   }
 }
 
-TEST(EllipseFromMoments, OfNothingIsAPoint) {
+TEST(EllipseFromMoments, EmptyMomentsGivePoint) {
   const Ellipse ellipse = EllipseFromMoments(RegionMoments());
   EXPECT_EQ(ellipse.semi_major, 0);
   EXPECT_EQ(ellipse.semi_minor, 0);
 }
 
-TEST(RegionMoments, AParallelogramIsNoEllipse) {
+TEST(RegionMoments, ParallelogramIsNoEllipse) {
   const double width = 6, height = 2;
   const RegionMoments moments =
       MomentsOf(width * height, width * width / 12, height * height / 12, 0.4);
   EXPECT_NEAR(moments.Ellipticity(), 3 / std::numbers::pi, 1e-12);
 }
 
-TEST(Ellipse, PointsLieOnTheScaledOutline) {
+TEST(Ellipse, PointsLieOnScaledOutline) {
   Ellipse ellipse{Eigen::Vector2d(1, 2), 5, 3, 0.7};
   EXPECT_NEAR(ellipse.major_axis().dot(ellipse.minor_axis()), 0, 1e-15);
   for (double t = 0; t < 6; t += 0.5) {

@@ -43,7 +43,7 @@ TEST(RigidTransform, AgreesWithHomogeneousMatrices) {
   }
 }
 
-TEST(RigidTransform, RotatesByTheLengthOfTheVectorAboutItsDirection) {
+TEST(RigidTransform, RotatesByVectorLengthAboutItsDirection) {
   const Eigen::Vector3d quarter_about_z(0, 0, std::numbers::pi / 2);
   EXPECT_TRUE((RotationBy(quarter_about_z) * Eigen::Vector3d::UnitX())
                   .isApprox(Eigen::Vector3d::UnitY(), 1e-12));
@@ -51,7 +51,7 @@ TEST(RigidTransform, RotatesByTheLengthOfTheVectorAboutItsDirection) {
   EXPECT_TRUE(RotationVector(RotationBy(quarter_about_z)).isApprox(quarter_about_z, 1e-12));
 }
 
-TEST(RigidTransform, HasItsHeadingWhenLevelledHoweverItLeans) {
+TEST(RigidTransform, KeepsHeadingWhenLevelled) {
   for (const double yaw : {-3.0, -1.0, 0.0, 0.5, 2.5}) {
     for (const double direction : {0.0, 0.8, 2.0, 4.5}) {
       const Eigen::Vector3d lean(0.6 * std::cos(direction), 0.6 * std::sin(direction), 0);
@@ -64,7 +64,7 @@ TEST(RigidTransform, HasItsHeadingWhenLevelledHoweverItLeans) {
   }
 }
 
-TEST(RigidTransform, IsMovedInTheFrameThatItMapsTo) {
+TEST(RigidTransform, MovesInTargetFrame) {
   Random random(3);
   for (int trial = 0; trial < 100; ++trial) {
     const RigidTransform pose = RandomTransform(&random);

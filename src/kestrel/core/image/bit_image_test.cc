@@ -6,7 +6,7 @@
 namespace kestrel {
 namespace {
 
-TEST(BitImage, IsClearAroundTheImage) {
+TEST(BitImage, IsClearAroundImage) {
   BitImage image;
   for (const int width : {1, 63, 64, 65, 128}) {
     image.Reset(width, 3);
@@ -31,7 +31,7 @@ TEST(BitImage, ResetClears) {
   }
 }
 
-TEST(InvertBits, LeavesWhatLiesOutsideClear) {
+TEST(InvertBits, LeavesSurroundingsClear) {
   for (const int width : {1, 63, 64, 65, 130}) {
     BitImage image, inverse;
     image.Reset(width, 3);

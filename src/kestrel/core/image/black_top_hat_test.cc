@@ -68,14 +68,14 @@ TEST(BlackTopHat, DecidesEveryPixelAsDefined) {
   });
 }
 
-TEST(BlackTopHat, TakesEveryWidth) {
+TEST(BlackTopHat, WorksForEveryWidth) {
   Random random(2);
   for (int width = 1; width <= 130; ++width) {
     ExpectBinarizedAsDefined(RandomImage(width, 9, width, &random).image, 20);
   }
 }
 
-TEST(BlackTopHat, SeesStrokesInSunAndShadowAndNoShadow) {
+TEST(BlackTopHat, DetectsStrokesInSunAndShadowButNoShadows) {
   cv::Mat image(64, 64, CV_8UC1, cv::Scalar(200));
   image.colRange(20, 22) = 20;  // in the sun
   image.colRange(32, 64) = 60;  // in a shadow

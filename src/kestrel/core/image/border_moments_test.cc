@@ -44,7 +44,7 @@ std::vector<Eigen::Vector2d> RandomArea(Random* random) {
   return pixels;
 }
 
-TEST(ComputeBorderMoments, AgreesWithTheSumOfPixels) {
+TEST(ComputeBorderMoments, AgreesWithSumOfPixels) {
   Random random(1);
   for (int trial = 0; trial < 100; ++trial) {
     const auto pixels = RandomArea(&random);
@@ -76,7 +76,7 @@ TEST(ComputeBorderMoments, AgreesWithTheSumOfPixels) {
   }
 }
 
-TEST(ComputeBorderMoments, IsExactFarFromTheOrigin) {
+TEST(ComputeBorderMoments, IsExactFarFromOrigin) {
   // A rectangle of 3000 x 2000 pixels at (16000, 12000).
   std::vector<GridPoint> points;
   const auto walk = [&](int x, int y, int dx, int dy, int count) {
@@ -98,7 +98,7 @@ TEST(ComputeBorderMoments, IsExactFarFromTheOrigin) {
   EXPECT_NEAR(moments.covariance(0, 1), 0, 1e-6);
 }
 
-TEST(ComputeBorderMoments, OfAnEmptyWalkIsNothing) {
+TEST(ComputeBorderMoments, IsZeroForEmptyWalk) {
   const std::vector<GridPoint> points{{3, 3}, {4, 3}};  // there and back
   EXPECT_EQ(ComputeBorderMoments(points.data(), points.size()).area, 0);
 }
@@ -118,7 +118,7 @@ std::vector<GridPoint> WalkAround(const std::vector<GridPoint>& corners) {
   return points;
 }
 
-TEST(ComputeHullMoments, OfAConvexBorderAreThoseOfTheBorder) {
+TEST(ComputeHullMoments, EqualsBorderMomentsOfConvexBorder) {
   const auto points = WalkAround({{100, 50}, {140, 50}, {140, 75}, {100, 75}});
   const RegionMoments border = ComputeBorderMoments(points.data(), points.size());
   const RegionMoments hull = ComputeHullMoments(ConvexHull(points));
@@ -139,7 +139,7 @@ TEST(ComputeHullMoments, FillNotches) {
   EXPECT_NEAR(hull.covariance(0, 1), 0, 1e-9);
 }
 
-TEST(ComputeHullMoments, OfALineAreNothing) {
+TEST(ComputeHullMoments, IsZeroForLine) {
   const std::vector<GridPoint> points{{3, 3}, {4, 3}};
   EXPECT_EQ(ComputeHullMoments(ConvexHull(points)).area, 0);
 }

@@ -80,7 +80,7 @@ std::size_t CountCracks(const BitImage& image) {
   return cracks;
 }
 
-TEST(BorderTracer, ADiscHasOneBorder) {
+TEST(BorderTracer, DiscHasOneBorder) {
   const BinaryImage binary = DrawFigure(
       90, 60, [](int x, int y) { return InDisc(x, y, 62, 30, 20.3); });  // across two words
   const BorderTracer tracer = TraceAll(binary);
@@ -93,7 +93,7 @@ TEST(BorderTracer, ADiscHasOneBorder) {
   EXPECT_EQ(border.max.y, 51);
 }
 
-TEST(BorderTracer, WalksInUnitStepsWithTheDarkOnItsRight) {
+TEST(BorderTracer, WalksInUnitStepsWithDarkOnRight) {
   const BinaryImage binary = DrawFigure(
       40, 40, [](int x, int y) { return InDisc(x, y, 20, 20, 14) && !InDisc(x, y, 22, 19, 6); });
   const BorderTracer tracer = TraceAll(binary);
@@ -114,7 +114,7 @@ TEST(BorderTracer, WalksInUnitStepsWithTheDarkOnItsRight) {
   }
 }
 
-TEST(BorderTracer, ABorderBeginsWithItsUppermostUpperEdge) {
+TEST(BorderTracer, BorderBeginsAtUppermostEdge) {
   const BinaryImage binary = DrawFigure(
       40, 40, [](int x, int y) { return InDisc(x, y, 20, 20, 14) && !InDisc(x, y, 20, 20, 6); });
   const BorderTracer tracer = TraceAll(binary);
@@ -129,7 +129,7 @@ TEST(BorderTracer, ABorderBeginsWithItsUppermostUpperEdge) {
   EXPECT_TRUE(begins_at(1, 14, 21));
 }
 
-TEST(BorderTracer, ARingHasAnOuterBorderAndThatOfItsHole) {
+TEST(BorderTracer, RingHasOuterAndInnerBorder) {
   const auto in_hole = [](int x, int y) { return InDisc(x, y, 41, 39, 15); };
   const BinaryImage binary =
       DrawFigure(80, 80, [&](int x, int y) { return InDisc(x, y, 40, 40, 30) && !in_hole(x, y); });
@@ -140,7 +140,7 @@ TEST(BorderTracer, ARingHasAnOuterBorderAndThatOfItsHole) {
   EXPECT_EQ(tracer.borders()[1].signed_area, -CountPixels(hole.dark));
 }
 
-TEST(BorderTracer, DarkAreasTouchByCornersHolesDoNot) {
+TEST(BorderTracer, DarkAreasConnectDiagonallyButHolesDoNot) {
   // Two squares that share a corner.
   const BinaryImage squares = DrawFigure(20, 20, [](int x, int y) {
     return (x >= 4 && x < 8 && y >= 4 && y < 8) || (x >= 8 && x < 12 && y >= 8 && y < 12);
@@ -184,7 +184,7 @@ TEST(BorderTracer, FindsEveryBorderOfRandomImagesOnce) {
   }
 }
 
-TEST(BorderTracer, KeepsWhatIsWithinTheLimits) {
+TEST(BorderTracer, KeepsBordersWithinLimits) {
   // Squares of 3, 6 and 20 pixels, and a bar of 12 x 2.
   const BinaryImage binary = DrawFigure(64, 64, [](int x, int y) {
     const auto in = [&](int x0, int y0, int w, int h) {
@@ -206,7 +206,7 @@ TEST(BorderTracer, KeepsWhatIsWithinTheLimits) {
   EXPECT_EQ(areas({0, 0, 20}), (std::multiset<int>{9, 24, 36, 400}));
 }
 
-TEST(BorderTracer, ABorderThatWasGivenUpIsNotFollowedAgain) {
+TEST(BorderTracer, DoesNotRetraceAbandonedBorder) {
   // A comb that is larger than allowed. Each of its teeth offers a start.
   const BinaryImage binary = DrawFigure(200, 40, [](int x, int y) {
     return x >= 4 && x < 196 && y >= (x % 8 < 4 ? 10 : 20) && y < 30;
@@ -227,7 +227,7 @@ TEST(BorderTracer, StartsOnlyBelowBright) {
   EXPECT_EQ(TraceAll(binary).borders().size(), 1u);
 }
 
-TEST(BorderTracer, StartsBelowANarrowBrightStrokeWhereThatIsAskedFor) {
+TEST(BorderTracer, StartsBelowNarrowBrightStrokeOnRequest) {
   BinaryImage binary = DrawFigure(40, 40, [](int x, int y) { return InDisc(x, y, 20, 20, 10); });
   binary.bright.Reset(40, 40);
   BorderLimits limits = kNoLimits;
@@ -240,7 +240,7 @@ TEST(BorderTracer, StartsBelowANarrowBrightStrokeWhereThatIsAskedFor) {
   EXPECT_EQ(TraceAll(binary, limits).borders().size(), 1u);
 }
 
-TEST(BorderTracer, GivesUpWhatThereIsNoRoomFor) {
+TEST(BorderTracer, DropsBordersBeyondCapacity) {
   // Single pixels, many more than fit.
   const BinaryImage binary =
       DrawFigure(400, 400, [](int x, int y) { return x % 2 == 0 && y % 2 == 0 && x > 1 && y > 1; });
@@ -254,7 +254,7 @@ TEST(BorderTracer, GivesUpWhatThereIsNoRoomFor) {
   for (const Border& border : tracer.borders()) ASSERT_EQ(border.signed_area, 1);
 }
 
-TEST(BorderTracer, KeepsTheBordersAcrossWhichTheImageChangesMost) {
+TEST(BorderTracer, KeepsBordersWithStrongestContrast) {
   const auto in_disc = [](int disc, int x, int y) { return InDisc(x, y, 20 + 30 * disc, 20, 8); };
   // Three discs, the middle one the darkest; the right one has a bright hole, the strongest border.
   const auto in_hole = [](int x, int y) { return InDisc(x, y, 80, 20, 4); };
@@ -279,7 +279,7 @@ TEST(BorderTracer, KeepsTheBordersAcrossWhichTheImageChangesMost) {
   EXPECT_EQ(tracer.borders()[1].min.x, 42);
 }
 
-TEST(BorderTracer, ForgetsTheImageBefore) {
+TEST(BorderTracer, ForgetsPreviousImage) {
   const BinaryImage disc =
       DrawFigure(70, 70, [](int x, int y) { return InDisc(x, y, 30, 30, 20); });
   const BinaryImage empty = DrawFigure(70, 70, [](int, int) { return false; });

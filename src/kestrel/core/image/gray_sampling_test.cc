@@ -12,7 +12,7 @@
 namespace kestrel {
 namespace {
 
-TEST(SampleGray, InterpolatesAndEndsWithTheImage) {
+TEST(SampleGray, InterpolatesWithinImageOnly) {
   cv::Mat image(5, 7, CV_8UC1);
   for (int y = 0; y < 5; ++y) {
     for (int x = 0; x < 7; ++x) {
@@ -63,7 +63,7 @@ void ExpectSamplesOfOneAfterTheOther() {
   }
 }
 
-TEST(SampleGrays, AreThoseOfOneAfterTheOther) { ForEveryTarget(ExpectSamplesOfOneAfterTheOther); }
+TEST(SampleGrays, EqualsSingleSamples) { ForEveryTarget(ExpectSamplesOfOneAfterTheOther); }
 
 }  // namespace
 }  // namespace kestrel

@@ -103,7 +103,7 @@ void ExpectBinarizedAsDefined(const cv::Mat& image, int image_level, int tile_le
                       << tile_level << ", contrast " << min_contrast;
 }
 
-TEST(TilePyramid, HoldsTheStatisticsOfAllTiles) {
+TEST(TilePyramid, HoldsStatisticsOfAllTiles) {
   ForEveryTarget([] {
     Random random(1);
     for (const cv::Size size : {cv::Size(1, 1), cv::Size(2, 2), cv::Size(3, 200), cv::Size(131, 67),
@@ -131,7 +131,7 @@ TEST(TilePyramid, HoldsTheStatisticsOfAllTiles) {
   });
 }
 
-TEST(TilePyramid, MeansAreTheImageAtALowerResolution) {
+TEST(TilePyramid, MeansAreImageAtLowerResolution) {
   Random random(2);
   const ExactImage exact = RandomImage(97, 61, 100, &random);
   TilePyramid pyramid;
@@ -146,7 +146,7 @@ TEST(TilePyramid, MeansAreTheImageAtALowerResolution) {
   }
 }
 
-TEST(TilePyramid, TheMeanIsNotBiased) {
+TEST(TilePyramid, MeanIsUnbiased) {
   // Half of the pixels have one gray value, the other half the next.
   cv::Mat image(512, 512, CV_8UC1);
   Random random(3);
@@ -174,7 +174,7 @@ TEST(LocalThreshold, DecidesEveryPixelAsDefined) {
   });
 }
 
-TEST(LocalThreshold, TakesEveryWidth) {
+TEST(LocalThreshold, WorksForEveryWidth) {
   Random random(5);
   for (int width = 1; width <= 130; ++width) {
     const ExactImage exact = RandomImage(width, 40, width, &random);
@@ -183,7 +183,7 @@ TEST(LocalThreshold, TakesEveryWidth) {
   }
 }
 
-TEST(LocalThreshold, TakesOnePixel) {
+TEST(LocalThreshold, WorksForOnePixel) {
   cv::Mat image(1, 1, CV_8UC1, cv::Scalar(7));
   TilePyramid pyramid;
   pyramid.Build(image);
@@ -195,7 +195,7 @@ TEST(LocalThreshold, TakesOnePixel) {
   EXPECT_FALSE(binary.bright.at(0, 0));
 }
 
-TEST(LocalThreshold, TheInsideOfABroadStrokeIsDark) {
+TEST(LocalThreshold, InsideOfBroadStrokeIsDark) {
   // A stroke of 10 px is wider than a box of 3 tiles of 2 px. Its middle has no contrast of its own
   // and needs the coarse box.
   cv::Mat image(64, 64, CV_8UC1, cv::Scalar(200));
@@ -209,7 +209,7 @@ TEST(LocalThreshold, TheInsideOfABroadStrokeIsDark) {
   for (int x = 0; x < 64; ++x) EXPECT_EQ(binary.dark.at(x, 32), x >= 24 && x < 34) << x;
 }
 
-TEST(LocalThreshold, QuantileOfTheContrasts) {
+TEST(LocalThreshold, MeasuresQuantileOfContrasts) {
   // The left half is flat, the right half has a contrast of 100; boxes between them contain both.
   cv::Mat image(128, 128, CV_8UC1, cv::Scalar(50));
   for (int y = 0; y < 128; ++y) {

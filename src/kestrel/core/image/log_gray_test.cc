@@ -8,7 +8,7 @@
 namespace kestrel {
 namespace {
 
-TEST(LogGray, AShadowTakesTheSameFromBlackAndFromWhite) {
+TEST(LogGray, ShadowShiftsBlackAndWhiteEqually) {
   const LogGrays log;
   constexpr float kShade = 0.4f, kBlack = 50, kWhite = 220;
   const float of_white = log(kWhite) - log(kShade * kWhite);
@@ -17,7 +17,7 @@ TEST(LogGray, AShadowTakesTheSameFromBlackAndFromWhite) {
   EXPECT_GT(log(kShade * kWhite), log(kBlack));
 }
 
-TEST(LogGray, AnImageIsWrittenPixelByPixelAlsoWhereItIsAPartOfAnother) {
+TEST(LogGray, WritesEveryPixelOfSubImage) {
   cv::Mat image(3, 5, CV_8UC1);
   for (int i = 0; i < 15; ++i) image.data[i] = static_cast<std::uint8_t>(17 * i);
   const cv::Mat part = image(cv::Rect(1, 1, 3, 2));

@@ -60,13 +60,13 @@ void ExpectRectangle(const std::vector<LineSegment>& segments, double angle, dou
   EXPECT_EQ(along, 2);
 }
 
-TEST(SplitAndMerge, ARectangleHasFourSides) {
+TEST(SplitAndMerge, RectangleHasFourSides) {
   for (const double angle : {0.0, 0.3, 1.0, 2.5}) {
     ExpectRectangle(Split(Rectangle(angle), true, 0.5, 5), angle, 0.5);
   }
 }
 
-TEST(SplitAndMerge, TakesNoise) {
+TEST(SplitAndMerge, ToleratesNoise) {
   Random random(1);
   for (int trial = 0; trial < 50; ++trial) {
     const double angle = random.Uniform(0, 3);
@@ -78,7 +78,7 @@ TEST(SplitAndMerge, TakesNoise) {
   }
 }
 
-TEST(SplitAndMerge, AnOpenCurveKeepsItsEnds) {
+TEST(SplitAndMerge, OpenCurveKeepsItsEnds) {
   Points points;
   AddLine({0, 0}, {40, 0}, 40, &points);
   AddLine({40, 0}, {40, 20}, 20, &points);
@@ -91,7 +91,7 @@ TEST(SplitAndMerge, AnOpenCurveKeepsItsEnds) {
   EXPECT_LT((segments[1].end - Eigen::Vector2d(40, 20)).norm(), 1e-9);
 }
 
-TEST(SplitAndMerge, MergesWhatOneLineExplains) {
+TEST(SplitAndMerge, MergesSegmentsOnOneLine) {
   // A kink that the first split takes for a corner: the farthest point of a Z lies on its bend.
   Points points;
   AddLine({0, 0}, {50, 0.4}, 50, &points);
@@ -100,7 +100,7 @@ TEST(SplitAndMerge, MergesWhatOneLineExplains) {
   EXPECT_EQ(Split(points, false, 0.3, 1).size(), 2u);
 }
 
-TEST(SplitAndMerge, PiecesOfACircleAreAsLongAsTheToleranceSays) {
+TEST(SplitAndMerge, LengthOfCirclePiecesMatchesTolerance) {
   constexpr double kRadius = 50, kTolerance = 1;
   Points points;
   for (int i = 0; i < 300; ++i) {
@@ -116,7 +116,7 @@ TEST(SplitAndMerge, PiecesOfACircleAreAsLongAsTheToleranceSays) {
   EXPECT_TRUE(Split(points, true, kTolerance, 1.1 * longest).empty());
 }
 
-TEST(SplitAndMerge, AppendsAndTakesTheLeast) {
+TEST(SplitAndMerge, AppendsToOutputAndHandlesMinimalInput) {
   std::vector<std::size_t> breaks{7, 8, 9};
   std::vector<LineSegment> segments;
   SplitAndMerge(Points{{0, 0}, {1, 0}}, false, 0.1, 0, &breaks, &segments);

@@ -113,7 +113,7 @@ std::optional<RigidTransform> PoseHistory::Smooth(Time time, Duration half_windo
   double count = 0;
   double sum_t = 0;
   double sum_tt = 0;
-  Vector6 sum = Vector6::Zero();  // of the samples' offsets from 'pose'
+  Vector6 sum = Vector6::Zero();  // sum of the samples' offsets from 'pose'
   Vector6 sum_times_t = Vector6::Zero();
   for (std::size_t i = FirstNotBefore(time - half_window);
        i < size_ && At(i).time <= time + half_window; ++i) {

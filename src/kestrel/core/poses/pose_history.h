@@ -30,10 +30,10 @@ struct PoseSample {
 // Changes of the motion that no sample reports, which make a prediction beyond the samples
 // uncertain. Standard deviations per axis.
 struct UnmodelledMotion {
-  double acceleration_mps2 = 3;            // of a multicopter that hovers in gusts
+  double acceleration_mps2 = 3;            // that of a multicopter that hovers in gusts
   double angular_acceleration_radps2 = 5;  // higher for small, agile ones
-  double velocity_sigma_mps = 0.1;         // of the reported velocity
-  double rate_sigma_radps = 0.02;          // of the reported angular velocity
+  double velocity_sigma_mps = 0.1;         // error of the reported velocity
+  double rate_sigma_radps = 0.02;          // error of the reported angular velocity
 };
 
 // Standard deviations per axis that a pose has in addition to those of a sample.

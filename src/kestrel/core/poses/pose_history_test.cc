@@ -22,12 +22,12 @@ PoseSample Sample(double seconds, double x, double yaw = 0) {
           {Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ())), {x, 0, 0}}};
 }
 
-TEST(PoseHistory, EmptyHistoryHasNothing) {
+TEST(PoseHistory, EmptyHistoryHasNoPose) {
   const PoseHistory history(4, kMaxGap);
   EXPECT_FALSE(history.Has(At(0)));
 }
 
-TEST(PoseHistory, AnswersWithinTheSamplesOnly) {
+TEST(PoseHistory, AnswersWithinSamplesOnly) {
   PoseHistory history(4, kMaxGap);
   history.Add(Sample(1.0, 1));
   history.Add(Sample(2.0, 2));
@@ -52,7 +52,7 @@ TEST(PoseHistory, InterpolatesLineAndShortestArc) {
   EXPECT_NEAR(std::atan2(x_axis.y(), x_axis.x()), 0.0, 1e-12);
 }
 
-TEST(PoseHistory, DropsTheOldestWhenFull) {
+TEST(PoseHistory, DropsOldestWhenFull) {
   PoseHistory history(3, kMaxGap);
   for (int i = 0; i < 8; ++i) {
     ASSERT_EQ(history.Add(Sample(0.1 * i, i)), PoseStatus::kOk);
@@ -67,7 +67,7 @@ TEST(PoseHistory, DropsTheOldestWhenFull) {
   EXPECT_NEAR(history.Lookup(At(0.65))->translation.x(), 6.5, 1e-9);
 }
 
-TEST(PoseHistory, RefusesWhatIsNotLater) {
+TEST(PoseHistory, RefusesOutOfOrderPose) {
   PoseHistory history(4, kMaxGap);
   history.Add(Sample(1.0, 1));
   EXPECT_EQ(history.Add(Sample(1.0, 5)), PoseStatus::kOutOfOrder);
@@ -76,7 +76,7 @@ TEST(PoseHistory, RefusesWhatIsNotLater) {
   EXPECT_EQ(history.Lookup(At(1.0))->translation.x(), 1);
 }
 
-TEST(PoseHistory, RefusesWhatIsNoPose) {
+TEST(PoseHistory, RefusesInvalidPose) {
   PoseHistory history(4, kMaxGap);
   PoseSample sample = Sample(1.0, std::numeric_limits<double>::quiet_NaN());
   EXPECT_EQ(history.Add(sample), PoseStatus::kInvalid);
@@ -90,7 +90,7 @@ TEST(PoseHistory, RefusesWhatIsNoPose) {
   EXPECT_EQ(history.size(), 0u);
 }
 
-TEST(PoseHistory, SaysWhyThereIsNoPose) {
+TEST(PoseHistory, ReportsWhyPoseIsMissing) {
   PoseHistory history(3, kMaxGap);
   EXPECT_EQ(history.Check(At(0)), PoseLookup::kEmpty);
   for (const double seconds : {0.0, 1.0, 1.5, 3.0}) history.Add(Sample(seconds, 0));
@@ -101,7 +101,7 @@ TEST(PoseHistory, SaysWhyThereIsNoPose) {
   EXPECT_EQ(history.Check(At(3.1)), PoseLookup::kTooNew);
 }
 
-TEST(PoseHistory, DoesNotBridgeAGap) {
+TEST(PoseHistory, DoesNotBridgeGap) {
   PoseHistory history(4, kMaxGap);
   history.Add(Sample(0, 0));
   history.Add(Sample(1.5, 1));
@@ -143,7 +143,7 @@ TEST(PoseHistory, TooFewPosesAreNotSmoothed) {
 
 constexpr Duration kAhead = std::chrono::milliseconds(100);
 
-TEST(PoseHistory, PredictsByTheMotionOfTheNewestSample) {
+TEST(PoseHistory, PredictsByMotionOfNewestSample) {
   PoseHistory history(4, kMaxGap);
   PoseSample sample = Sample(1, 10, 0.5);
   sample.motion = BodyMotion{{2, 0, -1}, {0, 0, 3}};
@@ -158,7 +158,7 @@ TEST(PoseHistory, PredictsByTheMotionOfTheNewestSample) {
 }
 
 // The deck turns a UAV that touches down upright at once.
-TEST(PoseHistory, TheShockOfATouchDownDoesNotGoOn) {
+TEST(PoseHistory, DoesNotExtrapolateTouchDownShock) {
   PoseHistory history(10, kMaxGap);
   PoseSample sample = Sample(1, 0);
   sample.motion = BodyMotion{{0, 0, -0.7}, {30, 0, 0}};
@@ -168,7 +168,7 @@ TEST(PoseHistory, TheShockOfATouchDownDoesNotGoOn) {
   EXPECT_NEAR(before.angularDistance(pose->world_from_body.rotation), 0.2, 1e-9);
 }
 
-TEST(PoseHistory, APredictionCostsMoreTheFurtherItGoes) {
+TEST(PoseHistory, UncertaintyGrowsWithPrediction) {
   PoseHistory history(4, kMaxGap);
   PoseSample sample = Sample(1, 10);
   sample.motion = BodyMotion{};
@@ -189,7 +189,7 @@ TEST(PoseHistory, APredictionCostsMoreTheFurtherItGoes) {
   EXPECT_NEAR(history.Predict(At(1.1), kAhead, noisy)->uncertainty.position_m, 0.025, 1e-9);
 }
 
-TEST(PoseHistory, PredictsWithoutAToldMotionFromTheLastSamples) {
+TEST(PoseHistory, PredictsFromLastSamplesWithoutGivenMotion) {
   PoseHistory history(10, kMaxGap);
   history.Add(Sample(0.99, 0.99 * 4, 0.99));
   EXPECT_FALSE(history.Predict(At(1), kAhead, {})) << "one sample has no motion";
@@ -209,7 +209,7 @@ TEST(PoseHistory, PredictsWithoutAToldMotionFromTheLastSamples) {
       << "a motion that is told is newer than a mean one";
 }
 
-TEST(PoseHistory, AccelerationIsTheChangeOfTheToldVelocity) {
+TEST(PoseHistory, AccelerationIsChangeOfReportedVelocity) {
   PoseHistory history(100, kMaxGap);
   EXPECT_EQ(history.Acceleration(), Eigen::Vector3d(0, 0, 0));
   for (int i = 0; i <= 50; ++i) {
@@ -219,11 +219,11 @@ TEST(PoseHistory, AccelerationIsTheChangeOfTheToldVelocity) {
     history.Add(sample);
   }
   EXPECT_NEAR(history.Acceleration().x(), -3, 1e-9);
-  history.Add(Sample(1.02, 0));  // tells no motion
+  history.Add(Sample(1.02, 0));  // no motion given
   EXPECT_EQ(history.Acceleration(), Eigen::Vector3d(0, 0, 0));
 }
 
-TEST(PoseHistory, RefusesAMotionThatIsNone) {
+TEST(PoseHistory, RefusesNonFiniteMotion) {
   PoseHistory history(4, kMaxGap);
   PoseSample sample = Sample(1, 0);
   sample.motion = BodyMotion{{0, std::numeric_limits<double>::quiet_NaN(), 0}, {0, 0, 0}};

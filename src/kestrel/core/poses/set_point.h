@@ -16,7 +16,7 @@ struct SetPoint {
   Eigen::Vector3d velocity{0, 0, 0};
   Eigen::Vector3d acceleration{0, 0, 0};
   std::optional<double> yaw = std::nullopt;
-  std::optional<double> yaw_rate = std::nullopt;  // of the yaw, which is the one of now
+  std::optional<double> yaw_rate = std::nullopt;  // at which 'yaw' changes
   std::optional<Eigen::Vector3d> place = std::nullopt;
   // The UAV stands on a deck that carries it: its horizontal motion is not to be controlled.
   bool is_carried = false;

@@ -81,7 +81,7 @@ Finding CheckImageSize(const CameraIntrinsics& intrinsics, const CameraObservati
 
 Finding CheckLensModel(const CameraIntrinsics& intrinsics) {
   constexpr double kCorners =
-      0.6;  // of the border; the rest may be the black corners around a fisheye's circle
+      0.6;  // share of the border; the rest may be the black corners around a fisheye's circle
   const std::string check = "lens model";
   if (const auto violations = intrinsics.Validate(); !violations.empty()) {
     return Wrong(check, violations.front(), kCalibrateAdvice);
@@ -103,7 +103,7 @@ Finding CheckLensModel(const CameraIntrinsics& intrinsics) {
 
 Finding CheckPixelShape(const CameraIntrinsics& intrinsics) {
   constexpr double kAspect = 0.03;
-  constexpr double kOffAxis = 0.15;  // of the image's size
+  constexpr double kOffAxis = 0.15;  // largest offset from the middle, share of the image's size
   const std::string check = "principal point, pixels";
   const double aspect = intrinsics.fx_px / intrinsics.fy_px;
   const double off_x = intrinsics.cx_px / (intrinsics.width_px - 1) - 0.5;

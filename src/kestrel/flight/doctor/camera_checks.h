@@ -8,7 +8,7 @@
 
 namespace kestrel {
 
-// Checks of the camera's output, whatever its calibration says. Each returns one finding; a check
+// Checks of the camera's output, independent of its calibration. Each returns one finding; a check
 // without frames returns "not checked".
 Finding CheckImages(const CameraObservations& camera);  // whether there are any
 Finding CheckFrameRate(const CameraObservations& camera);

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kSinceStart = 16;  // of the Raspberry Pi's flags: a bit of now, so much higher
+constexpr int kSinceStart = 16;  // shift from a bit "now" to its bit "since start" (Raspberry Pi)
 
 // Returns the highest temperature of all thermal zones, deg C.
 std::optional<double> HottestZone(const fs::path& root) {
@@ -143,7 +143,7 @@ ComputerObservations ObserveComputer(const std::string& record, const fs::path& 
 }
 
 Finding CheckDetectionTime(const DoctorObservations& observations) {
-  constexpr double kComfortable = 0.6;  // of the frames' period
+  constexpr double kComfortable = 0.6;  // share of the frame period
   constexpr double kMostDropped = 0.3;
   const std::string check = "detection time";
   const VisionObservations& vision = observations.vision;
@@ -168,7 +168,7 @@ Finding CheckDetectionTime(const DoctorObservations& observations) {
 }
 
 Finding CheckLoad(const ComputerObservations& computer) {
-  constexpr double kBusy = 1.5;  // of the cores
+  constexpr double kBusy = 1.5;  // processes per core
   const std::string check = "load";
   const std::string measured =
       fmt::format("{:.1f} processes on {} cores", computer.load, computer.cores);

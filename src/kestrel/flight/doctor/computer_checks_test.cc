@@ -12,7 +12,7 @@
 namespace kestrel {
 namespace {
 
-// The files by which a Raspberry Pi tells its state.
+// The files in which a Raspberry Pi reports its state.
 class ComputerChecksTest : public ::testing::Test {
  protected:
   void Write(const std::string& name, const std::string& text) const {
@@ -43,7 +43,7 @@ TEST_F(ComputerChecksTest, ReadsFlagsAlarmWearAndClock) {
   EXPECT_EQ(CheckHeat(computer).verdict, Verdict::kWrong);
 }
 
-TEST_F(ComputerChecksTest, AComputerWithoutSuchFilesIsNotJudged) {
+TEST_F(ComputerChecksTest, DoesNotJudgeComputerWithoutSuchFiles) {
   const ComputerObservations computer = Observe();
   EXPECT_FALSE(computer.throttled);
   EXPECT_FALSE(computer.has_low_voltage);
@@ -53,7 +53,7 @@ TEST_F(ComputerChecksTest, AComputerWithoutSuchFilesIsNotJudged) {
   EXPECT_EQ(CheckHeat(computer).verdict, Verdict::kNotChecked);
 }
 
-TEST_F(ComputerChecksTest, TheDiskIsMeasuredWithoutATrace) {
+TEST_F(ComputerChecksTest, MeasuresDiskWithoutLeavingFiles) {
   const auto speed = MeasureDisk(folder_ / "flight");
   ASSERT_TRUE(speed);
   EXPECT_GT(*speed, 0);

@@ -34,20 +34,20 @@ std::vector<std::string> Flagged(const std::vector<Finding>& findings) {
 
 // --- A good set-up ---
 
-TEST(DoctorTest, IsSilentOnAGoodSetup) {
+TEST(DoctorTest, FlagsNothingOnGoodSetup) {
   for (const AutopilotKind kind : {AutopilotKind::kArduPilot, AutopilotKind::kPx4}) {
     EXPECT_THAT(Flagged(Check(GoodSetup(kind))), IsEmpty()) << ToString(kind);
     EXPECT_THAT(Flagged(Check(GoodGuidedSetup(kind))), IsEmpty()) << ToString(kind);
   }
 }
 
-TEST(DoctorTest, ChecksAllOfAGoodSetup) {
+TEST(DoctorTest, RunsAllChecksOnGoodSetup) {
   for (const Finding& finding : Check(GoodSetup(AutopilotKind::kPx4))) {
     EXPECT_EQ(finding.verdict, Verdict::kGood) << finding.check << ": " << finding.measured;
   }
 }
 
-TEST(DoctorTest, EveryCheckIsListed) {
+TEST(DoctorTest, ListsEveryCheck) {
   std::vector<std::string> listed;
   for (const ListedCheck& check : ListedChecks()) listed.emplace_back(check.name);
   for (const AutopilotKind kind : {AutopilotKind::kArduPilot, AutopilotKind::kPx4}) {
@@ -127,7 +127,7 @@ void Silence(DoctorObservations* all) {
 
 void MoveTarget(DoctorObservations* all) { all->use.target_mps = 4.2; }
 
-const Eigen::Vector3d kAxis = Eigen::Vector3d::UnitZ();  // of the camera
+const Eigen::Vector3d kAxis = Eigen::Vector3d::UnitZ();  // optical axis of the camera
 
 std::vector<Fault> CameraFaults() {
   return {
@@ -414,7 +414,7 @@ void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
 
 class DoctorFaultTest : public ::testing::TestWithParam<Fault> {};
 
-TEST_P(DoctorFaultTest, IsNamed) {
+TEST_P(DoctorFaultTest, IsReported) {
   const Fault& fault = GetParam();
   DoctorObservations all = Make(fault.setup);
   fault.break_it(&all);
@@ -434,7 +434,7 @@ INSTANTIATE_TEST_SUITE_P(Computer, DoctorFaultTest, ::testing::ValuesIn(Computer
 
 // --- Cases that must not mislead a check ---
 
-TEST(DoctorTest, AMountIsNotJudgedByAUavThatStandsStill) {
+TEST(DoctorTest, DoesNotJudgeMountOnStationaryUav) {
   DoctorObservations all = GoodSetup(AutopilotKind::kArduPilot);
   RigidTransform turned = DownwardMount();
   turned.rotation = turned.rotation * Eigen::AngleAxisd(kPi / 2, kAxis);
@@ -447,7 +447,7 @@ TEST(DoctorTest, AMountIsNotJudgedByAUavThatStandsStill) {
   }
 }
 
-TEST(DoctorTest, ADarkImageBelowAUavThatStandsIsNoFault) {
+TEST(DoctorTest, AcceptsDarkImageBelowUavOnGround) {
   DoctorObservations all = GoodSetup(AutopilotKind::kPx4);
   all.camera.is_on_ground = true;
   for (ImageQuality& quality : all.camera.qualities) quality.bright_gray = 30;
@@ -458,7 +458,7 @@ TEST(DoctorTest, ADarkImageBelowAUavThatStandsIsNoFault) {
 }
 
 // ArduPilot listens to its own system always: the ground station's number is left alone.
-TEST(DoctorTest, TheGroundStationKeepsItsPlace) {
+TEST(DoctorTest, KeepsGroundStationId) {
   DoctorObservations all = GoodGuidedSetup(AutopilotKind::kArduPilot);
   all.parameters["MAV_OPTIONS"] = {1, "MAV_OPTIONS", 1};
   all.parameters["MAV_GCS_SYSID"] = {255, "MAV_GCS_SYSID", 1};
@@ -469,7 +469,7 @@ TEST(DoctorTest, TheGroundStationKeepsItsPlace) {
   }
 }
 
-TEST(DoctorTest, ALossTimeoutWithinTheRangeIsGood) {
+TEST(DoctorTest, AcceptsLossTimeoutWithinRange) {
   for (const double s : {0.1, 0.2, 0.3}) {
     DoctorObservations all = GoodGuidedSetup(AutopilotKind::kArduPilot);
     all.parameters["GUID_TIMEOUT"].value = s;
@@ -482,14 +482,14 @@ TEST(DoctorTest, ALossTimeoutWithinTheRangeIsGood) {
   }
 }
 
-TEST(DoctorTest, ImagesThatAreLeftOutAreNoJitter) {
+TEST(DoctorTest, MissedImagesAreNoJitter) {
   DoctorObservations all = GoodSetup(AutopilotKind::kPx4);
   auto& frames = all.camera.frames;
   for (std::size_t i = 150; i > 10; i -= 7) frames.erase(frames.begin() + static_cast<long>(i));
   EXPECT_THAT(Flagged(Check(all)), IsEmpty());
 }
 
-TEST(DoctorTest, NothingAtAllIsFoundWrongAndNotFatal) {
+TEST(DoctorTest, MissingObservationsAreReportedAsWrong) {
   const std::vector<Finding> findings = Check({});
   EXPECT_TRUE(AnyWrong(findings));
   EXPECT_THAT(FindingsTable(findings, false), HasSubstr("not checked yet"));

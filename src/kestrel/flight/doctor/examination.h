@@ -23,7 +23,7 @@ namespace kestrel {
 // Input of an examination; all outlive it. Null where there is none.
 struct ExaminationParts {
   LiveSource* source = nullptr;
-  CameraCalibration calibration;  // of the source
+  CameraCalibration calibration;  // calibration of the source
   Connection* connection = nullptr;
   Autopilot* autopilot = nullptr;  // on the connection
 };

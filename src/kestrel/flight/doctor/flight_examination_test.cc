@@ -63,7 +63,7 @@ class FlightExaminationTest : public ::testing::Test {
   CameraCalibration calibration_;
 };
 
-TEST_F(FlightExaminationTest, TellsWhatIsGood) {
+TEST_F(FlightExaminationTest, ReportsGoodChecks) {
   const FlightExamination examination = Fly(*calibration_.body_from_camera);
   for (const char* check :
        {"images", "image size", "frame rate", "steadiness", "missed images", "capture clock",
@@ -72,7 +72,7 @@ TEST_F(FlightExaminationTest, TellsWhatIsGood) {
   }
 }
 
-TEST_F(FlightExaminationTest, TellsWhatIsWrong) {
+TEST_F(FlightExaminationTest, ReportsWrongMount) {
   const RigidTransform& mount = *calibration_.body_from_camera;
   const RigidTransform tilted = {
       mount.rotation * Eigen::Quaterniond(Eigen::AngleAxisd(0.6, Eigen::Vector3d::UnitX())),
@@ -85,7 +85,7 @@ TEST_F(FlightExaminationTest, TellsWhatIsWrong) {
   EXPECT_EQ(VerdictOf("missed images", examination, report), Verdict::kWrong);
 }
 
-TEST_F(FlightExaminationTest, SaysNothingOfWhatItHasNotSeen) {
+TEST_F(FlightExaminationTest, DoesNotJudgeWithoutObservations) {
   const FlightExamination examination(calibration_, ".", 0);
   EXPECT_EQ(VerdictOf("frame rate", examination), Verdict::kNotChecked);
   EXPECT_EQ(VerdictOf("exposure", examination), Verdict::kNotChecked);

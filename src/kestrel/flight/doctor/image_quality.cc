@@ -57,7 +57,8 @@ void MeasureEdges(const std::uint8_t* line, int size, std::vector<double>* width
   }
 }
 
-// Returns a width among the sharper edges: oblique or soft edges say nothing about the lens.
+// Returns a width among the sharper edges: oblique or soft edges carry no information about the
+// lens.
 std::optional<double> SharpEdges(const cv::Mat& gray) {
   constexpr std::size_t kFewest = 30;
   constexpr double kSharper = 0.25;

@@ -13,7 +13,7 @@ struct ImageQuality {
   double mean_gray = 0;
   double bright_gray = 0;      // 1 % of the pixels are brighter
   double dark_gray = 0;        // 1 % are darker
-  double saturated_share = 0;  // of pixels at 250 and above
+  double saturated_share = 0;  // share of pixels at 250 and above
   // Width of the sharpest edges in pixels: 1 without blur, 2.5 standard deviations of a blur.
   // Nothing where there are too few edges.
   std::optional<double> edge_px;

@@ -28,7 +28,7 @@ cv::Mat Scene(double blur_px, double gain) {
   return noisy;
 }
 
-TEST(ImageQualityTest, EdgesTellTheBlur) {
+TEST(ImageQualityTest, EdgeWidthMeasuresBlur) {
   EXPECT_LT(MeasureImageQuality(Scene(0.6, 1)).edge_px.value(), 3);
   const double soft = MeasureImageQuality(Scene(2.0, 1)).edge_px.value();
   EXPECT_GT(soft, 3.5);
@@ -43,7 +43,7 @@ TEST(ImageQualityTest, NoiseAloneHasNoEdges) {
   EXPECT_FALSE(MeasureImageQuality(noise).edge_px);
 }
 
-TEST(ImageQualityTest, TellsDarkAndSaturated) {
+TEST(ImageQualityTest, DetectsDarkAndSaturatedImages) {
   EXPECT_LT(MeasureImageQuality(Scene(0.6, 0.15)).bright_gray, 50);
   EXPECT_GT(MeasureImageQuality(Scene(0.6, 3)).saturated_share, 0.3);
   const ImageQuality good = MeasureImageQuality(Scene(0.6, 1));
@@ -52,7 +52,7 @@ TEST(ImageQualityTest, TellsDarkAndSaturated) {
   EXPECT_LT(good.dark_gray, 40);
 }
 
-TEST(ImageQualityTest, OnePixelMakesAnotherImage) {
+TEST(ImageQualityTest, HashChangesWithOnePixel) {
   cv::Mat image = Scene(0.6, 1);
   const auto hash = MeasureImageQuality(image).hash;
   EXPECT_EQ(MeasureImageQuality(image.clone()).hash, hash);
@@ -60,7 +60,7 @@ TEST(ImageQualityTest, OnePixelMakesAnotherImage) {
   EXPECT_NE(MeasureImageQuality(image).hash, hash);
 }
 
-TEST(ImageQualityTest, TakesColourToo) {
+TEST(ImageQualityTest, AcceptsColour) {
   cv::Mat color;
   cv::cvtColor(Scene(0.6, 1), color, cv::COLOR_GRAY2BGR);
   EXPECT_GT(MeasureImageQuality(color).bright_gray, 200);

@@ -43,12 +43,13 @@ Finding SilentLine(const std::string& check, const LinkObservations& link) {
 }
 
 Finding CheckStream(const std::string& check, int messages, double listened_s, double age_s,
-                    double asked_hz, const std::string& missing_advice) {
-  constexpr double kEnough = 0.6;  // of the requested rate
+                    double requested_hz, const std::string& missing_advice) {
+  constexpr double kEnough = 0.6;  // share of the requested rate
   constexpr double kLeast_hz = 10;
   constexpr double kOld_s = 1;
   const double rate_hz = listened_s > 0 ? messages / listened_s : 0;
-  const std::string measured = fmt::format("{:.0f} of {:.0f} asked per second", rate_hz, asked_hz);
+  const std::string measured =
+      fmt::format("{:.0f} of {:.0f} asked per second", rate_hz, requested_hz);
   if (messages == 0) return Wrong(check, "none came", missing_advice);
   if (age_s > kOld_s) {
     return Wrong(check, fmt::format("the last one came {:.1f} s ago", age_s), missing_advice);
@@ -56,8 +57,8 @@ Finding CheckStream(const std::string& check, int messages, double listened_s, d
   const std::string advice =
       "a faster line (921600 baud), no other ground station that asks for less on this port, "
       "MAVn_OPTIONS without \"ignore stream requests\"";
-  if (rate_hz < std::min(kLeast_hz, kEnough * asked_hz)) return Wrong(check, measured, advice);
-  if (rate_hz < kEnough * asked_hz) return Doubtful(check, measured, advice);
+  if (rate_hz < std::min(kLeast_hz, kEnough * requested_hz)) return Wrong(check, measured, advice);
+  if (rate_hz < kEnough * requested_hz) return Doubtful(check, measured, advice);
   return Good(check, measured);
 }
 

@@ -198,7 +198,7 @@ Finding CheckMountByGravity(const std::optional<RigidTransform>& body_from_camer
 Finding CheckMountByMotion(const std::optional<RigidTransform>& body_from_camera,
                            const VisionObservations& vision, bool target_moves) {
   constexpr double kLeast_px = 15;
-  constexpr double kClear = 0.5;  // of the other's wandering
+  constexpr double kClear = 0.5;  // largest ratio of the better mount's wandering to the other's
   constexpr double kLeast_m = 0.06;
   constexpr double kCentimetres = 100;
   const std::string check = "mount against motion";

@@ -46,19 +46,19 @@ struct FrameSample {
 struct CameraObservations {
   std::string open_error;       // why it could not be opened; empty: it could be
   bool has_other_size = false;  // the reason was the size of its images
-  bool is_on_ground = false;    // the UAV stands, by what its autopilot says
+  bool is_on_ground = false;    // the autopilot reports that the UAV stands
   std::string error;            // its last error
   double duration_s = 0;        // time for which it was watched
-  int width_px = 0;             // of its images; 0: there were none
+  int width_px = 0;             // width of its images; 0: there were none
   int height_px = 0;
   std::vector<FrameSample> frames;      // in the order in which they came
-  std::vector<ImageQuality> qualities;  // of the examined frames
+  std::vector<ImageQuality> qualities;  // quality of each examined frame
   CaptureCounters counters;
 };
 
 // The pattern in one frame, found without mount and attitude.
 struct PatternSample {
-  Time time;  // of the frame, on the navigation's clock
+  Time time;  // time of the frame on the navigation's clock
   RigidTransform camera_from_pattern;
   std::optional<RigidTransform> mirror_camera_from_pattern;
   double ring_px = 0;        // smaller diameter of the ring
@@ -84,7 +84,7 @@ struct LinkObservations {
   std::string open_error;  // why the line could not be opened; empty: it could be
   std::string silence;     // why no autopilot is heard, see WhySilent; empty: it is heard
   LinkScheme scheme = LinkScheme::kUdpIn;
-  int baud = 0;               // of a serial line
+  int baud = 0;               // baud rate of a serial line
   bool is_signed = false;     // this side signs its packets
   bool hears_signed = false;  // the other side signs its packets
   ConnectionCounters counters;
@@ -98,7 +98,7 @@ struct LinkObservations {
   double listened_s = 0;  // time for which the streams were counted
   int attitudes = 0;      // messages in that time
   int positions = 0;
-  double attitude_age_s = 0;  // of the newest one, at the end
+  double attitude_age_s = 0;  // age of the newest attitude at the end
   double position_age_s = 0;
   std::optional<bool> has_good_position;  // according to the autopilot's own estimator
   std::uint64_t lost_packets = 0;
@@ -117,7 +117,7 @@ struct LinkObservations {
 struct ComputerObservations {
   int cores = 1;
   double load = 0;                           // processes that run or wait, mean of a minute
-  std::optional<double> hottest_c;           // of all thermal zones
+  std::optional<double> hottest_c;           // highest temperature of all thermal zones
   std::optional<std::uint32_t> throttled;    // Raspberry Pi's flags
   std::optional<double> free_disk_mb;        // on the disk of the recording
   double least_disk_mb = 0;                  // room that the recorder leaves free

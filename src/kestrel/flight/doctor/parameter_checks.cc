@@ -221,7 +221,7 @@ void CheckEstimatorOfArduPilot(ParameterRules* rules) {
 }
 
 // Who is listened to, where MAV_OPTIONS bit 0 lets in the ground station only: it, and whoever
-// sends with the autopilot's own system, as Kestrel does unless told otherwise. The ground
+// sends with the autopilot's own system, as Kestrel does unless configured otherwise. The ground
 // station's place is not Kestrel's to take.
 void CheckTrustOfArduPilot(ParameterRules* rules) {
   const auto ground_station = rules->Find("MAV_GCS_SYSID");
@@ -251,9 +251,9 @@ struct LossTimeout {
 void CheckLossTimeout(const LossTimeout& timeout, ParameterRules* rules) {
   constexpr double kWanted_s = 0.3;
   constexpr double kMetres = 0.6;  // beyond it a UAV that descends hits the ground
-  const double told_s = rules->Find(timeout.name).value_or(0);
-  rules->Want(timeout.name, told_s > kMetres ? Verdict::kWrong : Verdict::kDoubtful,
-              {kWanted_s, told_s < timeout.shortest_s
+  const double configured_s = rules->Find(timeout.name).value_or(0);
+  rules->Want(timeout.name, configured_s > kMetres ? Verdict::kWrong : Verdict::kDoubtful,
+              {kWanted_s, configured_s < timeout.shortest_s
                               ? "it stops whenever the link is slow"
                               : "so long the last velocity and acceleration are flown on when "
                                 "set-points stop"},
@@ -375,7 +375,7 @@ void CheckEstimatorOfPx4(ParameterRules* rules) {
 }
 
 // The reaction of PX4 when set-points stop has to be one that holds. Without a transmitter
-// NAV_RCL_ACT says what comes after the modes that need one (0 to 2).
+// NAV_RCL_ACT sets what follows the modes that need one (0 to 2).
 void CheckLossOfPx4(ParameterRules* rules) {
   constexpr int kReturn = 3;
   constexpr int kLand = 4;

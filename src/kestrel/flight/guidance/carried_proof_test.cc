@@ -36,14 +36,14 @@ Vector3d LeanFor(const Vector2d& acceleration) {
   return Vector3d(acceleration.x(), acceleration.y(), kGravity).normalized();
 }
 
-TEST(CarriedProofTest, ADeckThatTurnsIsProofByALevelUav) {
+TEST(CarriedProofTest, TurningDeckUnderLevelUavIsProof) {
   const double seconds = Proof([](double time_s) {
     return CarriedProof::Motion{Vector3d::UnitZ(), InCurve(time_s), 0};
   });
   EXPECT_NEAR(seconds, kFlown_s, 0.1);
 }
 
-TEST(CarriedProofTest, ADeckThatHeavesIsProofWhileItRises) {
+TEST(CarriedProofTest, HeavingDeckIsProofWhileItRises) {
   const double seconds = Proof([](double time_s) {
     return CarriedProof::Motion{Vector3d::UnitZ(), {0, 0}, 0.52 * std::cos(2 * M_PI * time_s / 6)};
   });
@@ -51,7 +51,7 @@ TEST(CarriedProofTest, ADeckThatHeavesIsProofWhileItRises) {
   EXPECT_LT(seconds, kFlown_s / 2);
 }
 
-TEST(CarriedProofTest, AFlightIsNone) {
+TEST(CarriedProofTest, FlightIsNoProof) {
   const auto curve = [](double time_s) {  // in a cross wind that takes a lean of its own
     const Vector2d by_lean = InCurve(time_s) + Vector2d(0, 1.5);
     return CarriedProof::Motion{LeanFor(by_lean), InCurve(time_s), -0.5};
@@ -62,7 +62,7 @@ TEST(CarriedProofTest, AFlightIsNone) {
 }
 
 // A gust of 1 s pushes at first, then the UAV leans against it.
-TEST(CarriedProofTest, GustsAreLittle) {
+TEST(CarriedProofTest, GustsAreLittleProof) {
   const double seconds = Proof([](double time_s) {
     const bool pushes = std::fmod(time_s, 10) < 0.5;
     return CarriedProof::Motion{Vector3d::UnitZ(), {pushes ? 1.5 : 0, 0}, 0};
@@ -70,7 +70,7 @@ TEST(CarriedProofTest, GustsAreLittle) {
   EXPECT_LT(seconds, 1.1);
 }
 
-TEST(CarriedProofTest, AGapInTimeIsNoProof) {
+TEST(CarriedProofTest, GapInTimeIsNoProof) {
   CarriedProof proof;
   const CarriedProof::Motion motion{Vector3d::UnitZ(), {3, 0}, 0};
   proof.Observe(Time(DurationFromSeconds(0)), motion);

@@ -47,7 +47,7 @@ class ContactDetector {
   ContactOptions options_;
   std::optional<Time> resting_since_;
   std::optional<double> contact_z_m_;  // height of the deck below the feet
-  Time last_;                          // of the last update
+  Time last_;                          // time of the last update
 };
 
 }  // namespace kestrel

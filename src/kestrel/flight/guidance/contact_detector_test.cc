@@ -28,7 +28,7 @@ struct Contacts {
   double time_s = 0;
 };
 
-TEST(ContactDetectorTest, RestOnTheDeckForAMomentIsContact) {
+TEST(ContactDetectorTest, BriefRestOnDeckIsContact) {
   Contacts contacts;
   EXPECT_FALSE(contacts.Update(2, {0.1, 0, 0.05}, 0.7)) << "sinks";
   EXPECT_FALSE(contacts.Update(2, {0.1, 0, 0.4}, 0)) << "hovers above it";
@@ -38,7 +38,7 @@ TEST(ContactDetectorTest, RestOnTheDeckForAMomentIsContact) {
 }
 
 // The shock of touch-down leaves the estimate wrong: by 0.12 m/s, up or down, was seen.
-TEST(ContactDetectorTest, AnEstimateThatIsWrongAfterTouchDownIsContactAndLasts) {
+TEST(ContactDetectorTest, ContactLastsDespiteWrongEstimateAfterTouchDown) {
   for (const double sink_mps : {0.12, -0.12}) {
     Contacts contacts;
     EXPECT_TRUE(contacts.Update(0.6, {0.1, 0, 0.05}, sink_mps));
@@ -50,7 +50,7 @@ TEST(ContactDetectorTest, AnEstimateThatIsWrongAfterTouchDownIsContactAndLasts) 
   EXPECT_FALSE(slow.Update(2, {0.1, 0, 0.05}, 0.3)) << "still sinks";
 }
 
-TEST(ContactDetectorTest, LastsWithoutTheDeckUntilItRises) {
+TEST(ContactDetectorTest, ContactLastsWithoutDeckEstimateUntilUavRises) {
   Contacts contacts;
   ASSERT_TRUE(contacts.Update(1, {0.1, 0, 0.05}, 0));
   EXPECT_TRUE(contacts.Update(5, {0.3, 0, 0.1}, 0.2, false));

@@ -11,7 +11,7 @@ namespace {
 constexpr Oscillation::Spread kHeight = {.swing = 0.4, .measurement = 0.03, .level_per_s = 0.02};
 constexpr Oscillation::Spread kNormal = {.swing = 0.07, .measurement = 0.02, .level_per_s = 0.002};
 
-constexpr double kForecastStep_s = 0.1;  // of the forecast
+constexpr double kForecastStep_s = 0.1;
 
 }  // namespace
 

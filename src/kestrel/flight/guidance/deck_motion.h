@@ -14,7 +14,7 @@ namespace kestrel {
 struct DeckForecast {
   double height_m = 0;  // world
   double climb_mps = 0;
-  double tilt = 0;  // of its normal from the vertical, rad
+  double tilt = 0;  // angle of its normal from the vertical, rad
   double height_sigma_m = 0;
   double climb_sigma_mps = 0;
   double tilt_sigma = 0;

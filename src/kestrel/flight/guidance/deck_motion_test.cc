@@ -100,7 +100,7 @@ Errors ErrorsOf(const std::function<Waves(Random*)>& make, double ahead_s) {
 Waves Ship(Random* random) { return Waves::Regular(1, 6, 8, random->Uniform(0, 2 * kPi)); }
 Waves Sea(Random* random) { return Waves::Irregular(0.35, 6, 4, random); }
 
-TEST(DeckMotionTest, PredictsASwell) {
+TEST(DeckMotionTest, PredictsSwell) {
   for (const double ahead_s : {0.5, 1.0, 2.0, 3.0}) {
     const Errors errors = ErrorsOf(Ship, ahead_s);
     EXPECT_LT(errors.height_m, 0.06 + 0.03 * ahead_s) << ahead_s;
@@ -110,7 +110,7 @@ TEST(DeckMotionTest, PredictsASwell) {
 }
 
 // The mean level would be wrong by 0.35 m.
-TEST(DeckMotionTest, PredictsIrregularWavesAndKnowsHowWell) {
+TEST(DeckMotionTest, PredictsIrregularWavesWithUncertainty) {
   const Errors soon = ErrorsOf(Sea, 1);
   EXPECT_LT(soon.height_m, 0.15);
   EXPECT_LT(soon.climb_mps, 0.2);
@@ -119,7 +119,7 @@ TEST(DeckMotionTest, PredictsIrregularWavesAndKnowsHowWell) {
   for (const Errors& errors : {soon, later}) EXPECT_GT(errors.within_two_sigma, 0.9);
 }
 
-TEST(DeckMotionTest, FindsTheWindowsOfALevelDeckThatHardlyRises) {
+TEST(DeckMotionTest, FindsWindowsOfLevelSlowlyRisingDeck) {
   constexpr double kMaxTilt_deg = 4;
   constexpr double kMaxClimb_mps = 0.25;
   int windows = 0;
@@ -146,7 +146,7 @@ TEST(DeckMotionTest, FindsTheWindowsOfALevelDeckThatHardlyRises) {
   EXPECT_GT(good, 0.85 * windows);
 }
 
-TEST(DeckMotionTest, ADeckThatStandsIsAlwaysInItsWindow) {
+TEST(DeckMotionTest, StandingDeckIsAlwaysInWindow) {
   Observed observed({[](double) { return 1.8; }, [](double) { return 0.0; }}, 1);
   observed.Observe(5);
   EXPECT_FALSE(observed.deck.NextWindow(Radians(3), 0.15)) << "not known yet";
@@ -161,7 +161,7 @@ TEST(DeckMotionTest, ADeckThatStandsIsAlwaysInItsWindow) {
   EXPECT_FALSE(tilted.deck.NextWindow(Radians(3), 0.15)) << "it lies at 10 degrees";
 }
 
-TEST(DeckMotionTest, LeavesOutWhatIsNotValidAndBeginsAnewAfterAGap) {
+TEST(DeckMotionTest, IgnoresInvalidObservationsAndRestartsAfterGap) {
   Observed observed(Waves::Regular(1, 6, 8, 0), 1);
   observed.Observe(10);
   const double before_m = observed.deck.Ahead(1)->height_m;

@@ -23,7 +23,7 @@ class DeckRide {
   const Eigen::Vector2d& acceleration() const { return acceleration_; }  // smoothed, m/s^2
 
  private:
-  std::optional<Time> time_;  // of the newest velocity
+  std::optional<Time> time_;  // time of the newest velocity
   Eigen::Vector2d velocity_{0, 0};
   Eigen::Vector2d acceleration_{0, 0};
 };

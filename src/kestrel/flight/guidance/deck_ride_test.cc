@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-TEST(DeckRideTest, KnowsTheCurve) {
+TEST(DeckRideTest, DeterminesCurve) {
   constexpr double kSpeed_mps = 4.2, kRadius_m = 8, kStep_s = 0.02;
   const auto velocity = [&](double time_s) {
     const double angle = kSpeed_mps / kRadius_m * time_s;

@@ -16,7 +16,7 @@ using Eigen::Vector2d;
 constexpr double kFilter_s = 0.5;
 constexpr double kFilterPerDelay = 4;
 constexpr double kMaxRest = 4;  // m/s^2
-// A control that asks for more than this (m/s^2, 45 degrees) is at its tilt limit.
+// A control that demands more than this (m/s^2, 45 degrees) is at its tilt limit.
 constexpr double kMaxDemand = kGravity;
 
 }  // namespace

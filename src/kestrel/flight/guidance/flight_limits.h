@@ -58,8 +58,8 @@ class FlightLimits {
   // 'center' of the geofence, in the world, m. Throws InputError when the options are not valid.
   FlightLimits(const FlightLimitsOptions& options, const Eigen::Vector2d& center);
 
-  // Returns one line that says why guidance must not begin with the body at 'position' (outside of
-  // the geofence, above the ceiling); empty when it may. Allocates only when it may not.
+  // Returns one line with the reason why guidance must not begin with the body at 'position'
+  // (outside the geofence, above the ceiling); empty when it may. Allocates only when it may not.
   std::string WhyNot(const Eigen::Vector3d& position) const;
   bool Contains(const Eigen::Vector3d& position) const;
 

@@ -27,7 +27,7 @@ TEST(FlightLimitsTest, LimitsSpeedAndAccelerationAlongTheirDirections) {
   EXPECT_EQ(limits.Limited(small, {0, 0, 10}, true).velocity, small.velocity);
 }
 
-TEST(FlightLimitsTest, BrakesBeforeTheFenceAndComesBackFromBeyond) {
+TEST(FlightLimitsTest, BrakesBeforeFenceAndReturnsFromBeyond) {
   const FlightLimits limits({}, {100, 0});
   const auto outwards = [&](double x_m) {
     return limits.Limited(Moving({10, 3, 0}), {x_m, 0, 10}, true).velocity;
@@ -39,7 +39,7 @@ TEST(FlightLimitsTest, BrakesBeforeTheFenceAndComesBackFromBeyond) {
   EXPECT_EQ(limits.Limited(Moving({-10, 0, 0}), {199, 0, 10}, true).velocity.x(), -10);
 }
 
-TEST(FlightLimitsTest, TheFloorIsForFlightWithoutATarget) {
+TEST(FlightLimitsTest, FloorAppliesToFlightWithoutTarget) {
   const FlightLimits limits({}, {0, 0});
   const auto climb = [&](double z_m, bool follows) {
     return limits.Limited(Moving({0, 0, -1}), {0, 0, z_m}, follows).velocity.z();
@@ -51,7 +51,7 @@ TEST(FlightLimitsTest, TheFloorIsForFlightWithoutATarget) {
   EXPECT_NEAR(limits.Limited(Moving({0, 0, 2}), {0, 0, 30}, true).velocity.z(), 0, 1e-9);
 }
 
-TEST(FlightLimitsTest, SaysInOneLineWhyNotToBegin) {
+TEST(FlightLimitsTest, ReportsInOneLineWhyItMustNotStart) {
   const FlightLimits limits({}, {10, 0});
   EXPECT_THAT(limits.WhyNot({0, 0, 10}), IsEmpty());
   EXPECT_THAT(
@@ -61,7 +61,7 @@ TEST(FlightLimitsTest, SaysInOneLineWhyNotToBegin) {
   EXPECT_FALSE(limits.Contains({-95, 0, 10}));
 }
 
-TEST(FlightLimitsTest, LimitsBeyondTheAutopilotsOwnAreNamed) {
+TEST(FlightLimitsTest, ReportsLimitsBeyondThoseOfAutopilot) {
   EXPECT_THAT(ViolationsOf({}, {}), IsEmpty()) << "nothing known";
   // ArduCopter's and PX4's defaults.
   EXPECT_THAT(ViolationsOf({.max_climb_mps = 2.5, .max_sink_mps = 1.5, .max_tilt_deg = 30}, {}),

@@ -24,12 +24,12 @@ constexpr double kGap_s = 0.25;  // samples before a longer gap are of no use
 // Deviations from the model (gusts above all) last this long: measurements within are not
 // independent.
 constexpr double kCorrelation_s = 0.5;
-constexpr double kWeight = kLearnEvery * kSample_s / kCorrelation_s;  // of one measurement
+constexpr double kWeight = kLearnEvery * kSample_s / kCorrelation_s;  // weight of one measurement
 constexpr double kNoise_mps = 0.6;
-constexpr double kDelaySigma_s = 0.03;  // of the assumed delay
+constexpr double kDelaySigma_s = 0.03;  // uncertainty of the assumed delay
 constexpr double kAirMemory_s = 20;
 constexpr double kAirNoise = 0.3;      // m/s^2
-constexpr double kMaxAirSigma = 0.06;  // of the drag, 1/s
+constexpr double kMaxAirSigma = 0.06;  // largest usable uncertainty of the drag, 1/s
 
 // Limits of the learning. A slack above the first is a limit of the autopilot, not its answer, if
 // the velocity still approaches the command by more than the last (m/s^2) or if the slack is above
@@ -41,18 +41,21 @@ constexpr double kSteadyAcceleration = 1;
 // Assumption: the autopilot knows its own velocity without delay. A command that is given ahead by
 // the delay is therefore too large by the delay times the acceleration.
 Answer AssumedAnswer(double delay_s) { return {0.3, -delay_s, 0, 0, 0}; }
-// A landing is too short to distinguish drag and push from the catching up before it, and an
-// autopilot that takes accelerations leaves little of them. Drag leaves at 3 m/s what the push
-// does.
+
+// Prior standard deviations of slack (s), lag (s), drag (1/s) and push (m/s, two axes). Drag and
+// push are kept small because a landing is too short to separate them from the velocity error that
+// is left from catching up with the target. They are smaller still for an autopilot that takes
+// accelerations, as these already compensate the air. The sigma of drag is such that at 3 m/s it
+// causes the same error as the push.
 Answer AnswerSigma(const VelocityControl& control) {
   const double push_mps = control.takes_acceleration() ? 0.1 : 0.3;
   return {0.3, 0.05, push_mps / 3, push_mps, push_mps};
 }
 
 // True when a UAV that is slower than its command by 'slack' is at a limit of its autopilot: this
-// says nothing about its answer. 'gain': its acceleration beyond the one that is commanded. A UAV
-// with a moderate slack that comes no nearer to the command has drag that nothing compensates, and
-// counts.
+// carries no information about its answer. 'gain': its acceleration beyond the one that is
+// commanded. A UAV with a moderate slack that comes no nearer to the command has drag that nothing
+// compensates, and counts.
 bool IsAtLimit(const Eigen::Vector2d& slack, const Eigen::Vector2d& gain) {
   const double size = slack.norm();
   if (size <= kMaxSlack_mps) return false;
@@ -218,7 +221,7 @@ void FlightModel::Command(SetPoint* set_point) {
 }
 
 std::optional<AirEstimate> FlightModel::air() const {
-  constexpr double kLeastDrag = 0.02;  // 1/s; a lower drag says nothing about the wind
+  constexpr double kLeastDrag = 0.02;  // 1/s; a lower drag does not determine the wind
   const auto fit = by_lean_.Solve();
   if (fit.sigma(0) > kMaxAirSigma || fit.parameters(0) < kLeastDrag) return std::nullopt;
   return AirEstimate{fit.parameters(0), fit.parameters.tail<2>() / fit.parameters(0)};

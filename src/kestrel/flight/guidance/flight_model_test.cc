@@ -44,7 +44,7 @@ double FlyCircle(const TestUavOptions& uav_options, const Vector3d& wind, double
   return std::sqrt(squares / count);
 }
 
-TEST(FlightModelTest, TellsDragAndWindByHowTheUavLeans) {
+TEST(FlightModelTest, EstimatesDragAndWindFromLean) {
   for (const double drag : {0.1, 0.25, 0.5}) {
     TestUavOptions options = TestUavOptions::Px4();
     options.drag = drag;
@@ -56,7 +56,7 @@ TEST(FlightModelTest, TellsDragAndWindByHowTheUavLeans) {
   }
 }
 
-TEST(FlightModelTest, SaysNothingOfTheAirBeforeItFlies) {
+TEST(FlightModelTest, GivesNoAirEstimateBeforeFlight) {
   FlightModel model({});
   EXPECT_FALSE(model.air());
   for (int i = 0; i < 200; ++i) {
@@ -68,7 +68,7 @@ TEST(FlightModelTest, SaysNothingOfTheAirBeforeItFlies) {
 
 // With little gain, wind causes an error of the velocity control. The learnt model reduces it to a
 // part.
-TEST(FlightModelTest, TheVelocityIsThatWantedOnACurveInTheWind) {
+TEST(FlightModelTest, ReachesDemandedVelocityOnCurveInWind) {
   TestUavOptions options;
   options.p = 1.5;
   for (const double attitude_lag_s : {0.06, 0.12}) {
@@ -85,7 +85,7 @@ TEST(FlightModelTest, TheVelocityIsThatWantedOnACurveInTheWind) {
 }
 
 // The velocity control of PX4 has a gain of 1.8: a drag of 1 per s would leave it 2.3 m/s behind.
-TEST(FlightModelTest, TheAirIsFedForwardToAnAutopilotThatTakesAccelerations) {
+TEST(FlightModelTest, FeedsForwardAirToAutopilotWithAccelerations) {
   for (const double drag : {0.1, 0.35, 1.0}) {
     TestUavOptions options = TestUavOptions::Px4();
     options.drag = drag;
@@ -96,7 +96,7 @@ TEST(FlightModelTest, TheAirIsFedForwardToAnAutopilotThatTakesAccelerations) {
   }
 }
 
-TEST(FlightModelTest, TheLinksDelayIsPartOfTheDelay) {
+TEST(FlightModelTest, DelayIncludesLink) {
   TestUavOptions options = TestUavOptions::Px4();
   options.delay_s = 0.1;
   FlightModel model({});
@@ -105,7 +105,7 @@ TEST(FlightModelTest, TheLinksDelayIsPartOfTheDelay) {
   EXPECT_LT(error, 0.3);
 }
 
-TEST(FlightModelTest, GapsAndIrregularCallsDoNoHarm) {
+TEST(FlightModelTest, ToleratesGapsAndIrregularCalls) {
   FlightModel model({});
   Random random(3);
   double time_s = 0;

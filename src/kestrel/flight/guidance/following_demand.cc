@@ -15,7 +15,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kSmoothing_s = 0.5;   // of the acceleration: a track's turn rate is noisy
+constexpr double kSmoothing_s = 0.5;   // for the acceleration: a track's turn rate is noisy
 constexpr double kDemandMemory_s = 8;  // about a lobe of a figure of eight
 // Share of a limit from which the UAV falls behind for sure. The estimates of wind and curve are
 // good to some per cent.

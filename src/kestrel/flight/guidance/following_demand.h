@@ -18,7 +18,7 @@ struct FollowingDemand {
   double speed_mps = 0, max_speed_mps = 0;
   double climb_mps = 0, max_climb_mps = 0;
 
-  double lean_share() const;  // of the acceleration at the largest lean
+  double lean_share() const;  // share of the acceleration at the largest lean
   double speed_share() const;
   double climb_share() const;
   // True when the UAV cannot follow however it flies.
@@ -29,7 +29,7 @@ struct FollowingDemand {
 };
 
 // Watches what the target's motion and the wind demand. The demand of a curve is kept for a while
-// after it: a figure of eight asks for it again and again.
+// after it: a figure of eight demands it again and again.
 class DemandWatch {
  public:
   explicit DemandWatch(const FlightLimitsOptions& limits) : limits_(limits) {}

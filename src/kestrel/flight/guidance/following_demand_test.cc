@@ -31,7 +31,7 @@ FollowingDemand OnCircle(DemandWatch* watch, double speed_mps, double radius_m, 
   return demand;
 }
 
-TEST(FollowingDemandTest, ACurveDemandsItsLean) {
+TEST(FollowingDemandTest, CurveDemandsLean) {
   DemandWatch watch({.max_speed_mps = 12, .max_tilt_deg = 35});
   const FollowingDemand demand = OnCircle(&watch, 8.33, 5.1, 10);
   const double expected = Degrees(std::atan(8.33 * 8.33 / 5.1 / kGravity));
@@ -40,7 +40,7 @@ TEST(FollowingDemandTest, ACurveDemandsItsLean) {
   EXPECT_THAT(demand.InWords(), testing::MatchesRegex("5[0-9] degrees of lean, the limit is 35"));
 }
 
-TEST(FollowingDemandTest, TheWindAddsToIt) {
+TEST(FollowingDemandTest, WindAddsToDemand) {
   const AirEstimate air{.drag = 0.8, .wind = Vector2d(-8, 0)};
   DemandWatch watch({});
   const Vector3d velocity(4.2, 0, 0);
@@ -51,13 +51,13 @@ TEST(FollowingDemandTest, TheWindAddsToIt) {
   EXPECT_FALSE(without.Update(kStart, velocity, Vector3d::Zero(), std::nullopt).is_beyond_limits());
 }
 
-TEST(FollowingDemandTest, TooFastATargetIsNamed) {
+TEST(FollowingDemandTest, ReportsTooFastTarget) {
   DemandWatch watch({.max_speed_mps = 10});
   EXPECT_EQ(watch.Update(kStart, {13.9, 0, 0}, Vector3d::Zero(), std::nullopt).InWords(),
             "13.9 m/s, the limit is 10");
 }
 
-TEST(FollowingDemandTest, RemembersTheCurveForAWhile) {
+TEST(FollowingDemandTest, RemembersCurveForAWhile) {
   DemandWatch watch({});
   OnCircle(&watch, 4.2, 5, 5);
   const FollowingDemand soon =

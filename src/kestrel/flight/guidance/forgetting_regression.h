@@ -38,7 +38,7 @@ class ForgettingRegression {
   struct Fit {
     Vector parameters;
     Vector sigma;  // standard deviations
-    double chi2;   // of the measurements and the prior
+    double chi2;   // chi-squared of the measurements and the prior
   };
   Fit Solve() const {
     Matrix information = information_;
@@ -57,7 +57,7 @@ class ForgettingRegression {
   Vector prior_ = Vector::Ones();  // information of the prior, diagonal
   double noise_ = 1;
   Matrix information_ = Matrix::Zero();
-  Vector weighted_ = Vector::Zero();  // of the differences from the mean
+  Vector weighted_ = Vector::Zero();  // weighted differences from the mean
   double squares_ = 0;
 };
 

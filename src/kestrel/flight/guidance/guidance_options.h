@@ -29,7 +29,7 @@ struct GuidanceOptions {
   // A target that rises or sinks faster is not credible.
   static constexpr double kMaxTargetClimb_mps = 1;
   static constexpr double kHoldPose_s =
-      0.3;  // of level flight without a pose, before it stands still
+      0.3;  // duration of level flight without a pose, before it stands still
   // When the velocity differs from the commanded one by more than kDisobey_mps and comes no nearer
   // to it for kDisobey_s, the autopilot does not obey.
   static constexpr double kDisobey_mps = 3;

@@ -4,7 +4,7 @@
 namespace kestrel {
 
 // Request to the autopilot beside the set-points. It is repeated for as long as it holds: the
-// caller limits how often it asks.
+// caller limits how often it is sent.
 enum class GuidanceRequest {
   kNone,
   kLand,    // its LAND mode, in contact

@@ -13,9 +13,10 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kHeightGain = 1;      // climb rate per metre below the wanted height
-constexpr double kResting_mps = 0.25;  // a UAV that is told to descend and sinks more slowly rests
-constexpr double kToldDown_mps = 0.3;
+constexpr double kHeightGain = 1;  // climb rate per metre below the wanted height
+constexpr double kResting_mps =
+    0.25;  // a UAV that sinks more slowly than this on command to descend rests
+constexpr double kCommandedDown_mps = 0.3;
 constexpr double kMaxClosing_mps = 1;  // if it moves faster over the target it does not descend
 // Offset, in cones, at which following ends, and at which the last bit ends.
 constexpr double kFollowCones = 4;
@@ -304,7 +305,7 @@ bool LandingGuidance::Obeys(const GuidanceInput& input) {
 }
 
 // Compares the demand of target and wind with the limits, whether or not guidance flies. A UAV that
-// is above the target keeps up with it, whatever the estimate says.
+// is above the target keeps up with it, whatever is estimated.
 void LandingGuidance::WatchDemand(const GuidanceInput& input) {
   if (!input.target) {
     demand_.Reset();
@@ -417,13 +418,13 @@ void LandingGuidance::ChooseDescent(const GuidanceInput& input, const Situation&
   if (now.height_m > 2 * options_.commit_height_m) GoAround("has risen from the deck");
 }
 
-// True when the UAV stands on the deck: by its rest against the deck, or because the autopilot says
-// so.
+// True when the UAV stands on the deck: by its rest against the deck, or because the autopilot
+// reports it.
 bool LandingGuidance::FindContact(const GuidanceInput& input, const Situation& now) {
-  // A UAV that is not told to descend may hover near the deck.
-  const bool is_told_down = sent_ && sent_->velocity.z() < -kToldDown_mps;
+  // A UAV without a command to descend may hover near the deck.
+  const bool is_commanded_down = sent_ && sent_->velocity.z() < -kCommandedDown_mps;
   std::optional<ContactDetector::Deck> deck;
-  if (input.target && is_told_down) {
+  if (input.target && is_commanded_down) {
     deck = ContactDetector::Deck{input.target->motion.position(), input.target->motion.velocity()};
   }
   const bool was_in_contact = phase_ == GuidancePhase::kLanded;

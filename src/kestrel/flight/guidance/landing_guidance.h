@@ -52,7 +52,7 @@ struct GuidanceInput {
   std::optional<DeckSighting> deck;  // the newest frame that showed it
   bool is_guided = false;  // the mode in which the autopilot obeys set-points, by its heartbeat
   bool is_armed = false;
-  bool is_landed = false;    // the autopilot says that it is on the ground
+  bool is_landed = false;    // the autopilot reports that it is on the ground
   bool is_link_up = true;    // messages come from the autopilot
   bool is_camera_up = true;  // new images come that differ from the ones before
   double mode_age_s = 0;     // time since the autopilot reported its mode, s
@@ -108,7 +108,7 @@ class LandingGuidance {
   struct Situation {
     Eigen::Vector3d feet;
     Eigen::Vector3d velocity;
-    double height_m = 0;  // of the feet above the target
+    double height_m = 0;  // height of the feet above the target
     double off_m = 0;     // horizontal distance from the target
     double slip_mps = 0;  // horizontal speed relative to the target
     bool is_in_sight = false;
@@ -169,7 +169,7 @@ class LandingGuidance {
   int go_arounds_ = 0;
   Time entered_;  // time at which the phase began
   bool is_active_ = false;
-  bool has_given_up_ = false;  // asks for hold while it has the mode
+  bool has_given_up_ = false;  // requests hold while it has the mode
   bool may_stream_;
   std::optional<bool> was_guided_;         // nothing: not reported yet
   Time last_;                              // time of the last update

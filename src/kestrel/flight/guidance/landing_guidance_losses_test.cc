@@ -16,7 +16,7 @@ using Phase = GuidancePhase;
 
 // Below 2 m there is no descent without a target in sight, except for a moment in the last bit.
 class UnseenTest : public testing::TestWithParam<double> {};
-TEST_P(UnseenTest, DoesNotGoDown) {
+TEST_P(UnseenTest, DoesNotDescend) {
   TestFlight flight = InPhase(Phase::kDescend);
   ASSERT_TRUE(flight.FlyUntil([&] { return flight.Height() < GetParam(); }, 20));
   const Time last_seen = flight.Input().now;
@@ -42,7 +42,7 @@ TEST_P(UnseenTest, DoesNotGoDown) {
 }
 INSTANTIATE_TEST_SUITE_P(FromHeights, UnseenTest, testing::Values(2.2, 1.8, 1.2, 0.8));
 
-TEST(LandingGuidanceLossesTest, HoldsItsHeightAboveTwoMetresAndThenSearches) {
+TEST(LandingGuidanceLossesTest, HoldsHeightAboveTwoMetresThenSearches) {
   TestFlight flight = InPhase(Phase::kDescend);
   ASSERT_TRUE(flight.FlyUntil([&] { return flight.Height() < 2.45; }, 20, kAsItIs));
   flight.FlyUntil([] { return false; }, 1, kUnseen);
@@ -52,7 +52,7 @@ TEST(LandingGuidanceLossesTest, HoldsItsHeightAboveTwoMetresAndThenSearches) {
   EXPECT_NEAR(flight.Feet().z(), 10, 0.5);
 }
 
-TEST(LandingGuidanceLossesTest, CommitsOnlyWithAFreshSight) {
+TEST(LandingGuidanceLossesTest, CommitsOnlyWithFreshSight) {
   TestFlight flight = InPhase(Phase::kCommit);
   flight.Step([](GuidanceInput& input) { input.target_age_s = 0.9; });
   EXPECT_LT(flight.output.set_point->velocity.z(), -0.5);
@@ -61,7 +61,7 @@ TEST(LandingGuidanceLossesTest, CommitsOnlyWithAFreshSight) {
   EXPECT_GT(flight.output.set_point->velocity.z(), 0.5);
 }
 
-TEST(LandingGuidanceLossesTest, DoesNotGoDownOnWhatItHardlyKnows) {
+TEST(LandingGuidanceLossesTest, DoesNotDescendOnUncertainTarget) {
   TestFlight flight;
   double sigma_m = 0.4;
   const auto is_bad = [&](GuidanceInput& input) {
@@ -76,14 +76,14 @@ TEST(LandingGuidanceLossesTest, DoesNotGoDownOnWhatItHardlyKnows) {
 }
 
 // A frozen image has this effect: the target seems to sink as the UAV does.
-TEST(LandingGuidanceLossesTest, DoesNotFollowATargetDown) {
+TEST(LandingGuidanceLossesTest, DoesNotFollowTargetDownwards) {
   TestFlight flight = InPhase(Phase::kDescend);
   flight.Step([](GuidanceInput& input) { input.target->motion.mean(5) = -1.3; });
   EXPECT_EQ(flight.output.phase, Phase::kGoAround);
   EXPECT_THAT(flight.output.reason, testing::HasSubstr("not a deck"));
 }
 
-TEST(LandingGuidanceLossesTest, GoesAroundWhenTheTrackJumps) {
+TEST(LandingGuidanceLossesTest, GoesAroundWhenTrackJumps) {
   TestFlight flight = InPhase(Phase::kDescend);
   ASSERT_TRUE(flight.FlyUntil([&] { return flight.Height() < 1; }, 20));
   flight.Step([](GuidanceInput& input) { input.target->motion.mean(0) += 3; });
@@ -91,7 +91,7 @@ TEST(LandingGuidanceLossesTest, GoesAroundWhenTheTrackJumps) {
   EXPECT_GT(flight.output.set_point->velocity.z(), 0.5);
 }
 
-TEST(LandingGuidanceLossesTest, ACameraThatIsDownIsNoSight) {
+TEST(LandingGuidanceLossesTest, DoesNotDescendWithCameraDown) {
   TestFlight flight = InPhase(Phase::kDescend);
   const auto camera_down = [](GuidanceInput& input) { input.is_camera_up = false; };
   flight.Step(camera_down);
@@ -103,7 +103,7 @@ TEST(LandingGuidanceLossesTest, ACameraThatIsDownIsNoSight) {
 }
 
 class PosesStopTest : public testing::TestWithParam<Phase> {};
-TEST_P(PosesStopTest, StopsTheDescentThenGivesUp) {
+TEST_P(PosesStopTest, StopsDescentThenGivesUp) {
   TestFlight flight = InPhase(GetParam());
   const auto no_pose = [](GuidanceInput& input) { input.uav.reset(); };
   double sent_s = 0;
@@ -127,7 +127,7 @@ INSTANTIATE_TEST_SUITE_P(InEachPhase, PosesStopTest,
                          testing::Values(Phase::kSearch, Phase::kApproach, Phase::kFollow,
                                          Phase::kDescend, Phase::kCommit, Phase::kGoAround));
 
-TEST(LandingGuidanceLossesTest, PosesThatWereAwayForAMomentEndTheDescent) {
+TEST(LandingGuidanceLossesTest, ShortLossOfPosesEndsDescent) {
   TestFlight flight = InPhase(Phase::kDescend);
   flight.FlyUntil([] { return false; }, 0.6, [](GuidanceInput& input) { input.uav.reset(); });
   flight.Step();
@@ -135,7 +135,7 @@ TEST(LandingGuidanceLossesTest, PosesThatWereAwayForAMomentEndTheDescent) {
 }
 
 class LinkGoneTest : public testing::TestWithParam<double> {};
-TEST_P(LinkGoneTest, SendsNothingAndGoesAroundAfterALongTime) {
+TEST_P(LinkGoneTest, SendsNothingAndGoesAroundAfterLongLoss) {
   TestFlight flight = InPhase(Phase::kDescend);
   const auto gone = [](GuidanceInput& input) { input.is_link_up = false; };
   flight.FlyUntil(
@@ -161,14 +161,14 @@ TEST_P(LinkGoneTest, SendsNothingAndGoesAroundAfterALongTime) {
 }
 INSTANTIATE_TEST_SUITE_P(ForSeconds, LinkGoneTest, testing::Values(0.5, 2.0, 10.0));
 
-TEST(LandingGuidanceLossesTest, AModeThatWasLeftWhileTheLinkWasGoneEndsIt) {
+TEST(LandingGuidanceLossesTest, ModeLeftDuringLinkLossEndsGuidance) {
   TestFlight flight = InPhase(Phase::kDescend);
   flight.FlyUntil([] { return false; }, 2, [](GuidanceInput& input) { input.is_link_up = false; });
   for (int i = 0; i < 50; ++i) EXPECT_FALSE(flight.Step(kTakenBack).set_point);
   EXPECT_EQ(flight.output.phase, Phase::kIdle);
 }
 
-TEST(LandingGuidanceLossesTest, GivesUpWhenTheAutopilotDoesNotObey) {
+TEST(LandingGuidanceLossesTest, GivesUpWhenAutopilotDoesNotObey) {
   TestFlight flight;
   flight.Step();
   const UavState hovering = flight.uav.State();
@@ -178,7 +178,7 @@ TEST(LandingGuidanceLossesTest, GivesUpWhenTheAutopilotDoesNotObey) {
   EXPECT_THAT(flight.output.reason, testing::HasSubstr("does not obey"));
 }
 
-TEST(LandingGuidanceLossesTest, GivesUpATargetThatIsNotFoundAgain) {
+TEST(LandingGuidanceLossesTest, GivesUpTargetThatStaysLost) {
   TestFlight flight = InPhase(Phase::kFollow);
   const auto lost = [](GuidanceInput& input) { input.target.reset(); };
   flight.Step(lost);
@@ -192,7 +192,7 @@ TEST(LandingGuidanceLossesTest, GivesUpATargetThatIsNotFoundAgain) {
   EXPECT_THAT(flight.output.reason, testing::HasSubstr("not found again"));
 }
 
-TEST(LandingGuidanceLossesTest, SaysThatItCannotKeepUpAndGivesUpWhenTold) {
+TEST(LandingGuidanceLossesTest, ReportsTooFastTargetAndGivesUpByOption) {
   GuidanceOptions options;
   options.cannot_follow_s = 10;
   TestFlight flight(options, {}, {.path = "straight", .speed_mps = 14});
@@ -205,7 +205,7 @@ TEST(LandingGuidanceLossesTest, SaysThatItCannotKeepUpAndGivesUpWhenTold) {
   EXPECT_FALSE(slow.output.cannot_follow);
 }
 
-TEST(LandingGuidanceLossesTest, NothingThatIsNotFiniteIsSent) {
+TEST(LandingGuidanceLossesTest, SendsNoNonFiniteValues) {
   TestFlight flight = InPhase(Phase::kDescend);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (int i = 0; i < 100; ++i) {
@@ -220,7 +220,7 @@ TEST(LandingGuidanceLossesTest, NothingThatIsNotFiniteIsSent) {
   }
 }
 
-TEST(LandingGuidanceLossesTest, EndsTheLandingWhenThePosesStopOnTheDeck) {
+TEST(LandingGuidanceLossesTest, EndsLandingWhenPosesStopOnDeck) {
   TestFlight flight;
   flight.LandOnDeck();
   ASSERT_EQ(flight.output.phase, Phase::kLanded);

@@ -20,7 +20,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Phase = GuidancePhase;
 
-TEST(LandingGuidanceTest, ComesDownOnATargetThatTurnsInTheWind) {
+TEST(LandingGuidanceTest, LandsOnTurningTargetInWind) {
   TestFlight flight;
   ASSERT_TRUE(flight.FlyUntil([&] { return flight.Height() <= 0; }, 30));
   EXPECT_EQ(flight.output.phase, Phase::kCommit);
@@ -31,7 +31,7 @@ TEST(LandingGuidanceTest, ComesDownOnATargetThatTurnsInTheWind) {
   EXPECT_NEAR(-slip.z(), 0.7, 0.2);
 }
 
-TEST(LandingGuidanceTest, GoesThroughThePhasesInOrder) {
+TEST(LandingGuidanceTest, GoesThroughPhasesInOrder) {
   TestFlight flight;
   std::vector<Phase> phases;
   flight.FlyUntil(
@@ -55,8 +55,8 @@ struct Autopilot {
   TestUavOptions uav;
 };
 
-// Autopilots that differ in everything that guidance is not told.
-TEST(LandingGuidanceTest, LandsWithWhateverAutopilot) {
+// Autopilots that differ in everything that guidance does not know.
+TEST(LandingGuidanceTest, LandsWithDifferentAutopilots) {
   TestUavOptions stiff;
   stiff.compensates_drag = true;
   TestUavOptions slow = stiff;
@@ -101,7 +101,7 @@ TEST(LandingGuidanceTest, LandsWithWhateverAutopilot) {
 
 // A drag of 1 per s takes 4.2 m/s^2 from a UAV over a car at 15 km/h, which PX4's velocity control
 // answers with 2.3 m/s.
-TEST(LandingGuidanceTest, FollowsWhateverTheAirTakes) {
+TEST(LandingGuidanceTest, FollowsDespiteDragAndDelay) {
   for (const double delay_s : {0.0, 0.1}) {
     for (const double drag : {0.1, 0.35, 1.0}) {
       SCOPED_TRACE("drag " + std::to_string(drag) + ", delay " + std::to_string(delay_s));
@@ -131,7 +131,7 @@ TEST(LandingGuidanceTest, FollowsWhateverTheAirTakes) {
 
 // Beginning and end.
 
-TEST(LandingGuidanceTest, BeginsOnlyWhenTheModeIsGiven) {
+TEST(LandingGuidanceTest, StartsOnlyWhenModeIsEntered) {
   TestFlight flight;
   for (int i = 0; i < 50; ++i) {
     flight.Step(kTakenBack);
@@ -143,7 +143,7 @@ TEST(LandingGuidanceTest, BeginsOnlyWhenTheModeIsGiven) {
   EXPECT_TRUE(flight.output.set_point);
 }
 
-TEST(LandingGuidanceTest, AModeThatWasOnAlreadyIsNotGiven) {
+TEST(LandingGuidanceTest, DoesNotStartInModeEnteredBefore) {
   TestFlight flight;
   flight.time_s = 1;
   for (int i = 0; i < 20; ++i) EXPECT_FALSE(flight.Step().set_point);
@@ -152,7 +152,7 @@ TEST(LandingGuidanceTest, AModeThatWasOnAlreadyIsNotGiven) {
   EXPECT_TRUE(flight.Step().set_point);
 }
 
-TEST(LandingGuidanceTest, StreamsBeforeTheFirstStartOnlyAndAfterRearm) {
+TEST(LandingGuidanceTest, StreamsOnlyBeforeFirstStartAndAfterRearm) {
   GuidanceOptions options;
   options.stream_before_start = true;
   TestFlight flight(options);
@@ -167,7 +167,7 @@ TEST(LandingGuidanceTest, StreamsBeforeTheFirstStartOnlyAndAfterRearm) {
 }
 
 class TakenBackTest : public testing::TestWithParam<Phase> {};
-TEST_P(TakenBackTest, SendsNothingUntilTheModeIsGivenAnew) {
+TEST_P(TakenBackTest, SendsNothingUntilModeIsEnteredAgain) {
   GuidanceOptions options;
   options.stream_before_start = true;
   TestFlight flight = InPhase(GetParam(), options);
@@ -186,7 +186,7 @@ INSTANTIATE_TEST_SUITE_P(InEachPhase, TakenBackTest,
                                          Phase::kDescend, Phase::kCommit, Phase::kGoAround,
                                          Phase::kLanded));
 
-TEST(LandingGuidanceTest, RefusesWhatCannotBeFlown) {
+TEST(LandingGuidanceTest, RefusesUnflyableStart) {
   struct Refusal {
     const char* reason;
     void (*change)(GuidanceInput&);
@@ -218,7 +218,7 @@ TEST(LandingGuidanceTest, RefusesWhatCannotBeFlown) {
   }
 }
 
-TEST(LandingGuidanceTest, EndsWhenTheMotorsAreOff) {
+TEST(LandingGuidanceTest, EndsWhenMotorsAreOff) {
   TestFlight flight = InPhase(Phase::kDescend);
   flight.Step([](GuidanceInput& input) { input.is_armed = false; });
   EXPECT_FALSE(flight.output.set_point);
@@ -227,7 +227,7 @@ TEST(LandingGuidanceTest, EndsWhenTheMotorsAreOff) {
 
 // Search.
 
-TEST(LandingGuidanceTest, WaitsWhereTheVehicleShouldPass) {
+TEST(LandingGuidanceTest, WaitsAtExpectedPlaceOfVehicle) {
   TestFlight flight;
   flight.guidance = LandingGuidance({}, Vector2d(8, -5));
   flight.FlyUntil([] { return false; }, 12, kNoTarget);
@@ -253,7 +253,7 @@ TEST(LandingGuidanceTest, CirclesOutwardsAfterAWhile) {
 
 // Limits.
 
-TEST(LandingGuidanceTest, StaysWithinItsLimitsWhereverTheTargetGoes) {
+TEST(LandingGuidanceTest, StaysWithinLimitsWhereverTargetGoes) {
   GuidanceOptions options;
   options.limits.geofence_radius_m = 25;
   VehicleMotionOptions vehicle;
@@ -278,7 +278,7 @@ TEST(LandingGuidanceTest, StaysWithinItsLimitsWhereverTheTargetGoes) {
 
 // Contact.
 
-TEST(LandingGuidanceTest, GoesOnDownWithTheDeckInContact) {
+TEST(LandingGuidanceTest, KeepsDescendingWithDeckInContact) {
   TestFlight flight = InPhase(Phase::kLanded);
   const Vector3d deck = flight.target.Velocity(flight.time_s);
   ASSERT_TRUE(flight.output.set_point);
@@ -294,7 +294,7 @@ TEST(LandingGuidanceTest, GoesOnDownWithTheDeckInContact) {
   EXPECT_FALSE(flight.output.set_point);
 }
 
-TEST(LandingGuidanceTest, AsksForLandOrDisarmsOnlyByOptionAndInContact) {
+TEST(LandingGuidanceTest, RequestsLandOrDisarmOnlyByOptionAndInContact) {
   GuidanceOptions options;
   options.land_in_contact = true;
   options.disarm_after_s = 2;
@@ -316,7 +316,7 @@ TEST(LandingGuidanceTest, AsksForLandOrDisarmsOnlyByOptionAndInContact) {
   EXPECT_EQ(flight.output.phase, Phase::kGoAround);
 }
 
-TEST(LandingGuidanceTest, AsksForLandOnceTheDeckHasStoppedForGood) {
+TEST(LandingGuidanceTest, RequestsLandOnceDeckHasStoppedForGood) {
   GuidanceOptions options;
   options.land_in_contact = true;
   VehicleMotionOptions vehicle;
@@ -328,7 +328,7 @@ TEST(LandingGuidanceTest, AsksForLandOnceTheDeckHasStoppedForGood) {
   EXPECT_TRUE(flight.FlyUntil(is_asked, 2));
 }
 
-TEST(LandingGuidanceTest, DisarmsOnADeckThatCarriesItThroughCurves) {
+TEST(LandingGuidanceTest, DisarmsOnDeckThatCarriesItThroughCurves) {
   TestFlight flight;  // the figure of eight at 15 km/h
   flight.LandOnDeck();
   const bool is_disarmed = flight.FlyUntil(
@@ -337,7 +337,7 @@ TEST(LandingGuidanceTest, DisarmsOnADeckThatCarriesItThroughCurves) {
   EXPECT_EQ(flight.output.phase, Phase::kLanded);
 }
 
-TEST(LandingGuidanceTest, DoesNotDisarmByForceWhereTheDeckDrivesStraight) {
+TEST(LandingGuidanceTest, DoesNotForceDisarmOnStraightDrivingDeck) {
   VehicleMotionOptions vehicle;
   vehicle.path = "straight";
   TestFlight flight({}, {}, vehicle);
@@ -347,13 +347,13 @@ TEST(LandingGuidanceTest, DoesNotDisarmByForceWhereTheDeckDrivesStraight) {
   EXPECT_FALSE(is_disarmed);
 }
 
-TEST(LandingGuidanceTest, TheAutopilotsOwnContactCounts) {
+TEST(LandingGuidanceTest, AcceptsContactReportedByAutopilot) {
   TestFlight flight = InPhase(Phase::kCommit);
   flight.Step([](GuidanceInput& input) { input.is_landed = true; });
   EXPECT_EQ(flight.output.phase, Phase::kLanded);
 }
 
-TEST(GuidanceOptionsTest, SearchAndApproachStayWhereThePadIsSeen) {
+TEST(GuidanceOptionsTest, LimitsSearchAndApproachToSightRange) {
   const GuidanceOptions options;
   const GuidanceOptions far = options.WithinSight(22);
   EXPECT_EQ(far.search_altitude_m, options.search_altitude_m);
@@ -372,7 +372,7 @@ TEST(GuidanceOptionsTest, SearchAndApproachStayWhereThePadIsSeen) {
   EXPECT_THAT(ViolationsOf(without_floor.WithinSight(1e-3)), IsEmpty());
 }
 
-TEST(GuidanceOptionsTest, FaultyOptionsAreNamed) {
+TEST(GuidanceOptionsTest, ReportsFaultyOptions) {
   GuidanceOptions options;
   options.leg_m = 3;
   options.limits.max_tilt_deg = 90;

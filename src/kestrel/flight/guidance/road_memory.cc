@@ -14,14 +14,14 @@ using Eigen::Vector2d;
 constexpr double kSampleStep_s = 0.2;  // between samples: 200 s in all
 // The same place on the road: no further apart, the velocity no more different, and so long ago.
 constexpr double kSamePlace_m = 2.5;
-constexpr double kSameVelocity = 0.3;  // of the speed
+constexpr double kSameVelocity = 0.3;  // share of the speed
 constexpr double kLeastLap_s = 6;
 constexpr double kLeastSpeed_mps = 0.5;  // a target that stands has no lap
 constexpr double kCurve_s = 2;           // a curve goes on for so long, without a lap
 // Growth of the standard deviation: by an acceleration that is not known, and on a lap by a speed
 // that differs from the one before.
 constexpr double kUnknownAcceleration = 0.6;  // m/s^2
-constexpr double kLapSpeedSigma = 0.1;        // of the speed
+constexpr double kLapSpeedSigma = 0.1;        // share of the speed
 constexpr double kBaseSigma_m = 0.5;
 
 }  // namespace

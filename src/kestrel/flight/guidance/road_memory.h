@@ -52,7 +52,7 @@ class RoadMemory {
 
   std::array<Sample, kSamples> samples_;
   std::int64_t count_ = 0;
-  double turn_rate_ = 0;  // of the newest sample, rad/s
+  double turn_rate_ = 0;  // turn rate of the newest sample, rad/s
   std::optional<double> lap_s_;
   std::int64_t lap_begin_ = 0;  // the sample at which the target was where it is now, a lap ago
 };

@@ -15,7 +15,7 @@ class SearchPath {
 
   struct Extent {
     double wait_s;    // at the place, before the spiral
-    double radius_m;  // of the spiral; 0: it stays at the place
+    double radius_m;  // radius of the spiral; 0: it stays at the place
   };
   // Begins anew at 'place', m in the world.
   void Start(const Eigen::Vector2d& place, const Extent& extent);

@@ -38,7 +38,7 @@ struct StaleOptions {
 //
 // Places (PX4's OFFBOARD): the position control flies with v = K (place - position). Whatever
 // velocity and place add up to v, the UAV comes to rest at v / K from where it is, time-out or not.
-// A place without a velocity says so openly, and nothing is flown on.
+// With a place alone there is no velocity to continue after the time-out.
 class StaleSafety {
  public:
   explicit StaleSafety(const StaleOptions& options) : options_(options) {}

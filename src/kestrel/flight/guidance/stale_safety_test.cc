@@ -21,7 +21,7 @@ double WayDown(double sink_mps, const StaleOptions& options, double link_delay_s
   return way_m;
 }
 
-TEST(StaleSafetyTest, ADescentByVelocitiesEndsAboveTheDeck) {
+TEST(StaleSafetyTest, DescentByVelocitiesEndsAboveDeck) {
   for (const double timeout_s : {0.1, 0.3, 1.0, 3.0}) {
     const StaleOptions options{.timeout_s = timeout_s};
     for (const double height_m : {0.4, 0.6, 1.0, 2.0, 8.0}) {
@@ -34,13 +34,13 @@ TEST(StaleSafetyTest, ADescentByVelocitiesEndsAboveTheDeck) {
   }
 }
 
-TEST(StaleSafetyTest, NothingGoesDownAtTheDeck) {
+TEST(StaleSafetyTest, AllowsNoSinkAtDeck) {
   EXPECT_EQ(StaleSafety({}).MaxSink(0.1, 0), 0);
   EXPECT_EQ(StaleSafety({}).MaxSink(-1, 0), 0);
 }
 
 // v = K (place - position), when the set-point arrives.
-TEST(StaleSafetyTest, APlaceIsAsFarAsTheVelocityWants) {
+TEST(StaleSafetyTest, PlacesSetPointByVelocityAndGain) {
   const StaleSafety safety({.position_gain = 0.95, .height_gain = 1.2});
   SetPoint set_point{.velocity = {4, -2, -0.6}};
   const Vector3d position(10, 20, 3);
@@ -53,7 +53,7 @@ TEST(StaleSafetyTest, APlaceIsAsFarAsTheVelocityWants) {
   EXPECT_EQ(safety.Level(set_point).velocity.z(), 0);
 }
 
-TEST(StaleSafetyTest, WithoutGainsVelocitiesStay) {
+TEST(StaleSafetyTest, KeepsVelocitiesWithoutGains) {
   SetPoint set_point{.velocity = {4, 0, -1}};
   StaleSafety({}).SetPlace({1, 2, 3}, {4, 0, 0}, 0, &set_point);
   EXPECT_FALSE(set_point.place);

@@ -30,8 +30,8 @@ class StayOnDeck {
   SetPoint Rest(Time now, const Eigen::Quaterniond& world_from_body,
                 const Eigen::Vector3d& velocity, double delay_s);
 
-  // Returns the request after Rest: LAND, disarming, or none. 'is_landed': the autopilot says that
-  // it is on the ground. 'touches_since': the feet rest against the deck, by their motion.
+  // Returns the request after Rest: LAND, disarming, or none. 'is_landed': the autopilot reports
+  // that it is on the ground. 'touches_since': the feet rest against the deck, by their motion.
   GuidanceRequest Request(Time now, bool is_landed, const std::optional<Time>& touches_since) const;
 
  private:

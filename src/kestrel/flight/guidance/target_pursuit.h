@@ -61,7 +61,7 @@ class TargetPursuit {
   GuidanceOptions options_;
   double gain_;                       // speed per metre, 1/s
   double braking_;                    // m/s^2
-  std::optional<Velocity> smoothed_;  // of the target
+  std::optional<Velocity> smoothed_;  // smoothed velocity of the target
   std::optional<Time> integrated_;    // time up to which the offset is integrated
   Eigen::Vector2d integral_{0, 0};    // m/s
 };

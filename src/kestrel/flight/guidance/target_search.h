@@ -29,7 +29,7 @@ class TargetSearch {
   Eigen::Vector2d Advance(Time now, const RoadMemory& road, const Eigen::Vector2d& uav,
                           double seconds);
 
-  // True once the target was not found for as long as the options say.
+  // True once the target was not found for the time set in the options.
   bool IsOver(Time now) const;
   // Present step of the search, for the user; a literal.
   const char* step() const { return step_; }

@@ -59,7 +59,7 @@ double WorstError(const RoadMemory& road, const Way& way, double from_s, double 
   return worst_m;
 }
 
-TEST(RoadMemoryTest, GoesOnAsItDidALapAgo) {
+TEST(RoadMemoryTest, PredictsPathOfPreviousLap) {
   for (const Way& way : {Way(Eight), Way(Circle)}) {
     const RoadMemory road = Driven(way, 40);
     ASSERT_TRUE(road.Lap_s());
@@ -68,21 +68,21 @@ TEST(RoadMemoryTest, GoesOnAsItDidALapAgo) {
   }
 }
 
-TEST(RoadMemoryTest, GoesOnStraightOrInItsCurveWithoutALap) {
+TEST(RoadMemoryTest, ContinuesStraightOrInCurveWithoutLap) {
   EXPECT_LT(WorstError(Driven(Straight, 20), Straight, 20, 10), 0.1);
   const RoadMemory curve = Driven(Circle, 4);
   EXPECT_FALSE(curve.Predict(AtSecond(5))->is_by_lap);
   EXPECT_LT(WorstError(curve, Circle, 4, 2), 0.3);
 }
 
-TEST(RoadMemoryTest, KnowsHowLittleItKnows) {
+TEST(RoadMemoryTest, GrowsUncertainWithTime) {
   const RoadMemory road = Driven(Straight, 20);
   EXPECT_LT(road.Predict(AtSecond(21))->sigma_m, 1.5);
   EXPECT_GT(road.Predict(AtSecond(30))->sigma_m, 10);
   EXPECT_FALSE(RoadMemory().Predict(kSearchStart));
 }
 
-TEST(RoadMemoryTest, OneThatStandsHasNoLap) {
+TEST(RoadMemoryTest, StandingTargetHasNoLap) {
   const RoadMemory road = Driven([](double) { return Vector2d(3, 4); }, 30);
   EXPECT_FALSE(road.Lap_s());
   EXPECT_LT((road.Predict(AtSecond(60))->position - Vector2d(3, 4)).norm(), 1e-6);
@@ -110,21 +110,21 @@ FlownSearch Search(const Way& way, double driven_s, double search_s) {
   return flown;
 }
 
-TEST(TargetSearchTest, FollowsALapAndThenWaitsOnTheRoad) {
+TEST(TargetSearchTest, FollowsLapThenWaitsOnRoad) {
   const FlownSearch flown = Search(Eight, 40, 40);
   EXPECT_THAT(flown.steps,
               testing::AllOf(HasSubstr("last lap"), HasSubstr("waits for the target on its road")));
   EXPECT_LT(flown.nearest_m, 2);
 }
 
-TEST(TargetSearchTest, FliesOnThenSearchesAround) {
+TEST(TargetSearchTest, ContinuesThenSearchesAround) {
   EXPECT_THAT(
       Search(Straight, 20, 40).steps,
       testing::AllOf(HasSubstr("flies on as it drove"), HasSubstr("searches around the place")));
 }
 
 // A fast target on a road that is not known yet passes the place where it was lost again.
-TEST(TargetSearchTest, WaitsWhereATargetWithoutALapWasLost) {
+TEST(TargetSearchTest, WaitsAtPlaceOfLossWithoutLap) {
   constexpr double kDriven_s = 4;
   const RoadMemory road = Driven(Circle, kDriven_s);
   TargetSearch search{GuidanceOptions()};
@@ -159,7 +159,7 @@ TEST(TargetSearchTest, CatchesUpBeforeItSearchesAround) {
   EXPECT_LT(nearest_m, options.search_altitude_m);
 }
 
-TEST(TargetSearchTest, EndsAfterItsLimitOnlyAfterALoss) {
+TEST(TargetSearchTest, EndsAtTimeLimitOnlyAfterLoss) {
   TargetSearch search{GuidanceOptions()};
   search.Start({0, 0});
   EXPECT_FALSE(search.IsOver(AtSecond(1000)));
@@ -169,7 +169,7 @@ TEST(TargetSearchTest, EndsAfterItsLimitOnlyAfterALoss) {
 }
 
 // The pilot learns why the UAV only hovers.
-TEST(TargetSearchTest, SaysThatItStaysWhereNothingComesIntoSight) {
+TEST(TargetSearchTest, ReportsWaitingWithoutTargetInSight) {
   GuidanceOptions options;
   const auto step_after = [&](double wait_s) {
     TargetSearch search(options);

@@ -27,12 +27,12 @@ struct TestUavOptions {
   double p = 4;
   double i = 0;
   bool compensates_drag = false;
-  double attitude_lag_s = 0.06;  // of each of two lags
+  double attitude_lag_s = 0.06;  // time constant of each of two lags
   double drag = 0.25;
   double max_tilt_deg = 40;
   double shaping_accel = 0;  // limit of the commands' shaping, m/s^2; 0: none
   double shaping_jerk = 0;
-  double delay_s = 0;  // of the link
+  double delay_s = 0;  // delay of the link
 
   static TestUavOptions Px4() {
     return {.p = 1.8, .i = 0.4, .attitude_lag_s = 0.08, .drag = 0.2, .max_tilt_deg = 45};

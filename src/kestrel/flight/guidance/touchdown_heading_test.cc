@@ -34,7 +34,7 @@ TargetEstimate Pad(double yaw, double period, double turn_rate = 0) {
   return target;
 }
 
-// A nose that does at once what it is told, over a pad that turns at a rate.
+// A nose that follows its commands at once, over a pad that turns at a rate.
 struct Nose {
   double yaw = 0;
   double time_s = 0;
@@ -51,7 +51,7 @@ struct Nose {
   }
 };
 
-TEST(TouchdownHeadingTest, TurnsToTheNearestHeadingUnderWhichThePadLooksTheSame) {
+TEST(TouchdownHeadingTest, TurnsToNearestEquivalentHeading) {
   struct Case {
     double period, wanted_deg, expected_deg;
   };
@@ -70,7 +70,7 @@ TEST(TouchdownHeadingTest, TurnsToTheNearestHeadingUnderWhichThePadLooksTheSame)
   }
 }
 
-TEST(TouchdownHeadingTest, TurnsWithThePad) {
+TEST(TouchdownHeadingTest, TurnsWithPad) {
   TouchdownHeading heading(To("90"));
   Nose nose;
   heading.Start(nose.yaw);
@@ -79,7 +79,7 @@ TEST(TouchdownHeadingTest, TurnsWithThePad) {
   EXPECT_NEAR(heading.yaw_rate(), 0.3, 0.01);
 }
 
-TEST(TouchdownHeadingTest, AHeadingThatIsNotKnownIsNotTurnedTo) {
+TEST(TouchdownHeadingTest, DoesNotTurnToUnknownHeading) {
   TouchdownHeading heading(To("90"));
   Nose nose;
   heading.Start(nose.yaw);
@@ -111,7 +111,7 @@ struct Turned {
   }
 };
 
-TEST(TouchdownHeadingTest, WaitsAboveTheCommitHeightForTheNoseThenGivesUp) {
+TEST(TouchdownHeadingTest, WaitsAboveCommitHeightForHeadingThenGivesUp) {
   GuidanceOptions options = To("0");
   options.heading_wait_s = 8;
   TestFlight flight(options);
@@ -129,7 +129,7 @@ TEST(TouchdownHeadingTest, WaitsAboveTheCommitHeightForTheNoseThenGivesUp) {
   EXPECT_EQ(flight.output.request, GuidanceRequest::kHold);
 }
 
-TEST(TouchdownHeadingTest, WaitsWhereItFollowsForAPadWithoutAHeadingAndGivesUp) {
+TEST(TouchdownHeadingTest, WaitsAtFollowHeightWithoutHeadingThenGivesUp) {
   TestFlight flight(To("0"));
   double lowest_m = 10;
   std::string said;
@@ -146,7 +146,7 @@ TEST(TouchdownHeadingTest, WaitsWhereItFollowsForAPadWithoutAHeadingAndGivesUp) 
   EXPECT_THAT(flight.output.reason, HasSubstr("is not known: gave up"));
 }
 
-TEST(TouchdownHeadingTest, LandsOnceTheNoseHasIt) {
+TEST(TouchdownHeadingTest, LandsOnceHeadingIsReached) {
   TestFlight flight(To("0"));
   ASSERT_TRUE(flight.FlyUntil([&] { return flight.Height() <= 0; }, 40, Turned{}));
   EXPECT_EQ(flight.output.phase, GuidancePhase::kCommit);

@@ -12,7 +12,7 @@ namespace {
 // A deck on waves moves more than this within kHorizon_s; a car on its springs does not.
 constexpr double kHorizon_s = 5;
 constexpr double kCalmClimb_mps = 0.25;
-constexpr double kCalmSwing = Radians(5);  // of the tilt
+constexpr double kCalmSwing = Radians(5);  // range of the tilt
 constexpr double kCalmHeight_m = 0.25;     // until the motion is known
 // Limits of the deck at touch-down: vertical speed, and tilt above the least tilt. They grow by
 // their own size every kPatience_s of waiting.

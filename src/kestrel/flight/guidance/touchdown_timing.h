@@ -10,7 +10,7 @@ namespace kestrel {
 
 // The moment of touch-down on a deck that moves on waves: the UAV waits low above it, moving up and
 // down with it, until it will be level and hardly rise when the feet arrive. The longer it waits
-// the less it asks. A deck that drives on a road, sloping or not, is not waited for.
+// the less it demands. A deck that drives on a road, sloping or not, is not waited for.
 class TouchdownTiming {
  public:
   // Takes a sighting of the deck: its height (m, world) and its normal in the world.

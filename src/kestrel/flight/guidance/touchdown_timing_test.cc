@@ -45,7 +45,7 @@ double Quantile(std::vector<Touchdown> touchdowns, double Touchdown::*value, dou
   return touchdowns[static_cast<std::size_t>(part * (touchdowns.size() - 1))].*value;
 }
 
-TEST(TouchdownTimingTest, TouchesAShipsDeckWhenItIsLevelAndHardlyRises) {
+TEST(TouchdownTimingTest, TouchesShipDeckWhenLevelAndHardlyRising) {
   const std::vector<Touchdown> timed = LandOnShips(true);
   const std::vector<Touchdown> untimed = LandOnShips(false);
   ASSERT_EQ(timed.size(), 20u);
@@ -66,7 +66,7 @@ TEST(TouchdownTimingTest, TouchesAShipsDeckWhenItIsLevelAndHardlyRises) {
             Quantile(untimed, &Touchdown::deck_climb_mps, 0.95));
 }
 
-TEST(TouchdownTimingTest, ACarIsNotWaitedFor) {
+TEST(TouchdownTimingTest, DoesNotWaitForCar) {
   for (const double slope : {0.0, 0.15}) {
     TouchdownTiming timing;
     const Eigen::Vector3d normal(std::sin(slope), 0, std::cos(slope));

@@ -11,7 +11,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-TEST(CameraAutomatics, OfWhatIsNoCameraNothingIsKnown) {
+TEST(CameraAutomatics, AreUnknownForNonCamera) {
   for (const char* device : {"/dev/null", "/no/such/device", "videotestsrc ! appsink"}) {
     const CameraAutomatics automatics = ReadCameraAutomatics(device);
     EXPECT_FALSE(automatics.white_balance) << device;
@@ -19,7 +19,7 @@ TEST(CameraAutomatics, OfWhatIsNoCameraNothingIsKnown) {
   }
 }
 
-TEST(CameraAutomatics, WarnOfWhatIsKnownToBeOn) {
+TEST(CameraAutomatics, WarnsOfEnabledAutomatics) {
   EXPECT_THAT(ColorWarnings({}), IsEmpty());
   EXPECT_THAT(ColorWarnings({.white_balance = false, .exposure = false}), IsEmpty());
   EXPECT_THAT(

@@ -18,7 +18,7 @@ class FakeCamera : public ExposureActuator {
   std::vector<double> exposures_s;
 };
 
-TEST(ExposureDrive, SetsTheCameraOnlyWhenTheExposureChanges) {
+TEST(ExposureDrive, SetsCameraOnlyWhenExposureChanges) {
   FakeCamera camera;
   ExposureDrive drive({.delay_frames = 0}, 1e-3, &camera);
   const cv::Mat right(8, 8, CV_8UC1, cv::Scalar(220));
@@ -29,7 +29,7 @@ TEST(ExposureDrive, SetsTheCameraOnlyWhenTheExposureChanges) {
   EXPECT_NEAR(camera.exposures_s[1], 2e-3, 2e-4);
 }
 
-TEST(ExposureDrive, GivesACameraThatWasAwayItsExposure) {
+TEST(ExposureDrive, RestoresExposureOfReturnedCamera) {
   FakeCamera camera;
   camera.is_there = false;
   ExposureDrive drive({}, 1e-3, &camera);
@@ -42,7 +42,7 @@ TEST(ExposureDrive, GivesACameraThatWasAwayItsExposure) {
   EXPECT_EQ(camera.exposures_s, std::vector<double>{1e-3});
 }
 
-TEST(V4l2ExposureActuator, ADeviceThatIsNotThereRefuses) {
+TEST(V4l2ExposureActuator, FailsOnMissingDevice) {
   EXPECT_FALSE(V4l2ExposureActuator("/dev/video987").SetExposure(1e-3));
 }
 

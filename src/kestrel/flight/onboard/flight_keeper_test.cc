@@ -61,7 +61,7 @@ class FlightKeeperTest : public ::testing::Test {
   FlightKeeper keeper_{folder_ / "kept", &recording_};
 };
 
-TEST_F(FlightKeeperTest, ARecordingIsSwitchedOnAndOff) {
+TEST_F(FlightKeeperTest, StartsAndStopsRecording) {
   EXPECT_EQ(keeper_.StopRecording(), "no recording is on");
   EXPECT_EQ(recording_.Get(), nullptr);
   for (int round = 0; round < 2; ++round) {  // each has a folder of its own, even within one second
@@ -77,7 +77,7 @@ TEST_F(FlightKeeperTest, ARecordingIsSwitchedOnAndOff) {
   }
 }
 
-TEST_F(FlightKeeperTest, WhatIsGivenWhileItIsSwitchedIsWrittenOrNot) {
+TEST_F(FlightKeeperTest, StartsAndStopsWhileFramesArrive) {
   std::atomic<bool> is_over{false};
   std::thread camera([&] {
     for (int ms = 0; !is_over; ++ms) {
@@ -108,7 +108,7 @@ TEST_F(FlightKeeperTest, SnapshotsReplaceNothing) {
   }
 }
 
-TEST_F(FlightKeeperTest, AFolderThatCannotBeMadeIsNamed) {
+TEST_F(FlightKeeperTest, ReportsFolderThatCannotBeCreated) {
   FlightKeeper keeper(folder_.Write("file", "") + "/below", &recording_);
   EXPECT_THROW(keeper.StartRecording(), InputError);
   EXPECT_THROW(keeper.KeepSnapshot(NoiseFrame(0).image, NoiseFrame(0).time), InputError);

@@ -73,7 +73,7 @@ class FlightRecorderTest : public ::testing::Test {
   std::vector<std::string> told_;
 };
 
-TEST_F(FlightRecorderTest, WhatItWritesIsARecording) {
+TEST_F(FlightRecorderTest, WritesReadableRecording) {
   for (const char* compression : {"png", "jpg"}) {
     {
       const auto recorder = Recorder({.compression = compression}, true);
@@ -101,7 +101,7 @@ TEST_F(FlightRecorderTest, WhatItWritesIsARecording) {
   EXPECT_THAT(Told(), IsEmpty());
 }
 
-TEST_F(FlightRecorderTest, TheTruthIsAnEvaluators) {
+TEST_F(FlightRecorderTest, WritesTruthForEvaluation) {
   {
     const auto recorder = Recorder();
     for (int i = 0; i < 5; ++i) {
@@ -124,7 +124,7 @@ TEST_F(FlightRecorderTest, TheTruthIsAnEvaluators) {
   EXPECT_EQ(patterns[2].velocity_in_world.x(), 5);
 }
 
-TEST_F(FlightRecorderTest, EveryRowIsReadWhileItRecordsAndItsImageIsWhole) {
+TEST_F(FlightRecorderTest, RowsHaveCompleteImagesWhileRecording) {
   const auto recorder = Recorder();
   std::size_t rows = 0;
   const Time deadline = Now() + seconds(20);
@@ -139,7 +139,7 @@ TEST_F(FlightRecorderTest, EveryRowIsReadWhileItRecordsAndItsImageIsWhole) {
   EXPECT_GE(rows, 20u);
 }
 
-TEST_F(FlightRecorderTest, WhatGoesBackInTimeIsLeftOut) {
+TEST_F(FlightRecorderTest, DropsDataOutOfOrder) {
   {
     const auto recorder = Recorder();
     for (const int ms : {0, 20, 10, 20, 30}) {
@@ -160,7 +160,7 @@ TEST_F(FlightRecorderTest, WhatGoesBackInTimeIsLeftOut) {
             "1000030000000,0.0010000\n");
 }
 
-TEST_F(FlightRecorderTest, FramesThatTheDiskCannotKeepUpWithAreDroppedAndNoted) {
+TEST_F(FlightRecorderTest, DropsAndNotesFramesWhenDiskIsSlow) {
   RecorderCounters counters;
   constexpr int kFrames = 200;
   {
@@ -184,7 +184,7 @@ TEST_F(FlightRecorderTest, FramesThatTheDiskCannotKeepUpWithAreDroppedAndNoted) 
   EXPECT_EQ(OpenSource({Folder()})->frame_count(), counters.images);
 }
 
-TEST_F(FlightRecorderTest, AFullDiskStopsImagesOnly) {
+TEST_F(FlightRecorderTest, FullDiskStopsImagesOnly) {
   {
     const auto recorder = Recorder({.free_space_mb = 1e15});
     for (int i = 0; i < 3; ++i) {
@@ -203,7 +203,7 @@ TEST_F(FlightRecorderTest, AFullDiskStopsImagesOnly) {
   EXPECT_THAT(ReadFile(Mav0("cam0/dropped.csv")), HasSubstr("the disk is full"));
 }
 
-TEST_F(FlightRecorderTest, ImagesGoOnWhenTheyCanBeWrittenAgain) {
+TEST_F(FlightRecorderTest, ResumesImagesWhenDiskIsWritableAgain) {
   const std::string data = Mav0("cam0/data");
   {
     const auto recorder = Recorder();
@@ -226,7 +226,7 @@ TEST_F(FlightRecorderTest, ImagesGoOnWhenTheyCanBeWrittenAgain) {
   EXPECT_TRUE(source->Next(&frame));
 }
 
-TEST_F(FlightRecorderTest, PacketsGoIntoATlog) {
+TEST_F(FlightRecorderTest, WritesPacketsToTlog) {
   const std::array<std::uint8_t, 3> packet{0xfd, 0x00, 0x17};
   const std::array<std::uint8_t, 281> too_long{};
   const auto utc_us = [] {
@@ -248,7 +248,7 @@ TEST_F(FlightRecorderTest, PacketsGoIntoATlog) {
   EXPECT_EQ(bytes.substr(8), std::string("\xfd\x00\x17", 3));
 }
 
-TEST_F(FlightRecorderTest, TakesTheFolderOfNothingElse) {
+TEST_F(FlightRecorderTest, RefusesFolderWithOtherFiles) {
   folder_.Write("flight/notes.txt", "mine");
   EXPECT_THAT(InputErrorOf([&] { Recorder(); }), HasSubstr("is no recording, and not empty"));
   std::filesystem::remove_all(Folder());
@@ -260,7 +260,7 @@ TEST_F(FlightRecorderTest, TakesTheFolderOfNothingElse) {
   EXPECT_THAT(InputErrorOf([&] { Recorder({}, true); }), HasSubstr("another program"));
 }
 
-TEST_F(FlightRecorderTest, RefusesOptionsThatAreNone) {
+TEST_F(FlightRecorderTest, RefusesInvalidOptions) {
   EXPECT_THAT(InputErrorOf([&] { Recorder({.compression = "gif"}); }), HasSubstr("'gif'"));
 }
 

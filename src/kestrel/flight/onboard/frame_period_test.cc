@@ -10,7 +10,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-TEST(FramePeriodTest, DroppedFramesDoNotLengthenIt) {
+TEST(FramePeriodTest, DroppedFramesDoNotLengthenPeriod) {
   FramePeriod period;
   for (int i = 0; i < 40; ++i) {
     if (i % 3 == 1) continue;
@@ -19,13 +19,13 @@ TEST(FramePeriodTest, DroppedFramesDoNotLengthenIt) {
   EXPECT_EQ(period.Get(), Duration(milliseconds(50)));
 }
 
-TEST(FramePeriodTest, LateFramesDoNotShortenIt) {
+TEST(FramePeriodTest, LateFramesDoNotShortenPeriod) {
   FramePeriod period;
   for (int i = 0; i < 40; ++i) period.Add(Time(milliseconds(50 * i + (i % 6 == 0 ? 45 : 0))));
   EXPECT_EQ(period.Get(), Duration(milliseconds(50)));
 }
 
-TEST(FramePeriodTest, ItFollowsTheCamera) {
+TEST(FramePeriodTest, FollowsCamera) {
   FramePeriod period;
   Time time{};
   for (int i = 0; i < 20; ++i) period.Add(time += milliseconds(20));
@@ -33,7 +33,7 @@ TEST(FramePeriodTest, ItFollowsTheCamera) {
   EXPECT_EQ(period.Get(), Duration(milliseconds(100)));
 }
 
-TEST(FramePeriodTest, FewImagesAndTimesThatStandStillSayNothing) {
+TEST(FramePeriodTest, IsUnknownForFewOrIdenticalTimes) {
   FramePeriod period;
   EXPECT_FALSE(period.Get());
   for (int i = 0; i < 100; ++i) period.Add(Time(milliseconds(7)));

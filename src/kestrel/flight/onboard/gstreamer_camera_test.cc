@@ -56,7 +56,7 @@ std::string ErrorOf(const std::string& pipeline, const GstreamerCameraOptions& o
   return "";
 }
 
-TEST(GstreamerCamera, FramesHaveTheTimeOfTheirCaptureOnTheLocalClock) {
+TEST(GstreamerCamera, StampsFramesWithCaptureTimeOnLocalClock) {
   const Time start = Now();
   GstreamerCamera camera = Camera(kTestCamera);
   Time last = start;
@@ -74,7 +74,7 @@ TEST(GstreamerCamera, FramesHaveTheTimeOfTheirCaptureOnTheLocalClock) {
   EXPECT_EQ(counters.untimed, 0u);
 }
 
-TEST(GstreamerCamera, ExposureAndReadOutAreTakenOffTheTime) {
+TEST(GstreamerCamera, SubtractsExposureAndReadOutFromTime) {
   GstreamerCamera plain = Camera(kTestCamera);
   GstreamerCamera delayed = Camera(kTestCamera, {.readout_s = 0.9, .exposure_s = 0.2});
   NextFrame(&plain);
@@ -82,7 +82,7 @@ TEST(GstreamerCamera, ExposureAndReadOutAreTakenOffTheTime) {
   EXPECT_LT(NextFrame(&delayed).time, NextFrame(&plain).time - milliseconds(500));
 }
 
-TEST(GstreamerCamera, TheNewestFrameWinsAndTheOthersAreCounted) {
+TEST(GstreamerCamera, DeliversNewestFrameAndCountsDroppedOnes) {
   GstreamerCamera camera = Camera(kTestCamera);
   NextFrame(&camera);
   std::this_thread::sleep_for(milliseconds(400));
@@ -92,7 +92,7 @@ TEST(GstreamerCamera, TheNewestFrameWinsAndTheOthersAreCounted) {
   EXPECT_GE(camera.counters().missed, 5u);
 }
 
-TEST(GstreamerCamera, GivesColour) {
+TEST(GstreamerCamera, DeliversColour) {
   GstreamerCamera camera =
       Camera("videotestsrc is-live=true pattern=red ! video/x-raw,width=64,height=48", {},
              PixelFormat::kBgr);
@@ -103,12 +103,12 @@ TEST(GstreamerCamera, GivesColour) {
   EXPECT_GT(mean[2], 200);
 }
 
-TEST(GstreamerCamera, TakesAPipelineWithItsOwnAppsink) {
+TEST(GstreamerCamera, AcceptsPipelineWithAppsink) {
   GstreamerCamera camera = Camera(std::string(kTestCamera) + " ! videoconvert ! appsink");
   EXPECT_FALSE(NextFrame(&camera).image.empty());
 }
 
-TEST(GstreamerCamera, WhatIsNotLiveKeepsItsPaceAndEnds) {
+TEST(GstreamerCamera, PlaysNonLiveSourceInRealTimeToItsEnd) {
   const Time start = Now();
   GstreamerCamera camera =
       Camera("videotestsrc num-buffers=10 ! video/x-raw,width=64,height=48,framerate=50/1");
@@ -123,7 +123,7 @@ TEST(GstreamerCamera, WhatIsNotLiveKeepsItsPaceAndEnds) {
   EXPECT_TRUE(std::holds_alternative<EndOfStream>(*camera.Next(milliseconds(1))));
 }
 
-TEST(GstreamerCamera, ACameraThatGoesIsToldAndComesBack) {
+TEST(GstreamerCamera, ReportsLostCameraAndReopensIt) {
   GstreamerCamera camera = Camera(
       "videotestsrc is-live=true num-buffers=3 ! video/x-raw,width=64,height=48,framerate=50/1",
       {.reopen_s = 0.05});
@@ -138,7 +138,7 @@ TEST(GstreamerCamera, ACameraThatGoesIsToldAndComesBack) {
   EXPECT_GT(NextFrame(&camera).time, Time());
 }
 
-TEST(GstreamerCamera, SaysInOneLineWhatIsWrong) {
+TEST(GstreamerCamera, ReportsFaultsInOneLine) {
   for (const std::string& error :
        {ErrorOf("/dev/video987"), ErrorOf("nosuchelement ! videoconvert"),
         ErrorOf("videotestsrc is-live=true ! video/x-raw,width=32,height=48"),
@@ -155,7 +155,7 @@ TEST(GstreamerCamera, SaysInOneLineWhatIsWrong) {
               HasSubstr("the image is 32x48 px, expected 64x48 px as in the calibration"));
 }
 
-TEST(GstreamerCamera, AnElementsPropertySetsTheExposure) {
+TEST(GstreamerCamera, SetsExposureByElementProperty) {
   GstreamerCamera camera = Camera(
       "videotestsrc is-live=true pattern=smpte75 ! video/x-raw,width=64,height=48,format=I420 ! "
       "videobalance name=light contrast=0",

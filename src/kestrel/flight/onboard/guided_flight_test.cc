@@ -134,7 +134,7 @@ class GuidedFlightTest : public testing::Test {
   std::set<std::uint32_t> requested_modes_;  // of PX4
 };
 
-TEST_F(GuidedFlightTest, FliesWhileThePilotGivesTheMode) {
+TEST_F(GuidedFlightTest, FliesWhilePilotSelectsMode) {
   Start(mavlink::kAutopilotArduPilot);
   EXPECT_EQ(SetPointsDuring(2), 0);
   heartbeat_.custom_mode = kGuided;
@@ -148,7 +148,7 @@ TEST_F(GuidedFlightTest, FliesWhileThePilotGivesTheMode) {
   EXPECT_GT(SetPointsDuring(1), 30) << "given anew";
 }
 
-TEST_F(GuidedFlightTest, StreamsForPx4UntilTheModeWasLeftOnce) {
+TEST_F(GuidedFlightTest, StreamsForPx4UntilModeIsLeft) {
   Start(mavlink::kAutopilotPx4);
   heartbeat_.custom_mode = kPositionControl;
   Pass(2);
@@ -163,7 +163,7 @@ TEST_F(GuidedFlightTest, StreamsForPx4UntilTheModeWasLeftOnce) {
   EXPECT_GT(SetPointsDuring(1), 30) << "a new flight";
 }
 
-TEST_F(GuidedFlightTest, ATakeOffIsTheAutopilots) {
+TEST_F(GuidedFlightTest, SendsNothingDuringTakeOff) {
   Start(mavlink::kAutopilotArduPilot);
   Pass(1);
   heartbeat_.custom_mode = kGuided;
@@ -176,14 +176,14 @@ TEST_F(GuidedFlightTest, ATakeOffIsTheAutopilots) {
   EXPECT_GT(SetPointsDuring(1), 30) << said_;
 }
 
-TEST_F(GuidedFlightTest, AModeThatWasOnBeforeIsNotTaken) {
+TEST_F(GuidedFlightTest, DoesNotStartInModeEnteredBefore) {
   Start(mavlink::kAutopilotArduPilot);
   heartbeat_.custom_mode = kGuided;
   EXPECT_EQ(SetPointsDuring(3), 0);
   EXPECT_THAT(said_, HasSubstr("GUIDED was on before: leave it and give it again"));
 }
 
-TEST_F(GuidedFlightTest, RefusesInOneLineBeforeAnythingMoves) {
+TEST_F(GuidedFlightTest, RefusesInOneLineBeforeFlight) {
   const struct {
     const char* words;
     std::function<void()> fault;
@@ -218,14 +218,14 @@ TEST_F(GuidedFlightTest, RefusesInOneLineBeforeAnythingMoves) {
   }
 }
 
-TEST_F(GuidedFlightTest, ARateThatIsTooLowIsRefused) {
+TEST_F(GuidedFlightTest, RefusesTooLowRate) {
   FlightOptions options;
   options.rate_hz = 10;
   EXPECT_THROW(Start(mavlink::kAutopilotArduPilot, options), InputError);
 }
 
 // PX4 without GNSS leaves OFFBOARD on the deck, holds its place and stays armed.
-TEST_F(GuidedFlightTest, EndsALandingThatTheAutopilotLeavesWithoutAPosition) {
+TEST_F(GuidedFlightTest, EndsLandingWhenAutopilotLeavesModeWithoutPosition) {
   constexpr std::uint32_t kHold = (4 << 16) | (3 << 24);
   for (const std::uint32_t mode : {kHold, kPositionControl}) {
     said_.clear();

@@ -6,7 +6,7 @@
 namespace kestrel {
 namespace {
 
-TEST(ImagePool, GivesOutOnlyWhatNobodyHas) {
+TEST(ImagePool, GivesOutUnusedImagesOnly) {
   ImagePool pool(2);
   cv::Mat first = pool.Take({8, 4}, CV_8UC1);
   const cv::Mat second = pool.Take({8, 4}, CV_8UC1);
@@ -20,7 +20,7 @@ TEST(ImagePool, GivesOutOnlyWhatNobodyHas) {
   EXPECT_NE(pool.Take({8, 4}, CV_8UC1).data, memory);
 }
 
-TEST(ImagePool, UsesMemoryAgain) {
+TEST(ImagePool, ReusesMemory) {
   ImagePool pool(2);
   const uchar* memory = pool.Take({8, 4}, CV_8UC1).data;
   EXPECT_EQ(pool.Take({8, 4}, CV_8UC1).data, memory);

@@ -58,7 +58,7 @@ class LandingWatchTest : public ::testing::Test {
   LandingWatch watch_{kRadius_m};
 };
 
-TEST_F(LandingWatchTest, LandedOnThePatternWithItsOffset) {
+TEST_F(LandingWatchTest, ReportsOffsetOfLandingOnPattern) {
   ComeDown(0.12);
   EXPECT_FALSE(watch_.end());
   Disarm();
@@ -67,7 +67,7 @@ TEST_F(LandingWatchTest, LandedOnThePatternWithItsOffset) {
   EXPECT_NEAR(*watch_.end()->offset_m, 0.12, 1e-6);
 }
 
-TEST_F(LandingWatchTest, TheHeadingIsThatOfTouchDown) {
+TEST_F(LandingWatchTest, ReportsHeadingAtTouchDown) {
   input_.heading_error = -0.02;
   ComeDown(0.12);
   input_.heading_error = 1;
@@ -76,7 +76,7 @@ TEST_F(LandingWatchTest, TheHeadingIsThatOfTouchDown) {
             "landed 0.12 m from the centre (estimated), heading off by -1.1 degrees");
 }
 
-TEST_F(LandingWatchTest, LandedBesideIt) {
+TEST_F(LandingWatchTest, ReportsLandingBesidePattern) {
   ComeDown(10.8, 1.5);
   Disarm();
   ASSERT_TRUE(watch_.end());
@@ -84,7 +84,7 @@ TEST_F(LandingWatchTest, LandedBesideIt) {
 }
 
 // The pattern drives on below a UAV that stands beside it, and is not seen any more.
-TEST_F(LandingWatchTest, JudgesByTheMomentOfTouchDown) {
+TEST_F(LandingWatchTest, JudgesAtTouchDown) {
   ComeDown(0.2);
   input_.pattern->position = {30, 0, 0};
   input_.pattern->covariance *= 1e6;
@@ -93,7 +93,7 @@ TEST_F(LandingWatchTest, JudgesByTheMomentOfTouchDown) {
   EXPECT_EQ(watch_.end()->outcome, FlightOutcome::kOnPattern);
 }
 
-TEST_F(LandingWatchTest, ADeckThatHeavesChangesNothingAfterContact) {
+TEST_F(LandingWatchTest, IgnoresHeaveAfterContact) {
   ComeDown(0.2);
   input_.has_contact = true;
   input_.pattern.reset();
@@ -102,14 +102,14 @@ TEST_F(LandingWatchTest, ADeckThatHeavesChangesNothingAfterContact) {
   EXPECT_EQ(watch_.end()->outcome, FlightOutcome::kOnPattern);
 }
 
-TEST_F(LandingWatchTest, DownAndNotKnownWhere) {
+TEST_F(LandingWatchTest, ReportsUnknownPlaceOfUncertainLanding) {
   ComeDown(1.2, 0.9);  // on it or beside it
   Disarm();
   EXPECT_EQ(watch_.end()->outcome, FlightOutcome::kDownSomewhere);
   EXPECT_FALSE(watch_.end()->offset_m);
 }
 
-TEST_F(LandingWatchTest, APatternThatWasLostBeforeWasSomewhere) {
+TEST_F(LandingWatchTest, ReportsUnknownPlaceWhenPatternWasLostBefore) {
   input_.is_armed = true;
   input_.state = LandedState::kInAir;
   input_.body = {{3.1, 0, 5}, Eigen::Vector3d::Zero()};
@@ -123,7 +123,7 @@ TEST_F(LandingWatchTest, APatternThatWasLostBeforeWasSomewhere) {
             "lost");
 }
 
-TEST_F(LandingWatchTest, APatternThatWasNeverSeenIsNotLandedOn) {
+TEST_F(LandingWatchTest, ReportsPatternNeverSeen) {
   input_.is_armed = true;
   input_.state = LandedState::kInAir;
   input_.body = {{0, 0, 2}, Eigen::Vector3d::Zero()};
@@ -133,7 +133,7 @@ TEST_F(LandingWatchTest, APatternThatWasNeverSeenIsNotLandedOn) {
 }
 
 // Comes down to 'height_m' in sight of the pattern, and then without a position.
-TEST_F(LandingWatchTest, LandedWhereItWasSeenWhenThePositionIsLost) {
+TEST_F(LandingWatchTest, UsesLastSightWhenPositionIsLost) {
   const struct {
     double offset_m, height_m;
     const char* words;
@@ -159,7 +159,7 @@ TEST_F(LandingWatchTest, LandedWhereItWasSeenWhenThePositionIsLost) {
   }
 }
 
-TEST_F(LandingWatchTest, APositionThatJumpsIsNotBelieved) {
+TEST_F(LandingWatchTest, IgnoresJumpingPosition) {
   ComeDown(0.1);
   input_.sight = {input_.now, {0.1, 0, 0.2}};
   input_.body->feet.x() += 6;
@@ -172,7 +172,7 @@ TEST_F(LandingWatchTest, APositionThatJumpsIsNotBelieved) {
 }
 
 // PX4's height without GNSS runs away by metres, on the ground as well.
-TEST_F(LandingWatchTest, AHeightThatRunsAwayIsNotBelieved) {
+TEST_F(LandingWatchTest, IgnoresDriftingHeight) {
   ComeDown(0.1);
   input_.sight = {input_.now, {0.1, 0, 0.2}};
   Pass(1, -0.5);
@@ -183,7 +183,7 @@ TEST_F(LandingWatchTest, AHeightThatRunsAwayIsNotBelieved) {
   EXPECT_THAT(InWords(*watch_.end()), HasSubstr("landed 0.10 m from the centre (estimated), by "));
 }
 
-TEST_F(LandingWatchTest, APatternThatDroveOnIsNotLandedOn) {
+TEST_F(LandingWatchTest, DetectsLandingBesideDepartedPattern) {
   ComeDown(0.1);
   input_.sight = {input_.now, {0.1, 0, 0.4}};
   input_.body->feet.x() += 2;
@@ -193,7 +193,7 @@ TEST_F(LandingWatchTest, APatternThatDroveOnIsNotLandedOn) {
   EXPECT_EQ(watch_.end()->outcome, FlightOutcome::kBesidePattern);
 }
 
-TEST_F(LandingWatchTest, APatternSeenLongAgoIsNotLandedOn) {
+TEST_F(LandingWatchTest, IgnoresOldSightOfPattern) {
   ComeDown(0.1);
   input_.sight = {input_.now, {0.1, 0, 0.4}};
   input_.pattern->covariance *= 1e6;
@@ -203,7 +203,7 @@ TEST_F(LandingWatchTest, APatternSeenLongAgoIsNotLandedOn) {
   EXPECT_EQ(watch_.end()->outcome, FlightOutcome::kDownSomewhere);
 }
 
-TEST_F(LandingWatchTest, DisarmedHighAboveItHasNotLandedOnIt) {
+TEST_F(LandingWatchTest, DisarmingHighAbovePatternIsNoLanding) {
   input_.is_armed = true;
   input_.state = LandedState::kInAir;
   input_.body = {{0, 0, 5}, Eigen::Vector3d::Zero()};
@@ -213,7 +213,7 @@ TEST_F(LandingWatchTest, DisarmedHighAboveItHasNotLandedOnIt) {
   EXPECT_THAT(InWords(*watch_.end()), HasSubstr("disarmed 4.0 m above"));
 }
 
-TEST_F(LandingWatchTest, GuidanceThatGaveUpIsTheReasonUnlessItStandsOnThePattern) {
+TEST_F(LandingWatchTest, ReportsReasonOfGivingUpUnlessLandedOnPattern) {
   input_.gave_up = "no new images";
   ComeDown(3);
   Disarm();
@@ -226,7 +226,7 @@ TEST_F(LandingWatchTest, GuidanceThatGaveUpIsTheReasonUnlessItStandsOnThePattern
 }
 
 // The first heartbeat after a restart says "disarmed"; the new stamps come later.
-TEST_F(LandingWatchTest, AnAutopilotThatRestartsHasNotLanded) {
+TEST_F(LandingWatchTest, RestartOfAutopilotIsNoLanding) {
   ComeDown(0.1);
   stamps_ = false;
   Disarm();
@@ -238,7 +238,7 @@ TEST_F(LandingWatchTest, AnAutopilotThatRestartsHasNotLanded) {
   EXPECT_EQ(watch_.end()->outcome, FlightOutcome::kRestarted);
 }
 
-TEST_F(LandingWatchTest, ARestartOnTheGroundIsForgotten) {
+TEST_F(LandingWatchTest, IgnoresRestartOnGround) {
   input_.reboots = 1;
   Pass(1);
   ComeDown(0.1);
@@ -246,7 +246,7 @@ TEST_F(LandingWatchTest, ARestartOnTheGroundIsForgotten) {
   EXPECT_EQ(watch_.end()->outcome, FlightOutcome::kOnPattern);
 }
 
-TEST_F(LandingWatchTest, EndsInTheEndWithoutStamps) {
+TEST_F(LandingWatchTest, EndsEventuallyWithoutStamps) {
   ComeDown(0.1);
   stamps_ = false;
   Disarm();
@@ -254,7 +254,7 @@ TEST_F(LandingWatchTest, EndsInTheEndWithoutStamps) {
   EXPECT_EQ(watch_.end()->outcome, FlightOutcome::kOnPattern);
 }
 
-TEST_F(LandingWatchTest, ArmedAndDisarmedOnTheGroundHasNotFlown) {
+TEST_F(LandingWatchTest, ArmingAndDisarmingOnGroundIsNoFlight) {
   input_.is_armed = true;
   input_.state = LandedState::kOnGround;
   input_.body = {{0, 0, 0}, Eigen::Vector3d::Zero()};
@@ -264,7 +264,7 @@ TEST_F(LandingWatchTest, ArmedAndDisarmedOnTheGroundHasNotFlown) {
   EXPECT_FALSE(watch_.end());
 }
 
-TEST_F(LandingWatchTest, KnowsTheAirByHeightWhereTheAutopilotDoesNotTell) {
+TEST_F(LandingWatchTest, DetectsFlightByHeightWithoutLandedState) {
   input_.is_armed = true;
   input_.body = {{0, 0, 10}, Eigen::Vector3d::Zero()};
   SeePattern(0.02);
@@ -273,7 +273,7 @@ TEST_F(LandingWatchTest, KnowsTheAirByHeightWhereTheAutopilotDoesNotTell) {
   ASSERT_TRUE(watch_.end());
 }
 
-TEST_F(LandingWatchTest, WithoutAPatternToLandOnItHasJustLanded) {
+TEST_F(LandingWatchTest, ReportsPlainLandingWithoutPattern) {
   watch_ = LandingWatch(0);
   ComeDown(4);
   Disarm();

@@ -9,13 +9,13 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-TEST(LatencyHistogram, WithoutATimeAllIsZero) {
+TEST(LatencyHistogram, IsZeroWithoutSamples) {
   const LatencySummary summary = LatencyHistogram().Summary();
   EXPECT_EQ(summary.count, 0u);
   EXPECT_EQ(summary.p99_s, 0);
 }
 
-TEST(LatencyHistogram, KnowsTheQuantilesToOnePercent) {
+TEST(LatencyHistogram, EstimatesQuantilesWithinOnePercent) {
   LatencyHistogram histogram;
   for (int i = 1; i <= 1000; ++i) histogram.Add(microseconds(10 * i));
   histogram.AddDropped(3);
@@ -27,7 +27,7 @@ TEST(LatencyHistogram, KnowsTheQuantilesToOnePercent) {
   EXPECT_EQ(summary.max_s, 10e-3);
 }
 
-TEST(LatencyHistogram, TakesAnyTime) {
+TEST(LatencyHistogram, AcceptsAnyTime) {
   LatencyHistogram histogram;
   histogram.Add(milliseconds(-5));
   histogram.Add(Duration(0));
@@ -37,7 +37,7 @@ TEST(LatencyHistogram, TakesAnyTime) {
   EXPECT_EQ(histogram.Summary().max_s, 72'000);
 }
 
-TEST(LatencyStatistics, TellsTheStepsInWhichSomethingHappened) {
+TEST(LatencyStatistics, ListsStepsWithSamples) {
   LatencyStatistics statistics({"capture to detection", "detection to message"});
   statistics.step(0).Add(milliseconds(8));
   statistics.step(0).AddDropped();

@@ -14,7 +14,7 @@ using ::testing::HasSubstr;
 
 LiveSourceChoice Choice(const std::string& uri) { return {.recording = {.sources = {uri}}}; }
 
-TEST(OpenLiveSourceTest, ASchemeOpensWhatBeginsWithIt) {
+TEST(OpenLiveSourceTest, SchemeOpensMatchingUris) {
   std::string asked;
   const SourceScheme scheme{"mine:", [&](const LiveSourceChoice& choice) {
                               asked = choice.uri();
@@ -27,7 +27,7 @@ TEST(OpenLiveSourceTest, ASchemeOpensWhatBeginsWithIt) {
   EXPECT_THROW(OpenLiveSource(Choice("/nowhere/mine:left"), {}, {scheme}), InputError);
 }
 
-TEST(OpenLiveSourceTest, ACameraNeedsACalibration) {
+TEST(OpenLiveSourceTest, CameraRequiresCalibration) {
   EXPECT_THAT(InputErrorOf([] { OpenLiveSource(Choice("/dev/video0"), {}); }),
               HasSubstr("give it by --camera FILE"));
 }

@@ -56,7 +56,7 @@ class RealtimeReplayTest : public ::testing::Test {
   TestFolder folder_;
 };
 
-TEST_F(RealtimeReplayTest, FramesAndPosesComeWhenTheyAreDue) {
+TEST_F(RealtimeReplayTest, DeliversFramesAndPosesWhenDue) {
   RealtimeReplay replay = Replay(false);
   std::optional<Time> first_frame;
   int frames = 0;
@@ -84,7 +84,7 @@ TEST_F(RealtimeReplayTest, FramesAndPosesComeWhenTheyAreDue) {
   EXPECT_EQ(replay.counters().captured, 5u);
 }
 
-TEST_F(RealtimeReplayTest, ThePoseOfAFramesInstantComesWithIt) {
+TEST_F(RealtimeReplayTest, DeliversPoseOfFrameTimeWithFrame) {
   RealtimeReplay replay = Replay(false, milliseconds(50));
   Time newest_pose;
   for (;;) {
@@ -97,7 +97,7 @@ TEST_F(RealtimeReplayTest, ThePoseOfAFramesInstantComesWithIt) {
   }
 }
 
-TEST_F(RealtimeReplayTest, ALoopGoesOnInTime) {
+TEST_F(RealtimeReplayTest, LoopContinuesInTime) {
   RealtimeReplay replay = Replay(true);
   Time last_frame;
   Time last_pose;
@@ -119,7 +119,7 @@ TEST_F(RealtimeReplayTest, ALoopGoesOnInTime) {
 }
 
 // Otherwise the last frame of each round would wait for it in vain.
-TEST_F(RealtimeReplayTest, EachFrameIsFollowedByThePoseAfterIt) {
+TEST_F(RealtimeReplayTest, DeliversPoseAfterEachFrame) {
   constexpr Duration kOffset = milliseconds(5);  // poses lie between the frames
   for (const bool is_looped : {true, false}) {
     RealtimeReplay replay = Replay(is_looped, kOffset);
@@ -143,7 +143,7 @@ TEST_F(RealtimeReplayTest, EachFrameIsFollowedByThePoseAfterIt) {
   }
 }
 
-TEST_F(RealtimeReplayTest, ReturnsWithoutAnEventWhenNoneIsDue) {
+TEST_F(RealtimeReplayTest, ReturnsNoEventWhenNoneIsDue) {
   RealtimeReplay replay = Replay(false);
   for (int i = 0; i < 40; ++i) replay.Next(milliseconds(1));
   const Time start = Now();
@@ -151,7 +151,7 @@ TEST_F(RealtimeReplayTest, ReturnsWithoutAnEventWhenNoneIsDue) {
   EXPECT_LT(Now() - start, seconds(1));
 }
 
-TEST_F(RealtimeReplayTest, BrokenImageIsLeftOutAndCounted) {
+TEST_F(RealtimeReplayTest, SkipsAndCountsBrokenImage) {
   TestFolder::CutOff(folder_ / "mav0/cam0/data/2.png", 0.5);
   RealtimeReplay replay = Replay(false);
   int frames = 0;

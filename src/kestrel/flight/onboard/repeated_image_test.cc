@@ -20,7 +20,7 @@ TEST(RepeatedImageTest, NoiseMakesImagesDiffer) {
   EXPECT_EQ(repeated.in_a_row(), 0);
 }
 
-TEST(RepeatedImageTest, CountsRepetitionsUntilTheImageMoves) {
+TEST(RepeatedImageTest, CountsRepetitionsUntilImageChanges) {
   RepeatedImage repeated;
   const cv::Mat image = NoisyImage(1);
   EXPECT_FALSE(repeated.IsRepeated(image));

@@ -29,12 +29,12 @@ std::vector<int> Sent(int until_ms, int news_ms) {
   return sent;
 }
 
-TEST(SendScheduleTest, ABeatFillsTheTimeBetweenNewsThatGoAtOnce) {
+TEST(SendScheduleTest, SendsNewsAtOnceAndRepeatsInBetween) {
   EXPECT_THAT(Sent(100, 0), ElementsAre(0, 20, 40, 60, 80));
   EXPECT_THAT(Sent(100, 33), ElementsAre(0, 20, 33, 53, 66, 86, 99));
 }
 
-TEST(SendScheduleTest, FastNewsAreThinnedOut) {
+TEST(SendScheduleTest, LimitsRateOfFastNews) {
   EXPECT_THAT(Sent(50, 2), ElementsAre(0, 10, 20, 30, 40));
 }
 

@@ -48,7 +48,7 @@ TrackSnapshot TrackAt(double seconds, const Vector3d& position, const Vector3d& 
 
 TargetReporter MakeReporter(TargetReporterOptions options = {}) { return {options, {}}; }
 
-TEST(TargetReporterTest, TellsNothingBeforeThereIsATrackOrAPose) {
+TEST(TargetReporterTest, ReportsNothingWithoutTrackOrPose) {
   TargetReporter reporter = MakeReporter();
   EXPECT_FALSE(reporter.Report(At(1), kAtOnce, {}, Uav().PosesUntil(1)));
   const PoseHistory no_poses(10, std::chrono::milliseconds(500));
@@ -57,7 +57,7 @@ TEST(TargetReporterTest, TellsNothingBeforeThereIsATrackOrAPose) {
 }
 
 // Target and UAV are both predicted to the time at which the autopilot uses the message.
-TEST(TargetReporterTest, PredictsBothToTheTimeOfUse) {
+TEST(TargetReporterTest, PredictsTargetAndUavToTimeOfUse) {
   TargetReporter reporter = MakeReporter();
   const Uav uav{{0, 0, 5}, {2, 0, 0}};
   const auto report = reporter.Report(At(1.05), DurationFromSeconds(0.05),
@@ -70,7 +70,7 @@ TEST(TargetReporterTest, PredictsBothToTheTimeOfUse) {
   EXPECT_EQ(reporter.phase(), TargetPhase::kFound);
 }
 
-TEST(TargetReporterTest, TellsTheHeadingThatTheTrackKnows) {
+TEST(TargetReporterTest, ReportsHeadingOfTrack) {
   TargetReporter reporter = MakeReporter();
   TrackSnapshot track = TrackAt(1, {0, 0, 0}, {0, 0, 0});
   track.target->motion.mean(TurnState::kYaw) = 2.5;
@@ -83,7 +83,7 @@ TEST(TargetReporterTest, TellsTheHeadingThatTheTrackKnows) {
   EXPECT_NEAR(report->yaw_sigma, 0.02, 1e-9);
 }
 
-TEST(TargetReporterTest, IsSilentWhenThePredictionIsWorseThanTheLimit) {
+TEST(TargetReporterTest, IsSilentWhenPredictionExceedsLimit) {
   TargetReporter reporter = MakeReporter();
   const Vector3d still = Vector3d::Zero();
   ASSERT_TRUE(reporter.Report(At(1), kAtOnce, TrackAt(1, {0, 0, 0}, still), Uav().PosesUntil(1)));
@@ -92,7 +92,7 @@ TEST(TargetReporterTest, IsSilentWhenThePredictionIsWorseThanTheLimit) {
   EXPECT_EQ(reporter.phase(), TargetPhase::kLost);
 }
 
-TEST(TargetReporterTest, IsSilentWithoutAFreshPose) {
+TEST(TargetReporterTest, IsSilentWithoutFreshPose) {
   TargetReporter reporter = MakeReporter();
   EXPECT_FALSE(
       reporter.Report(At(1.5), kAtOnce, TrackAt(1.5, {0, 0, 0}, {0, 0, 0}), Uav().PosesUntil(1)));
@@ -111,7 +111,7 @@ TargetReporter RideOn(double height_m, const Vector3d& velocity, const Vector3d&
   return reporter;
 }
 
-TEST(TargetReporterTest, AfterContactTheDeckIsBelowAndMovesAsTheUav) {
+TEST(TargetReporterTest, PlacesDeckBelowUavAfterContact) {
   const Vector3d drive(4, 0, 0);
   TargetReporter reporter = RideOn(0.35, drive, drive);
   ASSERT_EQ(reporter.phase(), TargetPhase::kContact);
@@ -123,13 +123,13 @@ TEST(TargetReporterTest, AfterContactTheDeckIsBelowAndMovesAsTheUav) {
   EXPECT_EQ(reporter.phase(), TargetPhase::kContact);
 }
 
-TEST(TargetReporterTest, ThereIsNoContactInTheAirNorOnTheWayDown) {
+TEST(TargetReporterTest, DetectsNoContactInAirOrDuringDescent) {
   const Vector3d drive(4, 0, 0);
   EXPECT_EQ(RideOn(2, drive, drive).phase(), TargetPhase::kFound);
   EXPECT_EQ(RideOn(0.5, drive - 0.2 * Vector3d::UnitZ(), drive).phase(), TargetPhase::kFound);
 }
 
-TEST(TargetReporterTest, WhatIsFlownLowHasNoContact) {
+TEST(TargetReporterTest, DetectsNoContactInLowFlight) {
   const Vector3d still = Vector3d::Zero();
   TargetReporter reporter = RideOn(0.35, still, still);
   reporter.set_may_stand(false);
@@ -140,7 +140,7 @@ TEST(TargetReporterTest, WhatIsFlownLowHasNoContact) {
   EXPECT_NEAR(report->position_in_body().z(), -0.35, 1e-9);
 }
 
-TEST(TargetReporterTest, ContactEndsWhenTheUavRises) {
+TEST(TargetReporterTest, ContactEndsWhenUavRises) {
   const Vector3d still = Vector3d::Zero();
   TargetReporter reporter = RideOn(0.35, still, still);
   ASSERT_EQ(reporter.phase(), TargetPhase::kContact);
@@ -151,7 +151,7 @@ TEST(TargetReporterTest, ContactEndsWhenTheUavRises) {
   EXPECT_NEAR(report->position_in_body().z(), -2, 1e-9);
 }
 
-TEST(TargetReporterTest, RefusesOptionsThatAreNone) {
+TEST(TargetReporterTest, RefusesInvalidOptions) {
   TargetReporterOptions options;
   options.max_sigma_m = -1;
   EXPECT_THROW(MakeReporter(options), InputError);

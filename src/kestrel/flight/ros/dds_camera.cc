@@ -93,10 +93,10 @@ std::vector<RosTopic> DdsCamera::FindTopics() const {
 }
 
 bool DdsCamera::HasAll(const TopicChoice& chosen) const {
-  const bool asks_for_poses = chosen.pose || !chosen.transforms.empty();
+  const bool wants_poses = chosen.pose || !chosen.transforms.empty();
   const bool needs_info = !options_.camera && chosen.camera_info;
   return source_->has_images() && (source_->has_camera_info() || !needs_info) &&
-         (!asks_for_poses || (source_->has_poses() && mount()));
+         (!wants_poses || (source_->has_poses() && mount()));
 }
 
 void DdsCamera::RequireAll(const TopicChoice& chosen) const {

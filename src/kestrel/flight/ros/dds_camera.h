@@ -30,7 +30,7 @@ struct DdsCameraOptions {
 
 // Live images and poses from a system of ROS 2. The topics are found and read like those of a bag:
 // the image by name, raw or compressed; camera_info beside it; poses by type, or by tf; the mount
-// by tf. TopicSource says how they are read.
+// by tf. TopicSource describes how they are read.
 class DdsCamera : public LiveSource {
  public:
   // Waits for all topics. Throws InputError, with the topic and what exists instead, when there are
@@ -46,7 +46,8 @@ class DdsCamera : public LiveSource {
   const std::string& world_frame() const { return source_->world_frame(); }  // empty: no poses
   Duration to_stamps() const { return -source_->from_stamps(); }
 
-  // Leaves out broken messages and images out of order: error() says why, until a good one comes.
+  // Leaves out broken messages and images out of order: error() has the reason until a good one
+  // comes.
   std::optional<Event> Next(Duration timeout) override;
   std::string error() const override { return source_->error(); }
   CaptureCounters counters() const override { return source_->counters(); }

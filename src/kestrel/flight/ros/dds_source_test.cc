@@ -69,7 +69,7 @@ std::string ErrorOf(int domain, const std::string& uri) {
   }
 }
 
-TEST(DdsSource, NamesWhatIsMissing) {
+TEST(DdsSource, ReportsMissingTopics) {
   if (!Ros2Node::Knows(ImageMessage::kType)) GTEST_SKIP() << "no DDS";
   const int domain = TestDomain();
   Ros2Node node(domain, {"publisher"});

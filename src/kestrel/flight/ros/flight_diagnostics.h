@@ -30,7 +30,7 @@ class Rate {
   std::uint64_t count_ = 0;
 };
 
-// Returns a flight's state as ROS tells diagnostics. 'rate_hz': of the images.
+// Returns a flight's state as a ROS diagnostics message. 'rate_hz': of the images.
 DiagnosticStatusMessage DiagnosticsOf(const std::string& name, double rate_hz,
                                       const FlightReport& report, const ResultCounts& counts);
 

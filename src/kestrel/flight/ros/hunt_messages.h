@@ -26,8 +26,9 @@ MarkerArrayMessage MarkersOf(const HuntObservation& observation, const ObjectMod
 Detection3DArrayMessage TeamDetectionsOf(const TeamReport& team, const ObjectModel& model,
                                          const std::string& world_frame);
 
-// The same for RViz: bodies in their colours, with labels that also say which UAVs have an object
-// in their map and which one claims it: "red: one two, for two". They stay until the next map.
+// The same for RViz: bodies in their colours, with labels that also name the UAVs that have an
+// object in their map and which one claims it: "red: one two, for two". They stay until the next
+// map.
 MarkerArrayMessage TeamMarkersOf(const TeamReport& team, const ObjectModel& model,
                                  const std::string& world_frame);
 

@@ -30,7 +30,7 @@ MappedObject MappedDisc() {
 // The same disc in the maps of two UAVs, one of which claims it.
 TeamReport TeamsDisc() { return {kMapTime, {{MappedDisc(), {"one", "two"}, "two"}}}; }
 
-TEST(HuntMessages, TheTeamsMapIsOfOneTime) {
+TEST(HuntMessages, TeamMapHasOneTime) {
   const Detection3DArrayMessage map = TeamDetectionsOf(TeamsDisc(), DefaultObjectModel(), "map");
   EXPECT_EQ(map.header.stamp, kMapTime);
   EXPECT_EQ(map.header.frame_id, "map");
@@ -55,7 +55,7 @@ TEST(HuntMessages, TheTeamsMapIsOfOneTime) {
   EXPECT_NEAR(object.box.center.position.z, 0.006, 1e-12);
 }
 
-TEST(HuntMessages, AnObjectWithoutAClassHasABoxAndNoHypothesis) {
+TEST(HuntMessages, ObjectWithoutClassHasBoxAndNoHypothesis) {
   ObjectModel model = DefaultObjectModel();
   model.classes.clear();
   const Detection3DArrayMessage map = TeamDetectionsOf(TeamsDisc(), model, "map");
@@ -63,7 +63,7 @@ TEST(HuntMessages, AnObjectWithoutAClassHasABoxAndNoHypothesis) {
   EXPECT_TRUE(map.detections[0].results.empty());
 }
 
-TEST(HuntMessages, TheTeamsMarkersReplaceThoseBeforeAndSayWhoHasAnObjectAndWhoGoesForIt) {
+TEST(HuntMessages, TeamMarkersReplaceOldOnesAndNameOwners) {
   TeamReport team = TeamsDisc();
   team.objects.push_back(team.objects.front());
   team.objects.back().holder = "";

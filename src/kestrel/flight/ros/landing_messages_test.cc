@@ -22,7 +22,7 @@ TargetEstimate DrivingNorth() {
 }
 
 // REP 103 and nav_msgs/Odometry: the pose is in the world, the twist in the target's frame.
-TEST(LandingMessages, TheTrackIsHeadedWhereItDrives) {
+TEST(LandingMessages, TrackPointsInDirectionOfMotion) {
   const OdometryMessage track = TrackOf(DrivingNorth(), "map", "target");
   EXPECT_EQ(track.header.frame_id, "map");
   EXPECT_EQ(track.header.stamp, kTrackTime);
@@ -35,14 +35,14 @@ TEST(LandingMessages, TheTrackIsHeadedWhereItDrives) {
   EXPECT_NEAR(track.twist.twist.angular.z, 0.3, 1e-9);
 }
 
-TEST(LandingMessages, TheTrackHasTheCovariancesOfItsFrames) {
+TEST(LandingMessages, TrackHasCovariancesInItsFrames) {
   const OdometryMessage track = TrackOf(DrivingNorth(), "map", "target");
   const auto pose = [&](int row, int column) { return track.pose.covariance[6 * row + column]; };
   const auto twist = [&](int row, int column) { return track.twist.covariance[6 * row + column]; };
   EXPECT_EQ(pose(0, 0), 1);
   EXPECT_EQ(pose(2, 2), 3);
   EXPECT_GT(pose(3, 3), 3);                             // roll is not known
-  EXPECT_NEAR(pose(5, 5), std::pow(0.2 / 2, 2), 1e-9);  // of the velocity's direction
+  EXPECT_NEAR(pose(5, 5), std::pow(0.2 / 2, 2), 1e-9);  // variance of the velocity's direction
   EXPECT_NEAR(twist(0, 0), 0.01, 1e-9);                 // along
   EXPECT_NEAR(twist(1, 1), 0.04, 1e-9);                 // across
   EXPECT_NEAR(twist(5, 5), 0.16, 1e-9);
@@ -50,13 +50,13 @@ TEST(LandingMessages, TheTrackHasTheCovariancesOfItsFrames) {
   EXPECT_NEAR(twist(5, 1), -0.05, 1e-9);
 }
 
-TEST(LandingMessages, OfATargetThatStandsTheHeadingIsNotKnown) {
+TEST(LandingMessages, StandingTargetHasUnknownHeading) {
   TargetEstimate target = DrivingNorth();
   target.motion.mean.segment<3>(TurnState::kVelocity).setZero();
   EXPECT_GT(TrackOf(target, "map", "target").pose.covariance[35], 3);
 }
 
-TEST(LandingMessages, ADetectionSaysWhichPadItIs) {
+TEST(LandingMessages, DetectionNamesPad) {
   LandingObservation observation;
   LandingDetection detection{};
   observation.report.detection = detection;
@@ -66,7 +66,7 @@ TEST(LandingMessages, ADetectionSaysWhichPadItIs) {
   EXPECT_EQ(DetectionsOf(observation, "camera", shape).detections.at(0).id, "12");
 }
 
-TEST(LandingMessages, NothingFoundIsAnEmptyListAndDeletesTheMarker) {
+TEST(LandingMessages, MissGivesEmptyListAndDeletesMarker) {
   LandingObservation observation;
   observation.time = kTrackTime;
   const auto detections = DetectionsOf(observation, "camera", ShapeOf(LandingPattern()));

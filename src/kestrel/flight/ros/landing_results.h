@@ -24,10 +24,10 @@ struct LandingResultsOptions {
   std::string target_frame;
   bool publish_tf = true;
   bool apriltag_topics = false;
-  Duration horizon{};  // of the prediction
+  Duration horizon{};  // how far the prediction reaches
   Duration step{};     // between its poses, above 0
   TargetShape shape;
-  TurnNoise noise;  // of the track's motion
+  TurnNoise noise;  // noise of the track's motion
 };
 
 // Publishes the results of the landing pipeline for a frame. Messages for display are made only

@@ -12,7 +12,7 @@ TransformStampedMessage Shift(const std::string& parent, const std::string& chil
   return {{0, kTransformTime, parent}, child, {{x, 0, 0}, {}}};
 }
 
-TEST(LiveTransforms, TellTheMountOverFramesThatStandStill) {
+TEST(LiveTransforms, FindMountThroughStaticFrames) {
   LiveTransforms transforms;
   transforms.Add(Shift("base_link", "gimbal", 1), /*is_static=*/true);
   transforms.Add(Shift("gimbal", "camera", 2), /*is_static=*/true);
@@ -23,7 +23,7 @@ TEST(LiveTransforms, TellTheMountOverFramesThatStandStill) {
   EXPECT_FALSE(transforms.Fixed("base_link", "camera"));
 }
 
-TEST(LiveTransforms, TellThePoseWithTheFrameThatMoves) {
+TEST(LiveTransforms, FindPoseOnUpdateOfMovingFrame) {
   LiveTransforms transforms;
   const auto odometry = Shift("odom", "footprint", 5);
   transforms.Add(Shift("footprint", "base_link", 1), /*is_static=*/true);
@@ -37,7 +37,7 @@ TEST(LiveTransforms, TellThePoseWithTheFrameThatMoves) {
   EXPECT_EQ(in_root->sample.world_from_body.translation.x(), 16);
 }
 
-TEST(LiveTransforms, FramesThatAreEachOthersParentsHaveNoPose) {
+TEST(LiveTransforms, GiveNoPoseForCyclicFrames) {
   LiveTransforms transforms;
   transforms.Add(Shift("a", "b", 1), /*is_static=*/true);
   transforms.Add(Shift("b", "a", 1), /*is_static=*/true);

@@ -64,7 +64,7 @@ class RosResults {
   void PublishBody(const std::optional<RigidTransform>& world_from_camera, Time stamp);
 
   std::mutex mutex_;  // guards all but the connection
-  std::string name_;  // of the node
+  std::string name_;  // node name
   bool publish_tf_;
   RosFrames frames_;
   std::optional<RigidTransform> body_from_camera_;

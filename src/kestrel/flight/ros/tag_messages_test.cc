@@ -74,8 +74,8 @@ class TagMessagesTest : public ::testing::Test {
   const RigidTransform pose_ = BoardBelow(2.5, {0.2, -0.1}, Radians(50), {0.2, -0.1, 0});
 };
 
-// Messages for listeners have what libapriltag says of the same image.
-TEST_F(TagMessagesTest, CornersAndHomographyAreThoseOfLibapriltag) {
+// Messages for listeners match libapriltag's results for the same image.
+TEST_F(TagMessagesTest, CornersAndHomographyMatchLibapriltag) {
   const TagBoard board = BoardOf({7});
   const cv::Mat image = ImageOf(board);
   const TagArrayMessage message =
@@ -119,7 +119,7 @@ TEST_F(TagMessagesTest, CornersAndHomographyAreThoseOfLibapriltag) {
   EXPECT_LT((mapped(own, 0.5, -1) - mapped(theirs, 0.5, -1)).norm(), kNear);
 }
 
-TEST_F(TagMessagesTest, TransformsHaveThePosesOfTheTags) {
+TEST_F(TagMessagesTest, TransformsHavePosesOfTags) {
   const TagBoard board = BoardOf({7, 3});
   const LandingObservation observation = Seen(board);
   ASSERT_TRUE(observation.report.detection);
@@ -135,7 +135,7 @@ TEST_F(TagMessagesTest, TransformsHaveThePosesOfTheTags) {
   EXPECT_NEAR(std::abs(transforms[1].transform.rotation.w), std::abs(second.rotation.w()), 0.02);
 }
 
-TEST_F(TagMessagesTest, NothingFoundIsAnEmptyList) {
+TEST_F(TagMessagesTest, MissGivesEmptyList) {
   const TagBoard board = BoardOf({7});
   LandingObservation observation;
   observation.time = kTaken;
@@ -158,7 +158,7 @@ class Published final : public ResultConnection {
   std::set<ResultTopic> topics;
 };
 
-TEST_F(TagMessagesTest, AreOnTheTopicOfTheNodeWhenAskedFor) {
+TEST_F(TagMessagesTest, ArePublishedOnRequest) {
   const TagBoard board = BoardOf({7});
   const LandingObservation observation = Seen(board);
   const auto topics_of = [&](bool asked) {

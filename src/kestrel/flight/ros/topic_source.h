@@ -91,7 +91,7 @@ class TopicSource : public LiveSource {
   std::string image_topic_;
   std::string camera_frame_;
   std::string world_frame_;
-  std::string body_frame_;  // as the poses say
+  std::string body_frame_;  // as named by the poses
   std::optional<Duration> from_stamps_;
   std::optional<Time> newest_image_;  // stamps
   std::optional<Time> newest_pose_;

@@ -67,7 +67,7 @@ class TopicSourceTest : public ::testing::Test {
   TopicSource source_{TopicSourceOptions{.body_frame = "base_link"}};
 };
 
-TEST_F(TopicSourceTest, BeforeItBeginsOnlyTheNewestImageIsKept) {
+TEST_F(TopicSourceTest, KeepsNewestImageOnlyBeforeStart) {
   TakeImage(kStamp);
   TakeImage(kStamp + milliseconds(50));
   source_.Begin(camera_);
@@ -79,7 +79,7 @@ TEST_F(TopicSourceTest, BeforeItBeginsOnlyTheNewestImageIsKept) {
   EXPECT_EQ(source_.counters().refused, 1);
 }
 
-TEST_F(TopicSourceTest, ImagesOfAnotherSizeAreRefused) {
+TEST_F(TopicSourceTest, RefusesImagesOfAnotherSize) {
   TakeImage(kStamp, /*width=*/16);
   source_.Begin(camera_);
   EXPECT_FALSE(source_.Next(Duration::zero()));
@@ -112,7 +112,7 @@ TEST_F(TopicSourceTest, RefusesStampsThatJumpBack) {
   EXPECT_THAT(ErrorOf([&] { TakeImage(kStamp); }), HasSubstr("jump back: start again"));
 }
 
-TEST(TopicSource, StampsThatAreNotOfNowCountFromTheFirstOneOn) {
+TEST(TopicSource, ShiftsOldStampsByFirstOne) {
   TopicSource source(TopicSourceOptions{.body_frame = "base_link"});
   const Time before = Now();
   for (const Duration later : {Duration::zero(), Duration(milliseconds(50))}) {
@@ -130,7 +130,7 @@ TEST(TopicSource, StampsThatAreNotOfNowCountFromTheFirstOneOn) {
   EXPECT_EQ(kStamp + source.from_stamps(), time);
 }
 
-TEST_F(TopicSourceTest, TheMountIsTheStaticTransformFromTheBody) {
+TEST_F(TopicSourceTest, TakesMountFromStaticTransformOfBody) {
   TakeImage(kStamp);
   EXPECT_FALSE(source_.Calibration()) << "no camera_info yet";
   Take(CameraInfoOf(camera_), "/camera_info");

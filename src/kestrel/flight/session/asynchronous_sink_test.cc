@@ -56,7 +56,7 @@ Observation ObservationOf(int number) {
   return {{std::to_string(number), Time(Duration(number)), {}}, LandingObservation()};
 }
 
-TEST(AsynchronousSinkTest, WritesAllThatItWasGivenInOrder) {
+TEST(AsynchronousSinkTest, WritesAllInOrder) {
   Written written;
   AsynchronousSink sink({.thread_name = "test", .frames = 8},
                         std::make_unique<TestWriter>(&written));
@@ -78,7 +78,7 @@ TEST(AsynchronousSinkTest, WritesAllThatItWasGivenInOrder) {
 }
 
 // When a disk or a network stalls, only the oldest frames are lost, and no caller waits.
-TEST(AsynchronousSinkTest, AWriterThatStallsHoldsNobodyUp) {
+TEST(AsynchronousSinkTest, StalledWriterDoesNotBlockCaller) {
   Written written;
   written.is_held = true;
   AsynchronousSink sink({.thread_name = "test", .frames = 4},
@@ -95,7 +95,7 @@ TEST(AsynchronousSinkTest, AWriterThatStallsHoldsNobodyUp) {
   EXPECT_EQ(written.frames.back(), 99);
 }
 
-TEST(AsynchronousSinkTest, KeepsNoFrameThatNobodyWants) {
+TEST(AsynchronousSinkTest, KeepsNoUnwantedFrame) {
   Written written;
   written.is_wanted = false;
   AsynchronousSink sink({.thread_name = "test"}, std::make_unique<TestWriter>(&written));
@@ -122,7 +122,7 @@ class NotedSink : public ObservationSink {
   std::vector<int>& ended_;
 };
 
-TEST(ObservationSinksTest, EndInTheOppositeOrder) {
+TEST(ObservationSinksTest, EndInReverseOrder) {
   std::vector<int> ended;
   {
     ObservationSinks sinks;

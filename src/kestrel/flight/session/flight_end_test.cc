@@ -8,7 +8,7 @@
 namespace kestrel {
 namespace {
 
-TEST(FlightEndTest, EachEndHasItsWordsAndItsStatus) {
+TEST(FlightEndTest, EachEndHasTextAndExitStatus) {
   struct Case {
     FlightEnd end;
     const char* words;
@@ -54,7 +54,7 @@ TEST(FlightEndTest, EachEndHasItsWordsAndItsStatus) {
   }
 }
 
-TEST(FlightEndTest, ATableHasOneRow) {
+TEST(FlightEndTest, TableHasOneRow) {
   EXPECT_EQ(FlightEndCsv({FlightOutcome::kBesidePattern, 10.83}),
             "end,offset_m,words,heading_error_deg,offset_is\n"
             "beside pattern,10.8300,\"landed 10.8 m beside the pattern (estimated)\",,estimated\n");
@@ -67,7 +67,7 @@ TEST(FlightEndTest, ATableHasOneRow) {
       "1.25,estimated\n");
 }
 
-TEST(FlightEndTest, AHeadingThatIsRightHasNoSign) {
+TEST(FlightEndTest, PrintsZeroHeadingErrorWithoutSign) {
   const FlightEnd end{FlightOutcome::kOnPattern, 0.05, {}, Radians(-0.004)};
   EXPECT_EQ(InWords(end), "landed 0.05 m from the centre (estimated), heading off by 0.0 degrees");
   EXPECT_NE(FlightEndCsv(end).find(",0.00,"), std::string::npos) << FlightEndCsv(end);

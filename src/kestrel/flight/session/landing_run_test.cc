@@ -40,7 +40,7 @@ LandingRun RunWith(double focal_px, std::optional<double> altitude_m, bool is_st
 
 constexpr double kFocal_px = 400;  // of the camera that takes the images
 
-TEST(LandingRun, SaysThatTheGivenAltitudeIsWrong) {
+TEST(LandingRun, WarnsOfWrongAltitude) {
   const cv::Mat image = DrawPattern(CameraModel(Camera(kFocal_px)), LandingPattern(),
                                     {Eigen::Quaterniond(0, 1, 0, 0), {0.3, 0.2, 3}});
   const auto warning = [&](double altitude_m) {
@@ -55,12 +55,12 @@ TEST(LandingRun, SaysThatTheGivenAltitudeIsWrong) {
   EXPECT_EQ(warning(3), "");
 }
 
-TEST(LandingRun, RefusesAnAltitudeInMillimetres) {
+TEST(LandingRun, RefusesAltitudeInMillimetres) {
   EXPECT_THAT(InputErrorOf([] { RunWith(kFocal_px, 1500, /*is_still=*/false); }),
               HasSubstr("altitude_m is 1500, expected metres: 1.5?"));
 }
 
-TEST(LandingRun, RemarksThatTheLensIsAnother) {
+TEST(LandingRun, ReportsDifferentLens) {
   Random random(1);
   std::vector<cv::Mat> images;
   for (int i = 0; i < 30; ++i) {

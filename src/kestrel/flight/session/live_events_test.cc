@@ -28,7 +28,7 @@ std::string InWords(const Event& event) {
   return "end";
 }
 
-TEST(LiveEvents, AFrameWaitsForThePoseAfterIt) {
+TEST(LiveEvents, FrameWaitsForNextPose) {
   LiveEvents events({.pose_wait_s = 1}, milliseconds(5));
   events.Push(EmptyFrame(20));
   events.Push(UnitPose(10));
@@ -45,7 +45,7 @@ TEST(LiveEvents, AFrameWaitsForThePoseAfterIt) {
   EXPECT_EQ(events.counters().unposed_frames, 0u);
 }
 
-TEST(LiveEvents, AFrameWaitsNoLongerThanAsked) {
+TEST(LiveEvents, FrameWaitsUntilTimeout) {
   LiveEvents events({.pose_wait_s = 0.02}, Duration::zero());
   events.Push(UnitPose(10));
   const Time start = Now();
@@ -57,7 +57,7 @@ TEST(LiveEvents, AFrameWaitsNoLongerThanAsked) {
 }
 
 // Over a slow link every pose comes 250 ms late.
-TEST(LiveEvents, AFrameWaitsForPosesThatAreAlwaysLate) {
+TEST(LiveEvents, FrameWaitsForConstantlyLatePoses) {
   LiveEvents events({.pose_wait_s = 0.2}, Duration::zero());
   events.Push(PoseSample{Now() - milliseconds(250), {}});
   events.Next();
@@ -73,7 +73,7 @@ TEST(LiveEvents, AFrameWaitsForPosesThatAreAlwaysLate) {
   EXPECT_EQ(events.counters().unposed_frames, 0u);
 }
 
-TEST(LiveEvents, TheNewestFrameWinsWhileTheReaderIsBusy) {
+TEST(LiveEvents, KeepsNewestFrameWhileReaderIsBusy) {
   LiveEvents events({.pose_wait_s = 1}, Duration::zero());
   for (int ms = 0; ms < 100; ms += 10) events.Push(EmptyFrame(ms));
   events.Push(UnitPose(200));
@@ -82,7 +82,7 @@ TEST(LiveEvents, TheNewestFrameWinsWhileTheReaderIsBusy) {
   EXPECT_EQ(events.counters().dropped_frames, 9u);
 }
 
-TEST(LiveEvents, FramesWhosePosesComeTogetherAreAllGivenOut) {
+TEST(LiveEvents, DeliversAllFramesWhosePosesArriveTogether) {
   LiveEvents events({.pose_wait_s = 1}, Duration::zero());
   events.Push(UnitPose(-10));
   EXPECT_EQ(InWords(events.Next()), "p-10") << "the reader is there";
@@ -97,7 +97,7 @@ TEST(LiveEvents, FramesWhosePosesComeTogetherAreAllGivenOut) {
 }
 
 // Otherwise poses that are later than the next frame would let no frame through.
-TEST(LiveEvents, NewerFramesDoNotReplaceTheOneThatWaits) {
+TEST(LiveEvents, NewerFramesDoNotReplaceWaitingOne) {
   LiveEvents events({.pose_wait_s = 1}, Duration::zero());
   for (int ms = 0; ms < 200; ms += 10) events.Push(EmptyFrame(ms));
   events.Push(UnitPose(5));
@@ -110,7 +110,7 @@ TEST(LiveEvents, NewerFramesDoNotReplaceTheOneThatWaits) {
   EXPECT_EQ(events.counters().dropped_frames, 18u);
 }
 
-TEST(LiveEvents, EndsAtOnceWhenItIsClosed) {
+TEST(LiveEvents, EndsAtOnceWhenClosed) {
   LiveEvents events({}, Duration::zero());
   std::thread closer([&] {
     std::this_thread::sleep_for(milliseconds(10));
@@ -121,14 +121,14 @@ TEST(LiveEvents, EndsAtOnceWhenItIsClosed) {
   closer.join();
 }
 
-TEST(LiveEvents, TooManyPosesDropTheOldest) {
+TEST(LiveEvents, DropsOldestOfTooManyPoses) {
   LiveEvents events({}, Duration::zero());
   for (int ms = 0; ms < 300; ++ms) events.Push(UnitPose(ms));
   EXPECT_EQ(events.counters().dropped_poses, 300u - 256u);
   EXPECT_EQ(InWords(events.Next()), "p44");
 }
 
-TEST(LiveEvents, RefusesAWaitThatIsNone) {
+TEST(LiveEvents, RefusesInvalidWait) {
   EXPECT_THROW(LiveEvents({.pose_wait_s = -1}, Duration::zero()), InputError);
 }
 

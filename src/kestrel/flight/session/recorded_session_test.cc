@@ -85,20 +85,20 @@ class RecordedSessionTest : public ::testing::Test {
   FrameNames sink_;
 };
 
-TEST_F(RecordedSessionTest, AFrameComesAfterThePosesThatItNeeds) {
+TEST_F(RecordedSessionTest, FrameFollowsPosesItNeeds) {
   EXPECT_TRUE(RunRecording(opened_, &vision_, &sink_, [](std::size_t) { return true; }));
   EXPECT_THAT(vision_.log, ElementsAre("pose 5", "pose 15", "frame 1", "pose 25", "frame 2",
                                        "frame 3", "finish"));
   EXPECT_THAT(sink_.names, ElementsAre("frame 1", "frame 2", "frame 3"));
 }
 
-TEST_F(RecordedSessionTest, StopsBeforeTheNextFrame) {
+TEST_F(RecordedSessionTest, StopsBeforeNextFrame) {
   EXPECT_FALSE(RunRecording(opened_, &vision_, &sink_, [](std::size_t done) { return done < 2; }));
   EXPECT_THAT(sink_.names, ElementsAre("frame 1", "frame 2"));
   EXPECT_NE(vision_.log.back(), "finish");
 }
 
-TEST_F(RecordedSessionTest, NamesTheFrameOfAnotherSize) {
+TEST_F(RecordedSessionTest, ReportsFrameOfAnotherSize) {
   source_->width_px = kWidth_px + 1;
   const std::string error = InputErrorOf(
       [&] { RunRecording(opened_, &vision_, &sink_, [](std::size_t) { return true; }); });
@@ -106,7 +106,7 @@ TEST_F(RecordedSessionTest, NamesTheFrameOfAnotherSize) {
   EXPECT_TRUE(sink_.names.empty());
 }
 
-TEST_F(RecordedSessionTest, ASinkThatFailsEndsIt) {
+TEST_F(RecordedSessionTest, FailingSinkEndsSession) {
   struct FullDisk : ObservationSink {
     void Take(const Observation&) override { throw InputError("the disk is full"); }
   };

@@ -141,13 +141,13 @@ BagPoses ReadPoses(BagReader* bag, const TopicChoice& topics, const std::string&
   const std::string pose_name = topics.pose ? NameOfTopic(*bag, *topics.pose, path) : "";
   FrameTree tree;
   PoseList poses(use_arrival_times, pose_name);
-  std::string told_body;
+  std::string pose_body;
   bag->Select(selected);
   for (BagMessage message; bag->Next(&message);) {
     const RosTopic& topic = bag->topics()[message.topic];
     if (message.topic == topics.pose) {
       const StampedPose pose = ParsePose(topic.type, message.data, topic.wire_format, pose_name);
-      if (told_body.empty()) told_body = FrameName(pose.body);
+      if (pose_body.empty()) pose_body = FrameName(pose.body);
       poses.Add(pose.stamp, message.arrival, pose.pose, pose.twist);
     } else {
       const std::string name = NameOfTopic(*bag, message.topic, path);
@@ -160,7 +160,7 @@ BagPoses ReadPoses(BagReader* bag, const TopicChoice& topics, const std::string&
 
   BagPoses result;
   const std::string camera = FrameName(camera_frame);
-  const std::string body = FindBody(tree, told_body, camera);
+  const std::string body = FindBody(tree, pose_body, camera);
   if (!camera.empty() && tree.Has(camera) && body != camera) {
     result.body_from_camera = tree.Fixed(body, camera);
   }

@@ -17,7 +17,7 @@ namespace kestrel {
 // The poses of the UAV in a bag, and the mount of the camera.
 struct BagPoses {
   std::vector<PoseSample> poses;                   // in order of time, all different
-  std::optional<RigidTransform> body_from_camera;  // if tf tells it
+  std::optional<RigidTransform> body_from_camera;  // if tf has it
   std::string remark;                              // what was left out, in one line; else empty
 };
 

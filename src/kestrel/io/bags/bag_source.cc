@@ -144,7 +144,7 @@ bool BagSource::ReadMessage(ReadFrame* read) {
   return true;
 }
 
-void BagSource::TellWhatIsMissing() const {
+void BagSource::ReportMissing() const {
   if (!bag_->damage().empty()) Tell(bag_->damage());
   if (repeated_ == 0) return;
   Tell(fmt::format(
@@ -157,7 +157,7 @@ bool BagSource::ReadNext(Frame* frame) {
     ReadFrame read;
     if (!ReadMessage(&read)) {
       has_ended_ = true;
-      TellWhatIsMissing();
+      ReportMissing();
       break;
     }
     const Time time = read.frame.time;

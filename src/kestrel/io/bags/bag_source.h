@@ -21,7 +21,7 @@ namespace kestrel {
 // "camera/image_raw/1403636579763555584".
 class BagSource : public FrameSource {
  public:
-  // Throws InputError that says what is wrong with the bag: broken, no images, several cameras, no
+  // Throws InputError with the fault of the bag: broken, no images, several cameras, no
   // stamps.
   BagSource(const std::string& path, BagChoice choice);
 
@@ -37,7 +37,7 @@ class BagSource : public FrameSource {
  private:
   std::string NameOf(std::size_t topic) const;
   void Tell(const std::string& text) const;
-  void TellWhatIsMissing() const;
+  void ReportMissing() const;
   void ReadCameraInfo();
   std::string ReadFirstImages();
   // An image of the bag; one that cannot be read has a fault in its place.
@@ -64,7 +64,7 @@ class BagSource : public FrameSource {
 
   std::vector<ReadFrame> waiting_;  // in order of time
   bool has_ended_ = false;
-  Time newest_;  // of all that have been read
+  Time newest_;  // newest time that has been read
   std::optional<Time> last_time_;
   std::size_t repeated_ = 0;  // or too late
 };

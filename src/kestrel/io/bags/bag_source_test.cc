@@ -71,7 +71,7 @@ TEST_P(EveryBag, HasImagesCalibrationMountAndPoses) {
   EXPECT_THAT(told, IsEmpty());
 }
 
-TEST_P(EveryBag, ThatIsCutAnywhereIsReadUpToThereOrRefused) {
+TEST_P(EveryBag, IsReadUpToCutOrRefusedWhenTruncated) {
   const TestFolder folder;
   const std::string whole = folder / GetParam().file;
   WriteTestFlight(whole, 300, GetParam().compression);
@@ -109,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, EveryBag,
                            return name;
                          });
 
-TEST(BagSource, KeepsTheColorsBesideTheGray) {
+TEST(BagSource, KeepsColorsAlongWithGray) {
   const TestFolder folder;
   WriteTestFlight(folder / "flight.mcap", 3);
   BagSource source(folder / "flight.mcap", {});
@@ -121,7 +121,7 @@ TEST(BagSource, KeepsTheColorsBesideTheGray) {
 }
 
 // A cut removes only images that are not complete.
-TEST(BagSource, ReadsAllWholeImagesOfACutBag) {
+TEST(BagSource, ReadsAllCompleteImagesOfTruncatedBag) {
   const TestFolder folder;
   for (const char* name : {"flight.bag", "flight.mcap"}) {
     const std::string path = folder / name;
@@ -132,7 +132,7 @@ TEST(BagSource, ReadsAllWholeImagesOfACutBag) {
   }
 }
 
-TEST(BagSource, RefusesASqliteBagThatWasCutAnywhere) {
+TEST(BagSource, RefusesTruncatedSqliteBag) {
   const TestFolder folder;
   const std::string path = folder / "flight.db3";
   WriteTestFlight(path, 24);
@@ -143,7 +143,7 @@ TEST(BagSource, RefusesASqliteBagThatWasCutAnywhere) {
   }
 }
 
-TEST(BagSource, ReadsABagOfWhichTheEndWasFilledWithZeros) {
+TEST(BagSource, ReadsBagWithZeroFilledEnd) {
   const TestFolder folder;
   const std::string path = folder / "flight.bag";
   WriteTestFlight(path, 300);
@@ -155,7 +155,7 @@ TEST(BagSource, ReadsABagOfWhichTheEndWasFilledWithZeros) {
 }
 
 // The bags have several chunks, all with poses and images.
-TEST(BagSource, LeavesOutChunksThatAreDamaged) {
+TEST(BagSource, SkipsDamagedChunks) {
   const TestFolder folder;
   constexpr int kImages = 600;
   const BagKind kinds[] = {{"bz2.bag", Compression::kBz2},
@@ -186,7 +186,7 @@ TEST(BagSource, LeavesOutChunksThatAreDamaged) {
   }
 }
 
-TEST(BagSource, PutsImagesInTheOrderOfTheirStamps) {
+TEST(BagSource, SortsImagesByStamp) {
   const TestFolder folder;
   const std::string path = folder / "flight.mcap";
   TestBag bag(path);
@@ -198,7 +198,7 @@ TEST(BagSource, PutsImagesInTheOrderOfTheirStamps) {
   EXPECT_THAT(told, ElementsAre(HasSubstr("1 images with the stamp of another")));
 }
 
-TEST(BagSource, TakesArrivalTimesOnlyWhenAsked) {
+TEST(BagSource, UsesArrivalTimesOnRequestOnly) {
   const TestFolder folder;
   const std::string path = folder / "flight.bag";
   TestBag bag(path);
@@ -212,7 +212,7 @@ TEST(BagSource, TakesArrivalTimesOnlyWhenAsked) {
   EXPECT_THAT(ImagesOf(&source), ElementsAre(0, 1, 2));
 }
 
-TEST(BagSource, AsksWhichOfSeveralCameras) {
+TEST(BagSource, RequiresChoiceOfSeveralCameras) {
   const TestFolder folder;
   const std::string path = folder / "flight.bag";
   TestBag bag(path);
@@ -231,7 +231,7 @@ TEST(BagSource, AsksWhichOfSeveralCameras) {
   EXPECT_THAT(ImagesOf(&source), ElementsAre(2));
 }
 
-TEST(BagSource, TakesTheRawImagesWhereTheyAreCompressedToo) {
+TEST(BagSource, PrefersRawImagesOverCompressedOnes) {
   const TestFolder folder;
   const std::string path = folder / "flight.mcap";
   const std::string png = EncodePng(BagImage(4));
@@ -268,7 +268,7 @@ TEST(BagSource, TakesPosesAndMountFromTf) {
   EXPECT_FALSE(source.calibration());
 }
 
-TEST(BagSource, LeavesOutPosesThatAreNone) {
+TEST(BagSource, SkipsInvalidPoses) {
   const TestFolder folder;
   const std::string path = folder / "flight.bag";
   TestBag bag(path);
@@ -284,7 +284,7 @@ TEST(BagSource, LeavesOutPosesThatAreNone) {
   EXPECT_THAT(told, ElementsAre(HasSubstr("/pose: poses left out: 2")));
 }
 
-TEST(BagSource, SaysWhatIsWrongWithABag) {
+TEST(BagSource, ReportsFaultyBags) {
   const TestFolder folder;
   const auto error_of = [&](const std::string& path) {
     return InputErrorOf([&] { BagSource(path, {}); });
@@ -303,7 +303,7 @@ TEST(BagSource, SaysWhatIsWrongWithABag) {
                 "/pose (geometry_msgs/PoseStamped)");
 }
 
-TEST(BagSource, ReadsTheFolderOfABagInParts) {
+TEST(BagSource, ReadsFolderOfSplitBag) {
   const TestFolder folder;
   std::filesystem::create_directories(folder / "flight");
   for (int part = 0; part < 2; ++part) {
@@ -334,7 +334,7 @@ std::size_t ResidentBytes() {
   return pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
-TEST(BagSource, TakesTheMemoryOfAFewImagesOfABagOfAHundred) {
+TEST(BagSource, UsesMemoryOfFewImagesForLargeBag) {
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
   GTEST_SKIP() << "the sanitizer keeps what was freed";
@@ -357,7 +357,7 @@ TEST(BagSource, TakesTheMemoryOfAFewImagesOfABagOfAHundred) {
   }
 }
 
-TEST(OpenSourceOrBag, TellsThemApart) {
+TEST(OpenSourceOrBag, DistinguishesSourcesFromBags) {
   const TestFolder folder;
   WriteTestFlight(folder / "flight.bag", 2);
   const std::string image = WriteTestImage(folder, "a.png", BagImage(1));
@@ -374,7 +374,7 @@ TEST(OpenSourceOrBag, TellsThemApart) {
 
 // An image without pixels, one with too few bytes, one in an unknown encoding, and one without a
 // stamp.
-TEST(BagSource, LeavesOutImagesThatCannotBeRead) {
+TEST(BagSource, SkipsUnreadableImages) {
   const TestFolder folder;
   for (const char* name : {"flight.bag", "flight.mcap", "flight.db3"}) {
     const std::string path = folder / name;
@@ -401,7 +401,7 @@ TEST(BagSource, LeavesOutImagesThatCannotBeRead) {
   }
 }
 
-TEST(BagSource, LeavesOutCutFiles) {
+TEST(BagSource, SkipsTruncatedFiles) {
   const TestFolder folder;
   const std::string path = folder / "flight.bag";
   const std::string whole = EncodePng(BagImage(1)), cut = whole.substr(0, whole.size() / 2);
@@ -415,7 +415,7 @@ TEST(BagSource, LeavesOutCutFiles) {
   EXPECT_EQ(source.left_out(), 2u);
 }
 
-TEST(BagSource, SaysThatAnEmptyClosedBagHasNoImages) {
+TEST(BagSource, ReportsEmptyClosedBag) {
   const TestFolder folder;
   for (const char* name : {"empty.bag", "empty.mcap", "empty.db3"}) {
     const std::string path = folder / name;

@@ -80,7 +80,7 @@ std::string WrongCamera(const TestFolder& folder, const Change& change) {
   return folder / "flight.mcap";
 }
 
-// Returns a bag whose header says that it is encrypted, as `rosbag encrypt` does.
+// Returns a bag whose header declares it encrypted, as `rosbag encrypt` does.
 std::string EncryptedBag(const TestFolder& folder) {
   std::string header;
   PutText("op=\3", &header);
@@ -352,7 +352,7 @@ const BrokenBag kBrokenBags[] = {
      "'compression_format' is 'a?b', expected zstd"},
 };
 
-TEST(BrokenBags, AreSaidInOneLine) {
+TEST(BrokenBags, AreReportedInOneLine) {
   for (const BrokenBag& broken : kBrokenBags) {
     const TestFolder folder;
     const std::string path = broken.make(folder);

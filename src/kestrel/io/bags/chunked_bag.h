@@ -33,7 +33,7 @@ class ChunkedBag : public BagReader {
     std::uint64_t stored_size = 0;
     Compression compression = Compression::kNone;
     std::optional<std::uint64_t> size;  // decompressed; unknown if the chunk was not finished
-    std::uint32_t checksum = 0;         // of the records; 0 if there is none
+    std::uint32_t checksum = 0;         // checksum of the records; 0 if there is none
     // In a damaged bag: end of the records that can be trusted.
     std::optional<std::uint64_t> records_end;
     // Topics (indices) of its messages, if has_topics.
@@ -50,7 +50,7 @@ class ChunkedBag : public BagReader {
   bool IsWanted(std::size_t topic) const { return is_wanted_[topic]; }
 
   // Returns the records of a chunk, decompressed if necessary; valid until the next call. Throws
-  // InputError when they cannot be decompressed, whatever the checksum says.
+  // InputError when they cannot be decompressed, even if the checksum is right.
   ByteSource* OpenChunk(const Chunk& chunk);
 
   // Returns the index of the topic with this name and type; adds it when it is new.

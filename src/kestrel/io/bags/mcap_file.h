@@ -61,18 +61,18 @@ class McapFile {
   std::string Statistics() const;
 
   GrowingFile file_;
-  std::uint32_t checksum_ = 0;  // of everything in the file
+  std::uint32_t checksum_ = 0;  // checksum of the whole file so far
   Compression compression_;
   std::vector<std::string> channels_;    // the records of schema and channel
   std::vector<std::uint64_t> messages_;  // by channel
   bool has_messages_ = false;
   std::vector<bool> is_announced_;  // in some chunk; by channel
   std::vector<std::string> chunk_indexes_;
-  std::int64_t first_time_ = 0;  // of all messages
+  std::int64_t first_time_ = 0;  // time of the first message
   std::int64_t last_time_ = 0;
 
   std::string chunk_;
-  std::map<std::uint16_t, MessageIndex> index_;  // of the present chunk, by channel
+  std::map<std::uint16_t, MessageIndex> index_;  // index of the current chunk, by channel
   std::int64_t chunk_first_time_ = 0;
   std::int64_t chunk_last_time_ = 0;
 };

@@ -67,7 +67,7 @@ std::vector<std::string> Numbers(int count) {
   return texts;
 }
 
-TEST(McapFileTest, ItsMessagesAreReadAgain) {
+TEST(McapFileTest, MessagesRoundTrip) {
   const TestFolder folder;
   for (const Compression compression : {Compression::kNone, Compression::kZstd}) {
     const std::string path = folder / fmt::format("{}.mcap", static_cast<int>(compression));
@@ -83,7 +83,7 @@ TEST(McapFileTest, ItsMessagesAreReadAgain) {
 }
 
 // During writing at most one second is missing from the file: as much as a crash would lose.
-TEST(McapFileTest, AChunkIsASecondAtMost) {
+TEST(McapFileTest, ChunksLastAtMostOneSecond) {
   const TestFolder folder;
   const std::vector<std::uint64_t> sizes = WriteNumbers(folder / "a.mcap", 40, false);
   std::size_t last_growth = 0;
@@ -94,7 +94,7 @@ TEST(McapFileTest, AChunkIsASecondAtMost) {
   EXPECT_GT(last_growth, 30u);
 }
 
-TEST(McapFileTest, CutAtAnyByteItIsReadUpToTheCut) {
+TEST(McapFileTest, ReadsFileTruncatedAtAnyByteUpToCut) {
   const TestFolder folder;
   for (const Compression compression : {Compression::kNone, Compression::kZstd}) {
     const std::string whole = folder / "whole.mcap";
@@ -182,14 +182,14 @@ std::string WithoutChecksums(std::string bytes) {
   return bytes;
 }
 
-// Replaces the footer by one that says that there is no summary.
+// Replaces the footer by one that declares no summary.
 std::string WithoutSummary(std::string bytes) {
   constexpr std::size_t kFooterAndMagic = 20 + 8;
   return bytes.replace(bytes.size() - kFooterAndMagic, 8, 8, '\0');
 }
 
 // The second chunk has the messages 5 to 9.
-TEST(McapFileTest, AChunkWithAWrongChecksumIsLeftOut) {
+TEST(McapFileTest, SkipsChunkWithWrongChecksum) {
   const TestFolder folder;
   WriteNumbers(folder / "whole.mcap", 14, true);
   std::vector<std::string> others;
@@ -209,7 +209,7 @@ TEST(McapFileTest, AChunkWithAWrongChecksumIsLeftOut) {
   EXPECT_THAT(ReadMessages(unchecked), Contains("massage 7"));
 }
 
-TEST(McapFileTest, ASummaryWithAWrongChecksumIsNotUsed) {
+TEST(McapFileTest, IgnoresSummaryWithWrongChecksum) {
   const TestFolder folder;
   WriteNumbers(folder / "whole.mcap", 14, true);
   std::string bytes = ReadFile(folder / "whole.mcap");
@@ -224,7 +224,7 @@ TEST(McapFileTest, ASummaryWithAWrongChecksumIsNotUsed) {
 }
 
 // This protects chunks without a checksum of their own.
-TEST(McapFileTest, TheChecksumOfAllIsCheckedWhereTheFileIsReadThrough) {
+TEST(McapFileTest, ChecksDataChecksumOnSequentialRead) {
   const TestFolder folder;
   WriteNumbers(folder / "whole.mcap", 14, true);
   const std::string unchecked = WithoutSummary(WithoutChecksums(ReadFile(folder / "whole.mcap")));
@@ -233,7 +233,7 @@ TEST(McapFileTest, TheChecksumOfAllIsCheckedWhereTheFileIsReadThrough) {
   EXPECT_THAT(ReadMessages(path), ElementsAreArray(Numbers(14)));
 }
 
-TEST(McapFileTest, AFileThatIsThereIsKept) {
+TEST(McapFileTest, KeepsExistingFile) {
   const TestFolder folder;
   const std::string path = folder.Write("a.mcap", "mine");
   EXPECT_THROW(McapFile(path, {.name = UnfinishedName::kOwn}), InputError);

@@ -34,7 +34,7 @@ WireFormat WireFormatOf(std::string_view message_encoding, std::string_view sche
 
 struct McapReader::Record {
   std::uint8_t opcode = 0;
-  std::uint64_t offset = 0;          // of the record
+  std::uint64_t offset = 0;          // start of the record
   std::uint64_t content_offset = 0;  // both in the source of the record
   std::uint64_t content_size = 0;
   std::string name;

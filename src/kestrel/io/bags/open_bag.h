@@ -12,7 +12,7 @@ namespace kestrel {
 // .db3, or a folder with metadata.yaml of rosbag2 or with such files.
 bool IsBag(const std::string& path);
 
-// Returns a reader for the bag. Throws InputError that says what is wrong with it.
+// Returns a reader for the bag. Throws InputError with its fault.
 std::unique_ptr<BagReader> OpenBag(const std::string& path);
 
 }  // namespace kestrel

@@ -23,8 +23,8 @@ CameraIntrinsics AssumeLens(RecordingChoice choice, std::string* first_image) {
   return AssumedLens(first.image.cols, first.image.rows, fov_deg);
 }
 
-// Says what is assumed of the lens, and how to know it.
-void TellAssumption(const RecordingChoice& choice) {
+// Reports the assumed lens, and how to calibrate it.
+void ReportAssumption(const RecordingChoice& choice) {
   if (!choice.bag.tell) return;
   choice.bag.tell(
       choice.fov_deg
@@ -46,7 +46,7 @@ CameraCalibration KnownCalibration(const FrameSource& source, const RecordingCho
         "sensor.yaml, Kalibr camchain.yaml, ROS camera_info YAML, OpenCV YAML or XML); `kestrel "
         "calibrate lens` makes one");
   }
-  TellAssumption(choice);
+  ReportAssumption(choice);
   CameraCalibration assumed;
   assumed.intrinsics = AssumeLens(choice, first_image);
   return assumed;
@@ -79,9 +79,9 @@ std::unique_ptr<FrameSource> OpenFrames(const RecordingChoice& choice) {
   auto source = OpenSourceOrBag(choice.sources, choice.format, choice.bag);
   if (!choice.bag.tell) return source;
   source->set_on_broken([tell = choice.bag.tell, told = 0](const BrokenImage& broken) mutable {
-    constexpr int kMostTold = 3;
-    if (told < kMostTold) tell(fmt::format("an image is left out: {}", broken.what()));
-    if (told++ == kMostTold) tell("further images are left out");
+    constexpr int kMostReported = 3;
+    if (told < kMostReported) tell(fmt::format("an image is left out: {}", broken.what()));
+    if (told++ == kMostReported) tell("further images are left out");
   });
   return source;
 }

@@ -55,7 +55,7 @@ void WriteEurocFlight(const TestFolder& folder) {
 
 class ThereAndBack : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(ThereAndBack, ARecordingIsTheSame) {
+TEST_P(ThereAndBack, RecordingIsUnchanged) {
   const TestFolder folder;
   WriteEurocFlight(folder);
   const std::string bag = folder / GetParam();
@@ -79,7 +79,7 @@ INSTANTIATE_TEST_SUITE_P(Bags, ThereAndBack,
                          ::testing::Values("flight.bag", "flight.mcap", "flight.db3"),
                          [](const auto& name) { return std::string(name.param).substr(7); });
 
-TEST(NewRecording, ReplacesNothingUnasked) {
+TEST(NewRecording, ReplacesNothingWithoutRequest) {
   const TestFolder folder;
   for (const char* name : {"flight.bag", "flight.mcap", "flight.db3"}) {
     const std::string path = folder.Write(name, "precious");
@@ -92,7 +92,7 @@ TEST(NewRecording, ReplacesNothingUnasked) {
   }
 }
 
-TEST(NewRecording, ReplacesAFolderAsAWhole) {
+TEST(NewRecording, ReplacesFolderAsWhole) {
   const TestFolder folder;
   WriteEurocFlight(folder);
   const std::string old_image = folder.Write("old/mav0/cam0/data/1.png", "old");
@@ -114,7 +114,7 @@ TEST(NewRecording, ReplacesAFolderAsAWhole) {
               HasSubstr("is no recording, and not empty"));
 }
 
-TEST(NewRecording, SaysWhichCompressionsThereAre) {
+TEST(NewRecording, ReportsSupportedCompressions) {
   const TestFolder folder;
   for (const char* name : {"flight.bag", "flight.db3"}) {
     EXPECT_THAT(InputErrorOf([&] { NewRecording(folder / name, {}, Compression::kZstd, false); }),

@@ -22,7 +22,7 @@ constexpr std::uint8_t kChunk = 5;
 constexpr std::uint8_t kChunkInfo = 6;
 constexpr std::uint8_t kConnection = 7;
 
-constexpr std::uint32_t kMaxHeader = 1 << 20;  // of a record; some have a message's definition
+constexpr std::uint32_t kMaxHeader = 1 << 20;  // bytes; a message's definition takes most
 
 // The fields "name=value" of a record's header, or of a connection's data.
 class Fields {
@@ -69,7 +69,7 @@ Time TimeOfField(std::uint64_t field) {
 
 struct Ros1Bag::Record {
   std::string header;
-  std::uint64_t offset = 0;       // of the record
+  std::uint64_t offset = 0;       // start of the record
   std::uint64_t data_offset = 0;  // both in the source of the record
   std::uint32_t data_size = 0;
   std::string name;

@@ -41,7 +41,7 @@ class Ros1BagWriter : public BagWriter {
   std::vector<bool> is_announced_;        // in some chunk; by connection
   std::vector<ChunkInfo> chunks_;
   std::string chunk_;
-  std::map<std::uint32_t, std::vector<IndexEntry>> index_;  // of the present chunk, by connection
+  std::map<std::uint32_t, std::vector<IndexEntry>> index_;  // current chunk, by connection
 };
 
 }  // namespace kestrel

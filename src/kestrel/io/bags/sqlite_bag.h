@@ -18,7 +18,7 @@ inline constexpr std::string_view kSqliteMagic("SQLite format 3\0", 16);
 // Reads a file of rosbag2's sqlite3 storage (.db3), in all versions of its tables.
 class SqliteBag : public BagReader {
  public:
-  // 'has_compressed_messages': each message is compressed by zstd, as metadata.yaml says
+  // 'has_compressed_messages': each message is compressed by zstd, as in metadata.yaml
   // (compression_mode: MESSAGE). Throws InputError when the file is not such a bag, was cut off or
   // is broken.
   explicit SqliteBag(const std::string& path, bool has_compressed_messages = false);

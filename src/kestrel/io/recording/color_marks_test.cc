@@ -31,7 +31,7 @@ class ColorMarksTest : public ::testing::Test {
   TestFolder folder_;
 };
 
-TEST_F(ColorMarksTest, RectanglesAndMasks) {
+TEST_F(ColorMarksTest, ReadsRectanglesAndMasks) {
   const auto colors = Read(
       "- {image: a.png, color: red, rectangle: [0, 0, 3, 2]}\n"
       "- {image: a.png, color: red, rectangle: [1, 3, 1, 1]}\n"
@@ -43,7 +43,7 @@ TEST_F(ColorMarksTest, RectanglesAndMasks) {
   EXPECT_EQ(colors.at("blue")[0].hue_deg, 240);
 }
 
-TEST_F(ColorMarksTest, BadMarksAreRefusedInWords) {
+TEST_F(ColorMarksTest, RefusesMalformedMarks) {
   const auto error_of = [&](const std::string& yaml) { return InputErrorOf([&] { Read(yaml); }); };
   EXPECT_THAT(error_of("[]"), HasSubstr("no marks"));
   EXPECT_THAT(error_of("- {image: a.png, color: red}"), HasSubstr("a rectangle or a mask"));

@@ -44,16 +44,16 @@ std::string EventsOf(std::vector<int> frames_ms, const std::vector<int>& poses_m
   }
 }
 
-TEST(RecordingEvents, AFrameComesAfterThePoseThatFollowsIt) {
+TEST(RecordingEvents, FrameComesAfterItsNextPose) {
   EXPECT_EQ(EventsOf({15, 30, 31}, {0, 10, 20, 30, 40}, 0), "p0 p10 p20 f15 p30 f30 p40 f31 ");
 }
 
-TEST(RecordingEvents, TheLeadIsPartOfTheFramesTime) {
+TEST(RecordingEvents, AddsLeadToFrameTime) {
   EXPECT_EQ(EventsOf({15}, {0, 10, 20, 30, 40}, 10), "p0 p10 p20 p30 f15 ");
   EXPECT_EQ(EventsOf({15}, {0, 10, 20, 30, 40}, -10), "p0 p10 f15 ");
 }
 
-TEST(RecordingEvents, FramesGoOnWithoutPoses) {
+TEST(RecordingEvents, DeliversFramesWithoutPoses) {
   EXPECT_EQ(EventsOf({1, 2}, {}, 0), "f1 f2 ");
   EXPECT_EQ(EventsOf({1, 2, 30}, {0}, 0), "p0 f1 f2 f30 ");
   EXPECT_EQ(EventsOf({}, {0, 1}, 0), "");

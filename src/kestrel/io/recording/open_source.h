@@ -15,7 +15,7 @@ bool IsCamera(const std::string& source);
 
 // Opens the source that the arguments name: a recording folder (EuRoC), a folder of images, one or
 // more image files, a video file, a camera (/dev/video0) or a GStreamer pipeline. Throws InputError
-// that says what is wrong with them. 'format': pixel format of the frames.
+// with their fault. 'format': pixel format of the frames.
 std::unique_ptr<FrameSource> OpenSource(const std::vector<std::string>& arguments,
                                         PixelFormat format = PixelFormat::kGray);
 

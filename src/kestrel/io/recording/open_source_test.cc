@@ -15,7 +15,7 @@ std::string ErrorOf(const std::vector<std::string>& arguments) {
   return InputErrorOf([&] { OpenSource(arguments); });
 }
 
-TEST(OpenSource, TellsWhatTheArgumentsAre) {
+TEST(OpenSource, RecognisesKindsOfArguments) {
   const TestFolder folder;
   const std::string a = WriteTestImage(folder, "images/a.png", cv::Mat(2, 3, CV_8UC1, 9));
   const std::string b = WriteTestImage(folder, "images/b!.png", cv::Mat(2, 3, CV_8UC1, 9));
@@ -27,7 +27,7 @@ TEST(OpenSource, TellsWhatTheArgumentsAre) {
   EXPECT_EQ(OpenSource({folder / "flight"})->frame_count(), 1u);
 }
 
-TEST(OpenSource, SaysWhatIsWrong) {
+TEST(OpenSource, ReportsFaultyArguments) {
   const TestFolder folder;
   const std::string image = WriteTestImage(folder, "a.png", cv::Mat(2, 3, CV_8UC1, 9));
   const std::string text = folder.Write("notes.txt", "hello");

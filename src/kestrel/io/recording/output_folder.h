@@ -7,7 +7,7 @@
 
 namespace kestrel {
 
-// The folder for the files of a run. Existing files are not overwritten unless asked for.
+// The folder for the files of a run. Existing files are not overwritten unless requested.
 class OutputFolder {
  public:
   // Creates the folder if it does not exist. 'allowance': the option with which the user has files

@@ -12,14 +12,14 @@ namespace {
 
 using ::testing::HasSubstr;
 
-TEST(OutputFolder, MakesFoldersAndFiles) {
+TEST(OutputFolder, CreatesFoldersAndFiles) {
   const TestFolder folder;
   const OutputFolder output(folder / "a/b", false);
   output.OpenText("c/d.csv") << "text";
   EXPECT_EQ(ReadFile(folder / "a/b/c/d.csv"), "text");
 }
 
-TEST(OutputFolder, ReplacesOnlyWhenAsked) {
+TEST(OutputFolder, ReplacesOnRequestOnly) {
   const TestFolder folder;
   folder.Write("d.csv", "old");
   EXPECT_THAT(InputErrorOf([&] { OutputFolder(folder.path(), false).OpenText("d.csv"); }),
@@ -29,20 +29,20 @@ TEST(OutputFolder, ReplacesOnlyWhenAsked) {
   EXPECT_EQ(ReadFile(folder / "d.csv"), "new");
 }
 
-TEST(OutputFolder, NamesCannotLeaveIt) {
+TEST(OutputFolder, RefusesNamesOutsideFolder) {
   const TestFolder folder;
   const OutputFolder output(folder / "out", false);
   EXPECT_EQ(output.NewFile("/a/../../b.png").string(), folder / "out/a/b.png");
 }
 
-TEST(OutputFolder, FolderThatCannotBeMadeIsNamed) {
+TEST(OutputFolder, ReportsFolderThatCannotBeCreated) {
   const TestFolder folder;
   const std::string file = folder.Write("file", "");
   EXPECT_THAT(InputErrorOf([&] { OutputFolder(file + "/out", false); }), HasSubstr(file + "/out"));
   EXPECT_THAT(InputErrorOf([&] { OutputFolder(file, false); }), HasSubstr("file"));
 }
 
-TEST(OutputFolder, FileThatCannotBeWrittenIsNamed) {
+TEST(OutputFolder, ReportsUnwritableFile) {
   const TestFolder folder;
   std::filesystem::create_directories(folder / "out/d.csv");
   EXPECT_THAT(InputErrorOf([&] { OutputFolder(folder / "out", true).OpenText("d.csv"); }),

@@ -23,13 +23,13 @@ const cv::Vec3b kBlueish(200, 60, 20);  // in BGR
 struct Coloured {
   std::string encoding;
   int channels;
-  std::vector<int> bytes;  // of two pixels in a row; for Bayer's patterns of two rows
+  std::vector<int> bytes;  // bytes of two pixels in a row; for Bayer patterns of two rows
   int tolerance;
 };
 
 class EveryEncoding : public ::testing::TestWithParam<Coloured> {};
 
-TEST_P(EveryEncoding, GivesTheColour) {
+TEST_P(EveryEncoding, GivesColour) {
   const auto& [encoding, channels, bytes, tolerance] = GetParam();
   cv::Mat pixels(6, 8 * channels, CV_8UC1);
   const int period = 2 * channels;
@@ -63,7 +63,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Coloured{"yuv422_yuy2", 2, {71, 195, 71, 100}, 4}),
     [](const auto& coloured) { return coloured.param.encoding; });
 
-TEST(DecodeImage, TakesRowsThatAreFilledUp) {
+TEST(DecodeImage, AcceptsPaddedRows) {
   const cv::Mat wide(4, 16, CV_8UC1, cv::Scalar(9));
   ImageMessage message = BagImageMessage(wide, Time());
   message.width = 10;
@@ -72,7 +72,7 @@ TEST(DecodeImage, TakesRowsThatAreFilledUp) {
   EXPECT_EQ(cv::countNonZero(image != 9), 0);
 }
 
-TEST(DecodeImage, SaysWhatIsWrong) {
+TEST(DecodeImage, ReportsFaultyMessages) {
   const cv::Mat image(4, 16, CV_8UC1, cv::Scalar(9));
   const ImageMessage good = BagImageMessage(image, Time());
   const auto error_of = [](const ImageMessage& message) {

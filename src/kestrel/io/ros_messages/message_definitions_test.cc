@@ -13,7 +13,7 @@ namespace kestrel {
 namespace {
 
 // The checksums are those that `rosmsg md5` prints in ROS 1 Noetic.
-TEST(MessageChecksum, IsThatOfRos1) {
+TEST(MessageChecksum, MatchesRos1) {
   const std::pair<std::string_view, std::string_view> known[] = {
       {"sensor_msgs/Image", "060021388200f6f0f447d0fcd9c64743"},
       {"sensor_msgs/CameraInfo", "c9a58c1b0b154e0e6da7578cb991d214"},
@@ -28,7 +28,7 @@ TEST(MessageChecksum, IsThatOfRos1) {
 }
 
 // Hashes as in `ros2 topic info -v` and the packages of ROS 2 Jazzy.
-TEST(TypeHash, IsThatOfRos2) {
+TEST(TypeHash, MatchesRos2) {
   const std::pair<std::string_view, std::string_view> known[] = {
       {"sensor_msgs/Image",
        "RIHS01_d31d41a9a4c4bc8eae9be757b0beed306564f7526c88ea6a4588fb9582527d47"},
@@ -61,7 +61,7 @@ TEST(TypeHash, IsThatOfRos2) {
   for (const auto& [type, hash] : known) EXPECT_EQ(TypeHash(type), hash) << type;
 }
 
-TEST(MessageDefinition, HasTheTypesInATypeOnceEach) {
+TEST(MessageDefinition, ListsNestedTypesOnceEach) {
   const std::string line(80, '=');
   EXPECT_EQ(MessageDefinition("tf2_msgs/TFMessage", WireFormat::kRos1),
             "geometry_msgs/TransformStamped[] transforms\n" + line +
@@ -76,7 +76,7 @@ TEST(MessageDefinition, HasTheTypesInATypeOnceEach) {
                 "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n");
 }
 
-TEST(MessageDefinition, HasTheWordsOfItsRosAndConstants) {
+TEST(MessageDefinition, UsesFieldNamesOfRosVersionAndHasConstants) {
   const auto has = [](const std::string& definition, const char* lines) {
     return definition.find(lines) != std::string::npos;
   };
@@ -88,7 +88,7 @@ TEST(MessageDefinition, HasTheWordsOfItsRosAndConstants) {
                   "\nbyte STALE=3\nbyte level\n"));
 }
 
-TEST(MessageDefinition, RefusesTypesThatItsRosLacks) {
+TEST(MessageDefinition, RefusesTypesMissingInRos) {
   EXPECT_THROW(MessageDefinition("sensor_msgs/LaserScan", WireFormat::kCdr), InputError);
   EXPECT_THROW(MessageDefinition("nav_msgs/Path", WireFormat::kRos1), InputError);
 }

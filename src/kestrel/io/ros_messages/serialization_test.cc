@@ -34,20 +34,20 @@ std::string Joined(std::initializer_list<std::string_view> parts) {
   return text;
 }
 
-TEST(Serialization, OfRos1HasNoAlignmentAndTheNumberOfTheHeader) {
+TEST(Serialization, Ros1HasNoAlignmentAndHasHeaderNumber) {
   EXPECT_EQ(SerializeMessage(ExampleTransform(), WireFormat::kRos1),
             Joined({"\7\0\0\0"sv, "\3\0\0\0\4\0\0\0"sv, "\3\0\0\0map"sv, "\4\0\0\0uav1"sv, kOne,
                     kTwo, kThree, kZero, kZero, kZero, kOne}));
 }
 
 // Texts end with a zero that is part of their length; the first double, after 25 bytes, is at 32.
-TEST(Serialization, OfRos2IsAlignedFromTheFourthByteOn) {
+TEST(Serialization, Ros2IsAlignedFromFourthByte) {
   EXPECT_EQ(SerializeMessage(ExampleTransform(), WireFormat::kCdr),
             Joined({"\0\1\0\0"sv, "\3\0\0\0\4\0\0\0"sv, "\4\0\0\0map\0"sv, "\5\0\0\0uav1\0"sv,
                     "\0\0\0\0\0\0\0"sv, kOne, kTwo, kThree, kZero, kZero, kZero, kOne}));
 }
 
-TEST(Serialization, IsReadBackInBothFormats) {
+TEST(Serialization, RoundTripsInBothFormats) {
   CameraInfoMessage info;
   info.header = {0, kStamp, "camera"};
   info.width = 752;
@@ -78,7 +78,7 @@ TEST(Serialization, ReadsBigEndianCdr) {
   EXPECT_EQ(header.frame_id, "map");
 }
 
-TEST(Serialization, RefusesBytesThatEndAnywhere) {
+TEST(Serialization, RefusesTruncatedBytes) {
   for (const WireFormat format : {WireFormat::kRos1, WireFormat::kCdr}) {
     const std::string bytes =
         SerializeMessage(TfMessage{{ExampleTransform(), ExampleTransform()}}, format);
@@ -91,7 +91,7 @@ TEST(Serialization, RefusesBytesThatEndAnywhere) {
   }
 }
 
-TEST(Serialization, RefusesLengthsThatAreLies) {
+TEST(Serialization, RefusesFalseLengths) {
   EXPECT_NE(
       InputErrorOf([] { ParseMessage<TfMessage>("\xff\xff\xff\xff"sv, WireFormat::kRos1, "/tf"); }),
       "");

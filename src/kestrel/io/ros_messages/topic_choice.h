@@ -26,7 +26,7 @@ struct TopicChoice {
 TopicChoice ChooseTopics(const std::vector<RosTopic>& topics, const std::vector<std::string>& names,
                          const std::string& bag);
 
-// True when the topic's name (image_rect) says that image_proc has undistorted its images.
+// True when the topic's name (image_rect) shows that image_proc has undistorted its images.
 bool IsRectified(const std::string& topic);
 
 }  // namespace kestrel

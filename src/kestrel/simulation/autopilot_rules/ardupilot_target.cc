@@ -55,8 +55,8 @@ void ArduPilotTarget::Handle(const mavlink::LandingTarget& target, const FlightS
 // Returns the vector from the body to the target in FLU, m; nothing when the message is not used.
 std::optional<Vector3d> ArduPilotTarget::LineOfSight(const mavlink::LandingTarget& target) {
   if (target.frame != mavlink::kFrameBodyFrd && target.frame != mavlink::kFrameLocalFrd) {
-    if (!told_wrong_frame_) announce_(Severity::kInfo, "Plnd: Frame not supported ");
-    told_wrong_frame_ = true;
+    if (!reported_wrong_frame_) announce_(Severity::kInfo, "Plnd: Frame not supported ");
+    reported_wrong_frame_ = true;
     return std::nullopt;
   }
   // There is no rangefinder that could measure the distance.

@@ -61,7 +61,7 @@ class ArduPilotTarget {
   std::optional<Eigen::Vector3d> sighted_in_body_;  // not yet used, m
   std::optional<Eigen::Vector3d> sighted_in_world_;
   Time sighted_at_;
-  bool told_wrong_frame_ = false;
+  bool reported_wrong_frame_ = false;
   bool is_started_ = false;
   bool is_acquired_ = false;
   int outliers_ = 0;

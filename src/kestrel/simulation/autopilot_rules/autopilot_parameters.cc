@@ -12,7 +12,7 @@ namespace kestrel {
 namespace {
 
 // Names, units and defaults of ArduCopter 4.7, with precision landing enabled, and with what doctor
-// asks for: GUID_TIMEOUT is 3 as it comes.
+// recommends: the default of GUID_TIMEOUT is 3.
 std::vector<AutopilotParameter> ArduPilotDefaults() {
   return {{"ATC_ANGLE_MAX", 30, false},
           {"BATT_FS_CRT_ACT", 0, true},

@@ -13,7 +13,7 @@ namespace kestrel {
 // A UAV and a pattern at known places.
 struct ExplainedScene {
   Eigen::Vector3d uav_in_ned{10, 20, -30};   // m, in the autopilot's local frame
-  double heading_deg = 60;                   // of the nose, clockwise from north
+  double heading_deg = 60;                   // heading of the nose, clockwise from north
   Eigen::Vector3d pattern_in_body{2, 1, 5};  // m ahead, right, below
   double size_m = 1;                         // diameter of the pattern
 };

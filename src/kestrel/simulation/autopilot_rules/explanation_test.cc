@@ -24,7 +24,7 @@ TEST(ExplanationTest, EachAutopilotUnderstandsItsProfile) {
   EXPECT_LT((*vte.px4_in_ned - kPatternInNed).norm(), 0.01);
 }
 
-TEST(ExplanationTest, TheOtherOneIgnoresIt) {
+TEST(ExplanationTest, OtherAutopilotIgnoresProfile) {
   const auto ardupilot = UnderstandingOf({}, LinkProfile::kArduPilot);
   EXPECT_FALSE(ardupilot.px4_in_ned);
   EXPECT_THAT(ardupilot.px4_text, HasSubstr("frame 12 unsupported"));
@@ -33,7 +33,7 @@ TEST(ExplanationTest, TheOtherOneIgnoresIt) {
   EXPECT_THAT(px4.ardupilot_text, HasSubstr("Frame not supported"));
 }
 
-TEST(ExplanationTest, TellsEachField) {
+TEST(ExplanationTest, PrintsEachField) {
   const std::string text = Explain({});
   for (const char* const line :
        {"angle_x        0.1974 rad", "distance       5.4772 m", "frame          12",

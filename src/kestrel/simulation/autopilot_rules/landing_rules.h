@@ -30,7 +30,7 @@ struct FlightState {
 struct FlightCommand {
   SetPoint set_point;
   // True when the autopilot controls its velocity itself: the acceleration is then the thrust of
-  // the rotors, independent of the air, and the velocity only says what it is for.
+  // the rotors, independent of the air, and the velocity only states its purpose.
   bool is_thrust = false;
 };
 

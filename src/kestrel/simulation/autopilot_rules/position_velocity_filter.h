@@ -51,7 +51,7 @@ class PositionVelocityFilter {
   double position_ = 0;
   double velocity_ = 0;
   double position_variance_ = 1;
-  double covariance_ = 0;  // of position and velocity
+  double covariance_ = 0;  // covariance of position and velocity
   double velocity_variance_ = 1;
 };
 

@@ -51,9 +51,9 @@ void Px4Target::Handle(const mavlink::TargetRelative& target, const FlightState&
   if ((static_cast<int>(parameters_["VTE_AID_MASK"]) & kUsesVision) == 0) return;
   const auto own_us = static_cast<std::uint64_t>(state.boot_us);
   if (target.timestamp > own_us || own_us - target.timestamp > kOldestVision_us) {
-    constexpr std::int64_t kTellEvery_us = 3'000'000;
-    if (state.boot_us - told_old_us_ < kTellEvery_us) return;
-    told_old_us_ = state.boot_us;
+    constexpr std::int64_t kReportEvery_us = 3'000'000;
+    if (state.boot_us - reported_old_us_ < kReportEvery_us) return;
+    reported_old_us_ = state.boot_us;
     announce_(Severity::kWarning, "VTE: Vision data too old!");
     return;
   }

@@ -51,11 +51,11 @@ class Px4Target {
   PoseHistory poses_;  // on the autopilot's own clock
   std::optional<Place> place_;
   bool is_updated_ = false;
-  std::array<PositionVelocityFilter, 3> filters_;  // of the target in the world
+  std::array<PositionVelocityFilter, 3> filters_;  // filters of the target's position in the world
   bool is_filtering_ = false;
   std::int64_t fused_us_ = 0;
   int outliers_ = 0;  // in a row
-  std::int64_t told_old_us_ = 0;
+  std::int64_t reported_old_us_ = 0;
 };
 
 }  // namespace kestrel

@@ -133,7 +133,7 @@ FlightCommand ArduPilotGuided::FlyAttitude(const FlightState& state) {
 // path does not run away.
 Vector2d ArduPilotGuided::ControlVelocity(const FlightState& state, const Vector2d& way,
                                           const Vector2d& error) {
-  constexpr double kFilter_s = 0.03;  // of the derivative, 5 Hz
+  constexpr double kFilter_s = 0.03;  // time constant for the derivative, 5 Hz
   constexpr double kMaxIntegral = 10;
   if (last_error_) {
     const double blend = std::min(1.0, state.step_s / kFilter_s);

@@ -140,7 +140,7 @@ void AutopilotModel::Step(Time now) {
 void AutopilotModel::StepOnce(Time now) {
   const FlightCommand command = Fly();
   uav_.Step(now, command, is_armed_);
-  world_.TellPose(uav_.pose());
+  world_.ReportPose(uav_.pose());
   ObserveFlight(now);
   landing_->Estimate(state_);
   detector_.Observe(state_, command);
@@ -184,7 +184,7 @@ void AutopilotModel::FollowPilot(Time now) {
   if (const auto mode = pilot_.Switch(now, pilot_flies_)) EnterMode(*mode, Wish::kPilot, now);
 }
 
-// It returns unless its battery parameters say to land; other actions are not modelled.
+// It returns unless its battery parameters choose a landing; other actions are not modelled.
 void AutopilotModel::EnterBatteryFailsafe(Time now) {
   constexpr int kArduPilotLands = 1;
   constexpr int kPx4Lands = 2;

@@ -53,7 +53,7 @@ class AutopilotModel {
   // Injected faults.
   void Reboot(Time now);            // except the flight: clock and streams restart, and it is
                                     // silent for a while
-  void JumpClock(Duration change);  // of the autopilot's own clock
+  void JumpClock(Duration change);  // shifts the autopilot's own clock
   void set_nan_attitude(bool nan) { nan_attitude_ = nan; }
 
   // Time of its own clock, ns since boot.
@@ -148,10 +148,10 @@ class AutopilotModel {
   double boot_uptime_s_;  // own clock when it booted
   Duration clock_jump_{0};
   FlightState state_;
-  bool has_jumped_ = false;        // of the estimated position
-  double rest_drift_m_ = 0;        // of the estimated height while it stands
+  bool has_jumped_ = false;        // the estimated position has jumped
+  double rest_drift_m_ = 0;        // drift of the estimated height while it stands
   Eigen::Vector3d hold_{0, 0, 0};  // place where it hovers unless something else moves it
-  StoppingPath stopping_;          // of the mode that holds, from the last change of mode
+  StoppingPath stopping_;          // path of the mode that holds, from the last change of mode
   std::uint32_t custom_mode_ = 0;
   bool is_armed_ = false;
   bool pilot_flies_ = true;      // the script flies, not the link

@@ -43,7 +43,7 @@ AutopilotModelOptions WithParameters(const std::string& parameters) {
   return options;
 }
 
-TEST(ArduPilotLandingTest, LandsOnAStandingPattern) {
+TEST(ArduPilotLandingTest, LandsOnStandingPattern) {
   TestAutopilot autopilot(AutopilotFirmware::kArduPilot, {}, TestVehicle("standing", 0));
   const SitlResult result = Land(&autopilot, [&] { return autopilot.ArduPilotTargetMessage(); });
   ASSERT_TRUE(result.contact);
@@ -62,11 +62,11 @@ TEST_P(ArduPilotMovingTest, Lands) {
 }
 INSTANTIATE_TEST_SUITE_P(Speeds, ArduPilotMovingTest, testing::Values(2.0, 4.2));
 
-TEST(Px4LandingTest, LandsOnAStandingPattern) {
+TEST(Px4LandingTest, LandsOnStandingPattern) {
   TestAutopilot autopilot(AutopilotFirmware::kPx4, {}, TestVehicle("standing", 0));
   const SitlResult result = Land(&autopilot, [&] { return autopilot.Px4TargetMessage(); });
   ASSERT_TRUE(result.contact);
-  EXPECT_LT(result.offset_m(), 0.06);  // of the feet; it brings the body there, which leans
+  EXPECT_LT(result.offset_m(), 0.06);  // offset of the feet; PX4 brings the leaning body there
   EXPECT_TRUE(result.is_disarmed);
 }
 
@@ -79,7 +79,7 @@ TEST(Px4LandingTest, LandsByTargetRelative) {
   EXPECT_TRUE(result.is_disarmed);
 }
 
-TEST(ArduPilotLandingTest, SaysWhatItMakesOfTargets) {
+TEST(ArduPilotLandingTest, ReportsStateOfPrecisionLanding) {
   TestAutopilot autopilot(AutopilotFirmware::kArduPilot, {}, TestVehicle("standing", 0));
   autopilot.Run(1, [&] { autopilot.Tell(autopilot.ArduPilotTargetMessage()); });
   EXPECT_EQ(autopilot.CountText("PrecLand: Target Found"), 1);
@@ -102,7 +102,7 @@ TEST(ArduPilotLandingTest, OneTargetPerSecondIsNotEnough) {
   EXPECT_EQ(autopilot.CountText("PrecLand: Init Complete"), 0);
 }
 
-TEST(ArduPilotLandingTest, RefusesOtherFramesOnceInWords) {
+TEST(ArduPilotLandingTest, RefusesOtherFramesWithOneMessage) {
   TestAutopilot autopilot(AutopilotFirmware::kArduPilot, {}, TestVehicle("standing", 0));
   autopilot.Run(3, [&] { autopilot.Tell(autopilot.Px4TargetMessage()); });
   EXPECT_EQ(autopilot.CountText("Plnd: Frame not supported"), 1);
@@ -121,7 +121,7 @@ TEST(ArduPilotLandingTest, IgnoresTargetsWithoutDistance) {
   EXPECT_EQ(autopilot.CountText(""), 0);
 }
 
-TEST(ArduPilotLandingTest, LandsBesideWhenTheTargetIsLost) {
+TEST(ArduPilotLandingTest, LandsBesideWhenTargetIsLost) {
   TestAutopilot autopilot(AutopilotFirmware::kArduPilot, {}, TestVehicle("standing", 0));
   const SitlResult result = Land(&autopilot, [] { return mavlink::Heartbeat(); });
   EXPECT_TRUE(result.contact);
@@ -129,7 +129,7 @@ TEST(ArduPilotLandingTest, LandsBesideWhenTheTargetIsLost) {
   EXPECT_GT(result.offset_m(), 1.5);
 }
 
-TEST(ArduPilotLandingTest, WithStrictTwoItHoversWhereItLostTheTarget) {
+TEST(ArduPilotLandingTest, HoversAtPlaceOfLossWithStrictTwo) {
   TestAutopilot autopilot(AutopilotFirmware::kArduPilot, WithParameters("PLND_STRICT=2"),
                           TestVehicle("standing", 0));
   autopilot.Run(15, [&] { autopilot.Tell(autopilot.ArduPilotTargetMessage()); });
@@ -137,13 +137,13 @@ TEST(ArduPilotLandingTest, WithStrictTwoItHoversWhereItLostTheTarget) {
   EXPECT_FALSE(autopilot.model.result().contact);
 }
 
-TEST(ArduPilotLandingTest, TrailsAMovingTargetWithoutOptionBit0) {
+TEST(ArduPilotLandingTest, TrailsMovingTargetWithoutOptionBit0) {
   TestAutopilot autopilot(AutopilotFirmware::kArduPilot, {}, TestVehicle("straight", 2));
   autopilot.Run(20, [&] { autopilot.Tell(autopilot.ArduPilotTargetMessage()); });
   EXPECT_NEAR(autopilot.HorizontalError(), 2.1, 0.4) << "measured: 2.2 m";
 }
 
-TEST(ArduPilotLandingTest, LagThatIsNotToldMakesItOscillate) {
+TEST(ArduPilotLandingTest, OscillatesWithUnconfiguredLag) {
   const auto rms_by = [](const std::string& parameters) {
     TestAutopilot autopilot(AutopilotFirmware::kArduPilot, WithParameters(parameters),
                             TestVehicle("straight", 2));
@@ -152,7 +152,7 @@ TEST(ArduPilotLandingTest, LagThatIsNotToldMakesItOscillate) {
     int count = 0;
     autopilot.Run(20, [&] {
       late.push_back(autopilot.ArduPilotTargetMessage());
-      constexpr std::size_t kDelay = 10;  // of 20 ms
+      constexpr std::size_t kDelay = 10;  // messages, 20 ms apart
       if (late.size() > kDelay) autopilot.Tell(late[late.size() - 1 - kDelay]);
       if (autopilot.now < kTestStart + std::chrono::seconds(10)) return;
       sum += autopilot.HorizontalError() * autopilot.HorizontalError();
@@ -166,7 +166,7 @@ TEST(ArduPilotLandingTest, LagThatIsNotToldMakesItOscillate) {
   EXPECT_GT(wrong, 0.3) << "measured: 0.5 m";
 }
 
-TEST(ArduPilotLandingTest, DisarmsOnAMovingDeckOnlyWhileTargetsGoOn) {
+TEST(ArduPilotLandingTest, DisarmsOnMovingDeckOnlyWhileTargetsContinue) {
   TestAutopilot autopilot(AutopilotFirmware::kArduPilot, WithParameters("PLND_OPTIONS=1"),
                           TestVehicle("straight", 2));
   const SitlResult result = Land(&autopilot, [&]() -> CompanionMessage {
@@ -178,7 +178,7 @@ TEST(ArduPilotLandingTest, DisarmsOnAMovingDeckOnlyWhileTargetsGoOn) {
   EXPECT_TRUE(autopilot.model.is_armed());
 }
 
-TEST(Px4LandingTest, RefusesBodyFramesInWordsToGroundStations) {
+TEST(Px4LandingTest, RefusesBodyFramesWithMessageToGroundStation) {
   for (const bool has_gcs : {false, true}) {
     TestAutopilot autopilot(AutopilotFirmware::kPx4, {}, TestVehicle("standing", 0));
     if (has_gcs) autopilot.Tell(mavlink::Heartbeat{.type = mavlink::kTypeGcs});
@@ -190,7 +190,7 @@ TEST(Px4LandingTest, RefusesBodyFramesInWordsToGroundStations) {
   }
 }
 
-TEST(Px4LandingTest, NeverCatchesAMovingPad) {
+TEST(Px4LandingTest, NeverCatchesMovingPad) {
   TestAutopilot autopilot(AutopilotFirmware::kPx4, {}, TestVehicle("straight", 4.2));
   const SitlResult result = Land(
       &autopilot, [&] { return autopilot.Px4TargetMessage(); }, /*seconds=*/60);
@@ -198,7 +198,7 @@ TEST(Px4LandingTest, NeverCatchesAMovingPad) {
   EXPECT_GT(autopilot.HorizontalError(), 5);
 }
 
-TEST(Px4LandingTest, RefusesStampsOfTheFutureAndOfAnotherClock) {
+TEST(Px4LandingTest, RefusesFutureStampsAndStampsOfAnotherClock) {
   for (const std::int64_t error_us : {300'000, 1'000'000'000, -700'000}) {
     TestAutopilot autopilot(AutopilotFirmware::kPx4, WithParameters("VTE_EN=1"),
                             TestVehicle("standing", 0));
@@ -213,7 +213,7 @@ TEST(Px4LandingTest, RefusesStampsOfTheFutureAndOfAnotherClock) {
   }
 }
 
-TEST(Px4LandingTest, DisarmsByItsLandDetectorsSpeedLimit) {
+TEST(Px4LandingTest, DisarmsBySpeedLimitOfLandDetector) {
   for (const bool raised : {false, true}) {
     const std::string parameters = raised ? "LNDMC_XY_VEL_MAX=5,VTE_EN=1" : "VTE_EN=1";
     AutopilotModelOptions options = WithParameters(parameters);
@@ -228,7 +228,7 @@ TEST(Px4LandingTest, DisarmsByItsLandDetectorsSpeedLimit) {
 
 // PX4 converts stamps only after it has synchronised. They then have to be on the clock that
 // answered its requests.
-TEST(Px4LandingTest, StampsAreOfTheClockThatAnswersTimesync) {
+TEST(Px4LandingTest, ReadsStampsOnClockThatAnswersTimesync) {
   TestAutopilot autopilot(AutopilotFirmware::kPx4, {}, TestVehicle("standing", 0));
   const std::int64_t companion_ns = 1'000'000'000'000;
   Px4TimeSync sync;
@@ -241,7 +241,7 @@ TEST(Px4LandingTest, StampsAreOfTheClockThatAnswersTimesync) {
   EXPECT_NEAR(sync.OwnTime(companion_ns / 1000 + 2000, 77), 2500, 1) << "too slow to count";
 }
 
-TEST(AutopilotModelTest, ArduPilotSendsOnlyWhatItIsAskedFor) {
+TEST(AutopilotModelTest, ArduPilotSendsRequestedStreamsOnly) {
   TestAutopilot autopilot(AutopilotFirmware::kArduPilot, {}, TestVehicle("standing", 0));
   autopilot.Run(2);
   EXPECT_EQ(autopilot.Sent<mavlink::Heartbeat>().size(), 2);
@@ -269,7 +269,7 @@ TEST(AutopilotModelTest, Px4SendsItsOnboardStreams) {
   EXPECT_EQ(autopilot.Sent<mavlink::CommandAck>().back().result, mavlink::kResultFailed);
 }
 
-TEST(AutopilotModelTest, TellsItsPoseInNedAndFrd) {
+TEST(AutopilotModelTest, ReportsPoseInNedAndFrd) {
   AutopilotModelOptions options;
   options.pilot.heading_deg = 60;
   options.pilot.land_after_s = -1;
@@ -300,7 +300,7 @@ TEST(AutopilotModelTest, AnswersTimesyncByItsOwnClock) {
   EXPECT_NEAR(1e-9 * static_cast<double>(answer.tc1), 130.005, 1e-6);
 }
 
-TEST(AutopilotModelTest, ARebootStartsItsClockAndStreamsAnew) {
+TEST(AutopilotModelTest, RebootRestartsClockAndStreams) {
   TestAutopilot autopilot(AutopilotFirmware::kPx4, {}, TestVehicle("standing", 0));
   autopilot.Run(1);
   autopilot.model.Reboot(autopilot.now);
@@ -312,7 +312,7 @@ TEST(AutopilotModelTest, ARebootStartsItsClockAndStreamsAnew) {
   EXPECT_LT(autopilot.Sent<mavlink::Attitude>().back().time_boot_ms, 4000);
 }
 
-TEST(AutopilotModelTest, IntegersOfPx4TravelAsBits) {
+TEST(AutopilotModelTest, SendsPx4IntegersAsBits) {
   for (const auto firmware : {AutopilotFirmware::kArduPilot, AutopilotFirmware::kPx4}) {
     const bool is_px4 = firmware == AutopilotFirmware::kPx4;
     TestAutopilot autopilot(firmware, {}, TestVehicle("standing", 0));
@@ -332,7 +332,7 @@ TEST(AutopilotModelTest, IntegersOfPx4TravelAsBits) {
   }
 }
 
-TEST(AutopilotModelTest, FliesAsItIsCommanded) {
+TEST(AutopilotModelTest, FollowsCommands) {
   AutopilotModelOptions options;
   options.pilot.start_altitude_m = 0;
   TestAutopilot autopilot(AutopilotFirmware::kArduPilot, options, TestVehicle("circle", 2));
@@ -356,7 +356,7 @@ TEST(AutopilotModelTest, FliesAsItIsCommanded) {
   EXPECT_FALSE(autopilot.model.result().contact->on_board);
 }
 
-TEST(AutopilotModelTest, ForceStopsTheMotorsInFlight) {
+TEST(AutopilotModelTest, StopsMotorsInFlightByForcedDisarm) {
   TestAutopilot autopilot(AutopilotFirmware::kPx4, {}, TestVehicle("standing", 0));
   autopilot.Run(1);
   autopilot.Tell(Command(mavlink::kCommandArmDisarm, {0, 21196}));
@@ -365,13 +365,13 @@ TEST(AutopilotModelTest, ForceStopsTheMotorsInFlight) {
   EXPECT_LT(autopilot.model.truth().world_from_body.translation.z(), 1);
 }
 
-TEST(AutopilotModelTest, DropsWhatClaimsToBeItself) {
+TEST(AutopilotModelTest, DropsMessagesWithItsOwnIds) {
   TestAutopilot autopilot(AutopilotFirmware::kArduPilot, {}, TestVehicle("standing", 0));
   autopilot.model.Handle(mavlink::Timesync{.ts1 = 5}, 1, 1, autopilot.now);
   EXPECT_TRUE(autopilot.sent.empty());
 }
 
-TEST(AutopilotModelTest, ParametersThatDoNotExistAreRefused) {
+TEST(AutopilotModelTest, RefusesUnknownParameters) {
   for (const char* parameters : {"PLD_HACC_RAD=2", "PLND_LAG", "PLND_LAG=x"}) {
     EXPECT_THROW(TestAutopilot(AutopilotFirmware::kArduPilot, WithParameters(parameters),
                                TestVehicle("standing", 0)),

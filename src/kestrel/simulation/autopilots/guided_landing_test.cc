@@ -171,12 +171,12 @@ TEST_P(GuidedLandingTest, DisarmsOnEveryDeckByItself) {
 }
 
 // ArduPilot leans against the deck by velocities until its detector refuses.
-TEST(ArduPilotGuidedLandingTest, VelocitiesAgainstADrivingDeckKeepArduPilotArmed) {
+TEST(ArduPilotGuidedLandingTest, VelocitiesAgainstDrivingDeckKeepArduPilotArmed) {
   const Deck deck{"figure8", 4.2};
   EXPECT_LT(Fly(AutopilotFirmware::kArduPilot, deck, {.says_carried = false}).flights, 10);
 }
 
-TEST_P(GuidedLandingTest, StaysThoughTheEstimateClimbsAtRest) {
+TEST_P(GuidedLandingTest, StaysDownWhenEstimateClimbsAtRest) {
   const Deck deck{"figure8", 4.2};
   const int go_arounds = Fly(GetParam(), deck).go_arounds;
   for (const double error_mps : {-0.12, 0.12}) {
@@ -187,7 +187,7 @@ TEST_P(GuidedLandingTest, StaysThoughTheEstimateClimbsAtRest) {
 }
 
 // From every heading of the pilot to one over a pad that turns with the car on the eight.
-TEST_P(GuidedLandingTest, ComesDownWithTheHeadingThatIsWanted) {
+TEST_P(GuidedLandingTest, LandsWithRequestedHeading) {
   constexpr double kWanted_deg = 120, kMostOff_deg = 2;
   for (int seed = 1; seed <= 8; ++seed) {
     GuidedLanding landing(GetParam(), ModelFor(GetParam(), 1 + 0.9 * seed), Deck{"figure8", 4.2},

@@ -98,7 +98,7 @@ class GuidedTest : public testing::TestWithParam<AutopilotFirmware> {};
 INSTANTIATE_TEST_SUITE_P(Both, GuidedTest,
                          testing::Values(AutopilotFirmware::kArduPilot, AutopilotFirmware::kPx4));
 
-TEST_P(GuidedTest, FliesAsItIsToldOnceThePilotGivesTheMode) {
+TEST_P(GuidedTest, FollowsSetPointsOncePilotSelectsMode) {
   GuidedAutopilot autopilot(GetParam(), Guided());
   autopilot.Guide(0.8, {3, 1, 0.5});
   EXPECT_FALSE(autopilot.is_guided());
@@ -109,7 +109,7 @@ TEST_P(GuidedTest, FliesAsItIsToldOnceThePilotGivesTheMode) {
   EXPECT_NEAR(autopilot.model.result().guided_s, 7.8, 0.3);
 }
 
-TEST_P(GuidedTest, TurnsItsNose) {
+TEST_P(GuidedTest, TurnsToYaw) {
   GuidedAutopilot autopilot(GetParam(), Guided());
   autopilot.Run(8, [&] {
     auto message = autopilot.Message({0, 0, 0});
@@ -122,7 +122,7 @@ TEST_P(GuidedTest, TurnsItsNose) {
 }
 
 // As the real ones do: the mode that holds bounds the jerk, so that the UAV goes on for a while.
-TEST_P(GuidedTest, AModeThatHoldsStopsItLate) {
+TEST_P(GuidedTest, HoldModeStopsLate) {
   GuidedAutopilot autopilot(GetParam(), Guided());
   autopilot.Guide(6, {4, 0, -1.2});
   const Vector3d begin = autopilot.Position();
@@ -136,7 +136,7 @@ TEST_P(GuidedTest, AModeThatHoldsStopsItLate) {
   EXPECT_LT(autopilot.Velocity().norm(), 0.1);
 }
 
-TEST_P(GuidedTest, CountsWhatComesAfterThePilotTookItBack) {
+TEST_P(GuidedTest, CountsSetPointsAfterPilotTookBack) {
   AutopilotModelOptions options = Guided();
   options.pilot.take_back_after_s = 5;
   GuidedAutopilot autopilot(GetParam(), options);
@@ -153,7 +153,7 @@ TEST_P(GuidedTest, CountsWhatComesAfterThePilotTookItBack) {
   EXPECT_THAT(InWords(result), testing::HasSubstr("set-points after the mode was left, the last"));
 }
 
-TEST_P(GuidedTest, ALowBatteryEndsItForGood) {
+TEST_P(GuidedTest, LowBatteryEndsGuidedFlightForGood) {
   AutopilotModelOptions options = Guided();
   options.pilot.battery_failsafe_after_s = 4;
   GuidedAutopilot autopilot(GetParam(), options);
@@ -165,7 +165,7 @@ TEST_P(GuidedTest, ALowBatteryEndsItForGood) {
   EXPECT_LT(autopilot.Position().head<2>().norm(), 1) << "home";
 }
 
-TEST_P(GuidedTest, ForceStopsTheMotorsOnADrivingDeck) {
+TEST_P(GuidedTest, StopsMotorsOnDrivingDeckByForcedDisarm) {
   GuidedAutopilot autopilot(GetParam(), Guided(), "straight", 4.2);
   autopilot.Pursue(12, 3, 1.5);
   autopilot.Pursue(12, 0, 1.5, 0.6);
@@ -180,7 +180,7 @@ TEST_P(GuidedTest, ForceStopsTheMotorsOnADrivingDeck) {
   EXPECT_THAT(InWords(autopilot.model.result()), testing::HasSubstr("disarmed by force"));
 }
 
-TEST_P(GuidedTest, LandModeDisarmsOnAStandingDeck) {
+TEST_P(GuidedTest, LandModeDisarmsOnStandingDeck) {
   GuidedAutopilot autopilot(GetParam(), Guided());
   autopilot.Pursue(8, 2, 1);
   autopilot.Pursue(5, 0, 1, 0.6);
@@ -217,7 +217,7 @@ TEST(ArduPilotGuidedTest, KeepsItsLimits) {
   }
 }
 
-TEST(ArduPilotGuidedTest, StopsByWhatItDoesNotTake) {
+TEST(ArduPilotGuidedTest, StopsOnUnsupportedSetPoints) {
   const auto speed_by = [](auto&& change) {
     GuidedAutopilot autopilot(AutopilotFirmware::kArduPilot, Guided());
     autopilot.Guide(5, {2, 0, 0});
@@ -238,7 +238,7 @@ TEST(ArduPilotGuidedTest, StopsByWhatItDoesNotTake) {
   EXPECT_LT(speed_by([](auto* m) { m->vx = 2000; }), 0.1);
 }
 
-TEST(ArduPilotGuidedTest, FollowsADrivingDeckAndDisarmsOnItAfterItsDelay) {
+TEST(ArduPilotGuidedTest, FollowsDrivingDeckAndDisarmsAfterDelay) {
   GuidedAutopilot autopilot(AutopilotFirmware::kArduPilot, Guided(), "straight", 4.2);
   autopilot.Pursue(12, 3, 1.5);
   EXPECT_LT(autopilot.HorizontalError(), 0.2);
@@ -260,7 +260,7 @@ TEST(ArduPilotGuidedTest, DoesNotLiftOffByVelocities) {
   EXPECT_NEAR(autopilot.Position().z(), height, 0.05);
 }
 
-TEST(Px4OffboardTest, NeedsAStreamOfSetPointsFirst) {
+TEST(Px4OffboardTest, RequiresStreamOfSetPointsFirst) {
   GuidedAutopilot autopilot(AutopilotFirmware::kPx4, Guided("", -1));
   const auto ask = [&] { return autopilot.Command(mavlink::kCommandDoSetMode, 1, 6); };
   EXPECT_EQ(ask(), mavlink::kResultTemporarilyRejected);
@@ -276,7 +276,7 @@ TEST(Px4OffboardTest, NeedsAStreamOfSetPointsFirst) {
   EXPECT_TRUE(autopilot.is_guided());
 }
 
-TEST(Px4OffboardTest, ThePilotTriesUntilItIsAccepted) {
+TEST(Px4OffboardTest, PilotRetriesUntilAccepted) {
   GuidedAutopilot autopilot(AutopilotFirmware::kPx4, Guided());
   autopilot.Run(5);
   EXPECT_FALSE(autopilot.is_guided());
@@ -296,7 +296,7 @@ TEST(Px4OffboardTest, DropsOtherFrames) {
   EXPECT_GT(autopilot.CountText("SET_POSITION_TARGET_LOCAL_NED coordinate frame"), 100);
 }
 
-TEST(Px4OffboardTest, DoesByItsParametersWhenSetPointsEnd) {
+TEST(Px4OffboardTest, FollowsParametersWhenSetPointsEnd) {
   const auto mode_after = [](const std::string& parameters, double seconds) {
     GuidedAutopilot autopilot(AutopilotFirmware::kPx4, Guided(parameters));
     autopilot.Guide(4, {2, 0, 0});
@@ -314,7 +314,7 @@ TEST(Px4OffboardTest, DoesByItsParametersWhenSetPointsEnd) {
   EXPECT_EQ(mode_after("COM_OBL_RC_ACT=0,NAV_RCL_ACT=0", 20), number(FlightMode::kGuided));
 }
 
-TEST(Px4OffboardTest, WithoutAnyFailsafeItFliesOn) {
+TEST(Px4OffboardTest, KeepsFlyingWithoutFailsafe) {
   GuidedAutopilot autopilot(AutopilotFirmware::kPx4, Guided("COM_OBL_RC_ACT=0,NAV_RCL_ACT=0"));
   autopilot.Guide(4, {2, 0, 0});
   autopilot.Run(20);
@@ -323,7 +323,7 @@ TEST(Px4OffboardTest, WithoutAnyFailsafeItFliesOn) {
 
 // On the way to a place it flies as if it were given the velocity, and stops there when nothing
 // follows: 4.2 m/s / MPC_XY_P.
-TEST(Px4OffboardTest, ComesToRestAtThePlaceThatItWasSentTo) {
+TEST(Px4OffboardTest, StopsAtSetPointPlace) {
   GuidedAutopilot autopilot(AutopilotFirmware::kPx4, Guided("COM_OBL_RC_ACT=0,NAV_RCL_ACT=0"));
   const StaleSafety safety({.position_gain = 0.95, .height_gain = 1});
   SetPoint last;
@@ -347,7 +347,7 @@ TEST(Px4OffboardTest, ComesToRestAtThePlaceThatItWasSentTo) {
   EXPECT_GT(lowest, where.z() - 0.6);
 }
 
-TEST(Px4OffboardTest, ReEntersTheModeByItselfWhenSetPointsComeAgain) {
+TEST(Px4OffboardTest, ReentersModeWhenSetPointsReturn) {
   GuidedAutopilot autopilot(AutopilotFirmware::kPx4, Guided("COM_OBL_RC_ACT=4"));
   autopilot.Guide(4, {0, 0, 0});
   autopilot.Run(3);
@@ -375,7 +375,7 @@ TEST(Px4OffboardTest, ClipsVelocities) {
 
 // Measured with the real one in SIH, with its drag and a quarter of it, on a circle of 8 m: 2.1 and
 // 0.54 m with a gain of 1, 1.1 and 0.27 m with 2; straight 0.08 and 0.03 m.
-TEST(Px4OffboardTest, TrailsOnACurveByItsDrag) {
+TEST(Px4OffboardTest, TrailsOnCurveByDrag) {
   const auto trails_by = [](const std::string& path, double drag, double gain) {
     AutopilotModelOptions options = Guided();
     options.uav.multicopter.drag = drag;
@@ -396,7 +396,7 @@ TEST(Px4OffboardTest, TrailsOnACurveByItsDrag) {
   EXPECT_LT(straight, 0.3);
 }
 
-TEST(Px4OffboardTest, DisarmsOnADrivingDeckByItsLandDetectorsSpeed) {
+TEST(Px4OffboardTest, DisarmsOnDrivingDeckBySpeedOfLandDetector) {
   for (const bool raised : {false, true}) {
     GuidedAutopilot autopilot(AutopilotFirmware::kPx4, Guided(raised ? "LNDMC_XY_VEL_MAX=5" : ""),
                               "straight", 4.2);
@@ -411,7 +411,7 @@ TEST(Px4OffboardTest, DisarmsOnADrivingDeckByItsLandDetectorsSpeed) {
   }
 }
 
-TEST(EstimateFaultsTest, AreInjectedByOptions) {
+TEST(EstimateFaultsTest, InjectsFaultsByOptions) {
   AutopilotModelOptions options = Guided("", -1);
   options.pilot.land_after_s = -1;
   options.vehicle_type = 1;

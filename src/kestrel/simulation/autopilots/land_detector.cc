@@ -43,14 +43,14 @@ void LandDetector::ObserveAcceleration(const FlightState& state) {
 }
 
 // update_land_detector of ArduCopter: rotors at their lower limit, with the mix that favours the
-// throttle; no large lean asked for, in any mode; no acceleration, and no fast climb. A horizontal
+// throttle; no large lean commanded, in any mode; no acceleration, and no fast climb. A horizontal
 // speed does not matter.
 bool LandDetector::ArduPilotSettles(const FlightState& state, const FlightCommand& command) const {
   constexpr double kLean_deg = 15;
   constexpr double kAcceleration = 1;
   constexpr double kClimb_mps = 1;
-  const bool is_told_down = command.set_point.velocity.z() < 0;
-  return demand_.throttle() <= 0 && is_told_down && demand_.lean() <= Radians(kLean_deg) &&
+  const bool is_commanded_down = command.set_point.velocity.z() < 0;
+  return demand_.throttle() <= 0 && is_commanded_down && demand_.lean() <= Radians(kLean_deg) &&
          acceleration_.norm() <= kAcceleration && std::abs(state.velocity().z()) < kClimb_mps;
 }
 
@@ -61,8 +61,8 @@ bool LandDetector::Px4Settles(const FlightState& state, const FlightCommand& com
   constexpr double kLowThrottle = 0.6;
   const double still_mps = parameters_["LNDMC_Z_VEL_MAX"];
   const bool has_contact = settled_s_ >= kContactPart * kSettle_s;
-  const bool is_told_down = command.set_point.velocity.z() <= -kDescentPart * still_mps;
-  return is_told_down && (has_contact || demand_.throttle() <= kLowThrottle) &&
+  const bool is_commanded_down = command.set_point.velocity.z() <= -kDescentPart * still_mps;
+  return is_commanded_down && (has_contact || demand_.throttle() <= kLowThrottle) &&
          state.velocity().head<2>().norm() < parameters_["LNDMC_XY_VEL_MAX"] &&
          std::abs(state.velocity().z()) < still_mps;
 }

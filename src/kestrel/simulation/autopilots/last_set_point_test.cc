@@ -155,7 +155,7 @@ TEST(LastSetPointTest, PlacesLandPx4AsWellAsVelocities) {
 }
 
 // The computer dies while the UAV descends on a deck that drives: it stops in the air, on both.
-TEST(LastSetPointTest, TheLastSetPointIsHarmless) {
+TEST(LastSetPointTest, LastSetPointIsHarmless) {
   std::string figures;
   for (const auto firmware : {AutopilotFirmware::kArduPilot, AutopilotFirmware::kPx4}) {
     for (const double height_m : {2.0, 1.0, 0.6}) {

@@ -53,7 +53,7 @@ class Px4Landing : public LandingRules {
   bool is_updated_ = false;          // and was reported since the last step
   Eigen::Vector2d goal_{0, 0};       // place to fly to
   Eigen::Vector2d set_point_{0, 0};  // smoothed place on the way there
-  double altitude_ = 0;              // of the approach, or of the search
+  double altitude_ = 0;              // altitude of the approach or of the search
   int searches_ = 0;
 };
 

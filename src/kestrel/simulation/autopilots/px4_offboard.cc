@@ -25,7 +25,7 @@ constexpr double kSlowest_s = 0.5;  // longest time between two set-points of a 
 // MC_YAW_P and MC_YAWRATE_MAX as they come.
 constexpr double kPx4YawGain = 2.8;
 constexpr double kPx4Turn = Radians(200);
-constexpr double kReaction_s = 0.3;  // of its failsafe, after the time-out (measured)
+constexpr double kReaction_s = 0.3;  // delay of its failsafe after the time-out (measured)
 
 }  // namespace
 
@@ -42,18 +42,18 @@ void Px4Offboard::Handle(const mavlink::SetPositionTargetLocalNed& message,
   }
   const auto order = FlightOrderOf(message, state);
   if (!order) return;
-  if (!first_told_ || SilentFor(state) > kSlowest_s) first_told_ = state.time;
+  if (!stream_begin_ || SilentFor(state) > kSlowest_s) stream_begin_ = state.time;
   told_ = state.time;
   wanted_ = order->set_point;
   turn_rate_ = order->turn_rate;
 }
 
 double Px4Offboard::SilentFor(const FlightState& state) const {
-  return first_told_ ? ToSeconds(state.time - told_) : std::numeric_limits<double>::infinity();
+  return stream_begin_ ? ToSeconds(state.time - told_) : std::numeric_limits<double>::infinity();
 }
 
 bool Px4Offboard::IsAvailable(const FlightState& state) const {
-  return SilentFor(state) < kSlowest_s && ToSeconds(told_ - *first_told_) >= kStream_s;
+  return SilentFor(state) < kSlowest_s && ToSeconds(told_ - *stream_begin_) >= kStream_s;
 }
 
 void Px4Offboard::Start(const FlightState& state) {
@@ -98,7 +98,7 @@ FlightCommand Px4Offboard::Fly(const FlightState& state) {
 
 // P, I and D, as an acceleration; the integral stops at the tilt limit.
 Vector3d Px4Offboard::ControlVelocity(const FlightState& state, const Vector3d& velocity) {
-  constexpr double kFilter_s = 0.03;  // of the derivative
+  constexpr double kFilter_s = 0.03;  // time constant for the derivative
   const auto gains = [this](const char* horizontal, const char* vertical) {
     return Vector3d(parameters_[horizontal], parameters_[horizontal], parameters_[vertical]);
   };

@@ -28,7 +28,7 @@ class ShapedPath {
   struct Limit {
     Vector direction = Vector::Zero();       // in which it cannot accelerate more; zero: it can
     Vector way = Vector::Zero();             // from the UAV to the path, m
-    Vector velocity_error = Vector::Zero();  // of the UAV, m/s
+    Vector velocity_error = Vector::Zero();  // velocity error of the UAV, m/s
   };
 
   // 'feed_forward': wanted acceleration in addition to the velocity. 'max_acceleration' limits only

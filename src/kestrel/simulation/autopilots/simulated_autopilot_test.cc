@@ -67,7 +67,7 @@ TEST_F(SimulatedAutopilotTest, SpeaksMavlinkOverUdp) {
   EXPECT_TRUE(HearsHeartbeat(3s)) << "garbage in between does no harm";
 }
 
-TEST_F(SimulatedAutopilotTest, ALinkThatIsDownIsSilent) {
+TEST_F(SimulatedAutopilotTest, IsSilentWhileLinkIsDown) {
   SimulatedAutopilotOptions options;
   options.firmware = "px4";
   SimulatedAutopilot autopilot(options, "udpout://" + address_, &world_, 1);
@@ -80,7 +80,7 @@ TEST_F(SimulatedAutopilotTest, ALinkThatIsDownIsSilent) {
   EXPECT_TRUE(HearsHeartbeat(3s));
 }
 
-TEST_F(SimulatedAutopilotTest, ALinkIsDownForAWhileByItsOptions) {
+TEST_F(SimulatedAutopilotTest, InterruptsLinkByOptions) {
   SimulatedAutopilotOptions options;
   options.firmware = "px4";
   options.link.down_after_s = 0;
@@ -91,7 +91,7 @@ TEST_F(SimulatedAutopilotTest, ALinkIsDownForAWhileByItsOptions) {
   EXPECT_TRUE(HearsHeartbeat(3s));
 }
 
-TEST(LinkFaultsTest, MessagesComeLateInOrderOrNotAtAll) {
+TEST(LinkFaultsTest, DelaysMessagesInOrderOrDropsThem) {
   LinkFaultOptions options;
   options.delay_s = 0.1;
   options.jitter_s = 0.03;
@@ -114,7 +114,7 @@ TEST(LinkFaultsTest, MessagesComeLateInOrderOrNotAtAll) {
   EXPECT_NEAR(received, 0.8 * kMessages, 80);
 }
 
-TEST(SimulatedAutopilotOptionsTest, NamesWhatIsWrong) {
+TEST(SimulatedAutopilotOptionsTest, ReportsInvalidOptions) {
   SimulatedAutopilotOptions options;
   options.firmware = "inav";
   options.link.loss = 2;

@@ -52,8 +52,8 @@ struct SimulatedCameraOptions {
 };
 
 // A live camera that is rendered: the view from the UAV over a vehicle that drives in real time.
-// The UAV is where the world's simulated autopilot truly is; with another autopilot where its
-// reported pose, extrapolated to the image, says.
+// The UAV is where the world's simulated autopilot truly is; with another autopilot at its
+// reported pose, extrapolated to the image.
 class SimulatedCamera {
  public:
   // The world must outlive this. The first image is taken at 'start' on the local clock. Throws
@@ -91,7 +91,7 @@ class SimulatedCamera {
  private:
   // A pose with its motion during the exposure of one image.
   struct Snapshot {
-    double time_s = 0;  // of the scene
+    double time_s = 0;  // time in the scene
     RigidTransform world_from_body;
     BodyMotion motion;
   };

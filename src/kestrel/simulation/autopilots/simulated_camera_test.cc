@@ -64,7 +64,7 @@ Eigen::Vector2d TruePixel(const SimulatedCamera& camera, const PoseSample& pose,
   return pixel;
 }
 
-TEST_F(SimulatedCameraTest, ShowsThePatternWhereItIs) {
+TEST_F(SimulatedCameraTest, ShowsPatternAtItsPlace) {
   for (const double altitude_m : {1.5, 3.0, 6.0}) {
     SimulatedCamera camera({}, &world_, kStart, /*seed=*/5);
     const LandingPatternDetector detector(CameraModel(camera.calibration().intrinsics), {});
@@ -82,7 +82,7 @@ TEST_F(SimulatedCameraTest, ShowsThePatternWhereItIs) {
   }
 }
 
-TEST_F(SimulatedCameraTest, ExtrapolatesThePoseByItsMotion) {
+TEST_F(SimulatedCameraTest, ExtrapolatesPoseByMotion) {
   SimulatedCamera camera({}, &world_, kStart, /*seed=*/5);
   SimulatedCamera informed({}, &world_, kStart, /*seed=*/5);
   Fly(&camera, 3, 0, 0.2);
@@ -99,7 +99,7 @@ TEST_F(SimulatedCameraTest, ExtrapolatesThePoseByItsMotion) {
   EXPECT_FALSE(camera.Capture(kStart + 2000ms)) << "the poses have ended";
 }
 
-TEST_F(SimulatedCameraTest, ImagesMayBeStampedLate) {
+TEST_F(SimulatedCameraTest, StampsImagesLateByOption) {
   SimulatedCameraOptions options;
   options.clock_offset_s = -0.08;
   SimulatedCamera camera(options, &world_, kStart, /*seed=*/5);
@@ -114,7 +114,7 @@ TEST_F(SimulatedCameraTest, ImagesMayBeStampedLate) {
   EXPECT_EQ(ToNanoseconds(truth->time), 7280000000);
 }
 
-TEST_F(SimulatedCameraTest, LiveFramesComeAtTheirTimesWithPosesOfThen) {
+TEST_F(SimulatedCameraTest, DeliversLiveFramesInTimeWithMatchingPoses) {
   const Time start = Now();
   VehicleWorld world(ReadVehicleWorld("standing", {}), start, 3);
   SimulatedCamera camera({}, &world, start + 100ms, 5);
@@ -135,14 +135,14 @@ TEST_F(SimulatedCameraTest, LiveFramesComeAtTheirTimesWithPosesOfThen) {
   EXPECT_EQ((frame.time - start - 100ms) % Duration(50ms), Duration(0));
 }
 
-TEST_F(SimulatedCameraTest, TruePosesPlaceItThoughTheReportedOnesAreLateOrWrong) {
+TEST_F(SimulatedCameraTest, UsesTruePosesWhenReportedOnesAreWrong) {
   SimulatedCamera informed({}, &world_, kStart, /*seed=*/5);
   VehicleWorld other(ReadVehicleWorld("circle", {}), kStart, /*seed=*/3);
   SimulatedCamera reported({}, &other, kStart, /*seed=*/5);
   const Vector3d start = world_.PatternAt(kStart).translation + Vector3d(-0.2, 0.3, 3);
   for (int i = 0; i < 25; ++i) {
     const PoseSample pose = PoseOver(start, kStart + i * 20ms);
-    world_.TellPose(pose);
+    world_.ReportPose(pose);
     reported.AddPose(pose);
     informed.AddPose(PoseOver(start + Vector3d(5, 0, 0), kStart + (i - 10) * 20ms));
   }
@@ -152,7 +152,7 @@ TEST_F(SimulatedCameraTest, TruePosesPlaceItThoughTheReportedOnesAreLateOrWrong)
   EXPECT_EQ(cv::countNonZero(by_truth->image != by_report->image), 0);
 }
 
-TEST(VehicleWorldTest, AVehicleMayWaitForTheUav) {
+TEST(VehicleWorldTest, VehicleMayWaitForUav) {
   VehicleWorldOptions options =
       ReadVehicleWorld("straight", {"drive_altitude_m=5", "drive_delay_s=2", "ground.map_px=64"});
   VehicleWorld world(options, kStart, 3);
@@ -167,7 +167,7 @@ TEST(VehicleWorldTest, AVehicleMayWaitForTheUav) {
   EXPECT_NEAR((place(22) - place(20)).norm(), 4, 0.05) << "2 m/s";
 }
 
-TEST(VehicleWorldTest, UnknownScenariosAreNamed) {
+TEST(VehicleWorldTest, ReportsUnknownScenarios) {
   try {
     ReadVehicleWorld("figure9", {});
     FAIL();
@@ -178,7 +178,7 @@ TEST(VehicleWorldTest, UnknownScenariosAreNamed) {
   }
 }
 
-TEST(VehicleWorldOptions, TheVehicleCarriesThePadThatIsLookedForUnlessASettingNamesAnother) {
+TEST(VehicleWorldOptions, VehicleCarriesPadOfDetectorUnlessSetOtherwise) {
   TargetOptions target;
   target.kind = "apriltag";
   target.apriltag.id = 7;
@@ -189,7 +189,7 @@ TEST(VehicleWorldOptions, TheVehicleCarriesThePadThatIsLookedForUnlessASettingNa
   EXPECT_EQ(other.target.apriltag.id, 8);
 }
 
-TEST_F(SimulatedCameraTest, HasFaultsForAWhile) {
+TEST_F(SimulatedCameraTest, InjectsFaultForAWhile) {
   const auto image_at = [&](const std::string& fault, Duration after_start) {
     SimulatedCameraOptions options;
     options.scale = 0.2;
@@ -213,7 +213,7 @@ TEST_F(SimulatedCameraTest, HasFaultsForAWhile) {
   EXPECT_TRUE(differs(image_at("beside", 700ms), during));
 }
 
-TEST_F(SimulatedCameraTest, GivesFewerImagesWhenItIsSlow) {
+TEST_F(SimulatedCameraTest, DeliversFewerImagesWhenSlow) {
   const auto count = [&](const std::string& fault) {
     const Time start = Now();
     SimulatedCameraOptions options;
@@ -237,7 +237,7 @@ TEST_F(SimulatedCameraTest, GivesFewerImagesWhenItIsSlow) {
   EXPECT_EQ(count("stopped"), 0);
 }
 
-TEST(SimulatedCameraOptionsTest, NamesAFaultThatIsNone) {
+TEST(SimulatedCameraOptionsTest, ReportsUnknownFault) {
   SimulatedCameraOptions options;
   options.fault.kind = "foggy";
   EXPECT_THAT(ViolationsOf(options),

@@ -53,7 +53,7 @@ class SimulatedSource {
   TargetOptions target_;
   std::uint64_t seed_;
   std::unique_ptr<VehicleWorld> world_;
-  SimulatedCamera* camera_ = nullptr;  // of the source; null: none was opened
+  SimulatedCamera* camera_ = nullptr;  // camera of the source; null: none was opened
   bool has_true_poses_ = false;
 };
 

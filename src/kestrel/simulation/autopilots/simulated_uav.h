@@ -40,7 +40,7 @@ struct Contact {
   bool on_board = false;                       // otherwise on the ground
   Eigen::Vector3d feet_in_pattern{0, 0, 0};    // middle of its feet, m
   Eigen::Vector3d velocity_in_world{0, 0, 0};  // relative to the surface below, m/s
-  double heading_in_pattern = 0;  // of the nose, rad from the pattern's x axis to its y axis
+  double heading_in_pattern = 0;               // nose, rad from the pattern's x axis to its y axis
 };
 
 // The true UAV: a multicopter in the wind. After it has come down on the ground or on the vehicle's

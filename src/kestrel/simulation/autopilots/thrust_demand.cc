@@ -31,7 +31,7 @@ ThrustDemand::ThrustDemand(AutopilotFirmware firmware, const AutopilotParameters
   }
 }
 
-// In the air the control has what it asks for.
+// In the air the motion follows the control: nothing winds up.
 void ThrustDemand::Observe(const FlightState& state, const FlightCommand& command) {
   if (!state.is_standing) {
     horizontal_integral_.setZero();

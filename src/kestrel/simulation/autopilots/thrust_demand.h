@@ -8,9 +8,9 @@
 
 namespace kestrel {
 
-// Thrust that an autopilot asks of its rotors while something carries the UAV. Its velocity control
-// works against what does not yield: errors add up until it leans as far as it may, and until the
-// rotors are at their lower limit.
+// Thrust and lean that an autopilot commands while the UAV stands on a deck that carries it. The
+// velocity control cannot change the motion of the deck. Its integrators therefore wind up until
+// the lean is at its limit and the throttle at its minimum. Land detectors judge by both.
 class ThrustDemand {
  public:
   // The parameters must outlive this.

@@ -117,7 +117,7 @@ void VehicleWorld::ListenToPoses(PoseListener listener) {
   listener_ = std::move(listener);
 }
 
-void VehicleWorld::TellPose(const PoseSample& pose) {
+void VehicleWorld::ReportPose(const PoseSample& pose) {
   ObserveUav(pose.time, pose.world_from_body.translation);
   const std::lock_guard lock(listener_mutex_);
   if (listener_) listener_(pose);

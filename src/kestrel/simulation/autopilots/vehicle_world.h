@@ -58,7 +58,7 @@ VehicleWorldOptions ReadVehicleWorld(const std::string& scenario,
 // options and the seed determine its scene. Thread-safe.
 class VehicleWorld {
  public:
-  // Time 0 of the scene is at 'start' on the local clock, unless the options say when. Throws
+  // Time 0 of the scene is at 'start' on the local clock, unless the options set it. Throws
   // InputError when the options are not valid.
   VehicleWorld(const VehicleWorldOptions& options, Time start, std::uint64_t seed);
   VehicleWorld(const VehicleWorld&) = delete;  // the scene's motions refer to it
@@ -68,7 +68,7 @@ class VehicleWorld {
   double SceneTime(Time time) const { return ToSeconds(time - start_); }
 
   RigidTransform PatternAt(Time time) const;    // world_from_pattern
-  Eigen::Vector3d VelocityAt(Time time) const;  // of the pattern's centre in the world, m/s
+  Eigen::Vector3d VelocityAt(Time time) const;  // pattern's centre in the world, m/s
 
   // True when a point of the pattern's plane (in the pattern's frame) is on the board.
   bool IsOnBoard(const Eigen::Vector3d& point_in_pattern) const;
@@ -80,7 +80,7 @@ class VehicleWorld {
   // they take no time. One listener at a time; nothing: none.
   using PoseListener = std::function<void(const PoseSample& pose)>;
   void ListenToPoses(PoseListener listener);
-  void TellPose(const PoseSample& pose);
+  void ReportPose(const PoseSample& pose);
 
   const LandingScene& scene() const { return scene_; }
   const VehicleWorldOptions& options() const { return options_; }

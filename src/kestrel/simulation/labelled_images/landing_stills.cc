@@ -164,7 +164,7 @@ Vector2d CenterPx(const CameraModel& camera, const RigidTransform& camera_from_p
 struct LookalikePlace {
   Vector2d center;
   double radius;
-  double minor_px;  // of its circle's image
+  double minor_px;  // smallest diameter of its circle's image
 };
 
 // Returns the part of a circle that is in view.

@@ -82,10 +82,10 @@ struct LandingStill {
   LandingPattern pattern;              // as drawn
   RigidTransform camera_from_pattern;  // true pose in the middle of the exposure
   Eigen::Vector2d center_px;           // projection of the pattern's origin; may be outside
-  double altitude_m;                   // of the camera above the pattern's plane
+  double altitude_m;                   // height of the camera above the pattern's plane
   Eigen::Vector3d up_in_camera;        // unit vector away from the ground
-  double visible_fraction;             // of ring and cross, see VisibleFraction
-  bool has_shadow = false;     // of the UAV, or the edge of a larger one, on or near the ring
+  double visible_fraction;             // visible share of ring and cross, see VisibleFraction
+  bool has_shadow = false;  // shadow of the UAV, or the edge of a larger one, on or near the ring
   bool has_highlight = false;  // a mirror image of the sun on or near the ring
   double ring_major_px;        // largest and smallest width of the outer ring's image,
   double ring_minor_px;        // as if the image had no border
@@ -97,7 +97,7 @@ struct LookalikeStill {
   RigidTransform camera_from_pattern;  // pose of the plane
   double altitude_m;
   Eigen::Vector3d up_in_camera;
-  std::vector<std::string> names;  // of its look-alikes, at least one
+  std::vector<std::string> names;  // names of its look-alikes, at least one
 };
 
 // Makes random stills: any yaw, tilt and place in the lens circle, random ground, light, shadow,
@@ -111,8 +111,8 @@ class LandingStillMaker {
   // Throws InputError when no pose within the options shows enough of the pattern.
   LandingStill MakePattern(std::uint64_t seed) const;
 
-  // Makes a still with one to five look-alikes of random kinds, visible and large as the options
-  // say. Throws InputError when none can be placed.
+  // Makes a still with one to five look-alikes of random kinds, visible and large as set in the
+  // options. Throws InputError when none can be placed.
   LookalikeStill MakeLookalikes(std::uint64_t seed) const;
 
   // The same without the images, which are left empty: fast.

@@ -55,7 +55,7 @@ double MeanOnPattern(const LandingStill& still, const CameraModel& camera, bool 
   return sum / count;
 }
 
-TEST(LandingStillMakerTest, TruthIsWhereThePatternIs) {
+TEST(LandingStillMakerTest, TruthMatchesPattern) {
   LandingStillOptions options;
   options.min_visible_fraction = 1;
   options.min_ring_minor_px = 30;
@@ -69,7 +69,7 @@ TEST(LandingStillMakerTest, TruthIsWhereThePatternIs) {
 }
 
 // A print that is not flat and rigid moves the true centre in the image by as much as the print.
-TEST(LandingStillMakerTest, TruthIsOnTheSheetAtItsTime) {
+TEST(LandingStillMakerTest, TruthLiesOnSheetAtItsTime) {
   LandingStillOptions flat;
   flat.min_visible_fraction = 1;
   flat.min_ring_minor_px = 40;
@@ -100,7 +100,7 @@ TEST(LandingStillMakerTest, TruthIsOnTheSheetAtItsTime) {
   }
 }
 
-TEST(LandingStillMakerTest, SameSeedSameBytes) {
+TEST(LandingStillMakerTest, SameSeedGivesSameBytes) {
   const LandingStillMaker maker(LandingStillOptions{});
   const LandingStillMaker twin(LandingStillOptions{});
   const cv::Mat pattern = maker.MakePattern(4).image;
@@ -129,7 +129,7 @@ std::string ErrorOf(const LandingStillOptions& options) {
   return "";
 }
 
-TEST(LandingStillMakerTest, RefusesBadOptionsInWords) {
+TEST(LandingStillMakerTest, RefusesInvalidOptions) {
   LandingStillOptions options;
   options.max_altitude_m = 1;
   options.max_tilt_deg = 85;
@@ -143,7 +143,7 @@ TEST(LandingStillMakerTest, RefusesBadOptionsInWords) {
   EXPECT_THAT(ErrorOf(too_high), HasSubstr("no pose at an altitude of 100.00 m"));
 }
 
-constexpr int kStills = 6;  // of each condition
+constexpr int kStills = 6;  // stills per condition
 
 struct MeanLevels {
   double ink = 0, white = 0;
@@ -166,7 +166,7 @@ MeanLevels LevelsUnder(StillCondition condition) {
   return levels;
 }
 
-TEST(LandingStillMakerTest, ConditionsAreSeenInTheImage) {
+TEST(LandingStillMakerTest, ConditionsChangeImage) {
   const MeanLevels mixed = LevelsUnder(StillCondition::kMixed);
   const MeanLevels dark = LevelsUnder(StillCondition::kDark);
   EXPECT_LT(dark.white - dark.ink, 0.5 * (mixed.white - mixed.ink));

@@ -12,7 +12,7 @@ using Eigen::Vector2d;
 
 constexpr double kRadius_m = 0.5;
 
-TEST(RandomSceneTest, NoWearLeavesSceneAndRandomNumbersAsTheyAre) {
+TEST(RandomSceneTest, ZeroWearKeepsSceneAndRandomNumbers) {
   Random random(7), untouched(7);
   Scene scene;
   AddRandomWear({0, 0}, kRadius_m, 0, &random, &scene);
@@ -20,7 +20,7 @@ TEST(RandomSceneTest, NoWearLeavesSceneAndRandomNumbersAsTheyAre) {
   EXPECT_EQ(random.Bits(), untouched.Bits());
 }
 
-TEST(RandomSceneTest, StainsLieOnThePrintAndGrowInNumberWithTheWear) {
+TEST(RandomSceneTest, StainsLieOnPrintAndIncreaseWithWear) {
   const Vector2d center(2, -1);
   std::size_t little = 0, much = 0;
   for (int seed = 0; seed < 50; ++seed) {

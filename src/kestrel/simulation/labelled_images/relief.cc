@@ -31,7 +31,7 @@ double Relief::HeightAt(const Eigen::Vector2d& point) const {
 std::vector<std::string> Relief::Validate() const {
   std::vector<std::string> violations;
   Require(size_m, Range{1e-3, 1e3}, "size_m", &violations);
-  constexpr double kSteepest = 0.2;  // of the size
+  constexpr double kSteepest = 0.2;  // share of the size
   Require(bulge_m, Range{-kSteepest * size_m, kSteepest * size_m}, "bulge_m", &violations);
   Require(fold_m, Range{-kSteepest * size_m, kSteepest * size_m}, "fold_m", &violations);
   return violations;

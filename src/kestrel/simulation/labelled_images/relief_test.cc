@@ -21,7 +21,7 @@ TEST(Relief, IsFlatWithoutHeights) {
   EXPECT_EQ(flat.HeightAt({0.1, 0.2}), 0);
 }
 
-TEST(Relief, ABulgeIsHighestInTheMiddleAndEndsAtTheRim) {
+TEST(Relief, BulgeIsHighestInMiddleAndEndsAtRim) {
   for (const double bulge_m : {0.045, -0.045}) {
     const Relief relief{1.5, bulge_m, 0};
     EXPECT_FALSE(relief.IsFlat());
@@ -36,7 +36,7 @@ TEST(Relief, ABulgeIsHighestInTheMiddleAndEndsAtTheRim) {
 }
 
 // Two creases in each direction, one up and one down, with straight lines between them.
-TEST(Relief, AFoldHasCreasesAtTheThirds) {
+TEST(Relief, FoldHasCreasesAtThirds) {
   const Relief relief{1.5, 0, 0.03};
   const auto height = [&](double across) { return relief.HeightAt(At(relief, across, 0)); };
   EXPECT_NEAR(height(1.0 / 3), 0.015, 1e-12);
@@ -53,7 +53,7 @@ TEST(Relief, AFoldHasCreasesAtTheThirds) {
   EXPECT_NEAR(highest, 0.03, 1e-3) << "where two creases meet";
 }
 
-TEST(Relief, WhatIsTooSteepIsRefused) {
+TEST(Relief, RefusesTooSteepRelief) {
   EXPECT_TRUE((Relief{1.5, 0.2, -0.2}.Validate().empty()));
   EXPECT_EQ((Relief{1.5, 0.5, -0.5}.Validate().size()), 2u);
   EXPECT_EQ((Relief{0, 0, 0}.Validate().size()), 1u);

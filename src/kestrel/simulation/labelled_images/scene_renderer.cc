@@ -179,7 +179,7 @@ class SceneRenderer::PlanePainter {
     Eigen::Vector2d right{0, 0};  // from one pixel to its right neighbour
     Eigen::Vector2d down{0, 0};
     double size = 0;    // geometric mean of its sides
-    double radius = 0;  // of the circle that contains it during the whole exposure
+    double radius = 0;  // radius of the circle that contains it during the whole exposure
   };
 
   // Returns nothing when the pixel sees the horizon.

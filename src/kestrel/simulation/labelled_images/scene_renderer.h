@@ -48,7 +48,7 @@ struct Scene {
   std::vector<PaintLayer> layers;
   std::vector<Shadow> shadows;
   std::vector<Glare> glares;
-  Relief relief;  // of the sheet around the origin; wrong in views flatter than its slopes
+  Relief relief;  // relief of the sheet around the origin; wrong in views flatter than its slopes
 
   // Returns every violation in words; empty when the scene can be rendered.
   std::vector<std::string> Validate() const;

@@ -139,7 +139,7 @@ EdgeErrors MeasureRing(const CameraModel& camera, const RigidTransform& camera_f
       image);
 }
 
-TEST(SceneRendererTest, EdgesLieWhereTheCameraProjectsThem) {
+TEST(SceneRendererTest, EdgesLieAtTheirProjection) {
   const CameraModel camera(PaperCamera());
   const SceneRenderer renderer(camera, ClearLens());
   for (const double tilt : {0.0, 0.5, 0.9}) {
@@ -165,7 +165,7 @@ TEST(SceneRendererTest, EdgesLieRightPast80Degrees) {
   EXPECT_LT(errors.max_abs, 0.06);
 }
 
-TEST(SceneRendererTest, MotionBlursWithoutMovingTheEdges) {
+TEST(SceneRendererTest, MotionBlursWithoutMovingEdges) {
   const CameraModel camera(PaperCamera());
   const SceneRenderer renderer(camera, ClearLens());
   const RigidTransform pose = NadirPose(1.3);
@@ -179,7 +179,7 @@ TEST(SceneRendererTest, MotionBlursWithoutMovingTheEdges) {
   EXPECT_GT(cv::norm(sharp, moved, cv::NORM_INF), 15);
 }
 
-TEST(SceneRendererTest, ASheetLiesWhereItsReliefHasIt) {
+TEST(SceneRendererTest, SheetFollowsItsRelief) {
   const CameraModel camera(PaperCamera());
   const SceneRenderer renderer(camera, ClearLens());
   const RigidTransform pose = FacingPose(Vector3d(0.1, -0.05, 1), 1.1, 0.6);
@@ -203,7 +203,7 @@ TEST(SceneRendererTest, ASheetLiesWhereItsReliefHasIt) {
 }
 
 // The view moves during the read-out: by 5 % of the number of rows from the first to the last.
-TEST(SceneRendererTest, ARollingShutterSkewsWhatMoves) {
+TEST(SceneRendererTest, RollingShutterSkewsMovingScene) {
   const CameraModel camera(PaperCamera());
   const SceneRenderer renderer(camera, ClearLens());
   const RigidTransform pose = NadirPose(1.3);
@@ -229,7 +229,7 @@ TEST(SceneRendererTest, ARollingShutterSkewsWhatMoves) {
   EXPECT_GT(MeasureRing(camera, pose, image).max_abs, 1.5) << "half of the shift, across the ring";
 }
 
-TEST(SceneRendererTest, SameInputSameBytes) {
+TEST(SceneRendererTest, SameInputGivesSameBytes) {
   const SceneRenderer renderer{CameraModel(PaperCamera())};
   Scene scene = PatternScene();
   scene.ground_texture = 0.5;
@@ -261,7 +261,7 @@ Scene FlatScene(double reflectance) {
   return scene;
 }
 
-TEST(SceneRendererTest, NoiseHasTheSpreadAskedFor) {
+TEST(SceneRendererTest, NoiseHasRequestedSpread) {
   const SceneRenderer renderer(CameraModel(PaperCamera()), ClearLens());
   const cv::Rect middle(276, 140, 200, 200);
   ImagingOptions imaging;
@@ -280,7 +280,7 @@ TEST(SceneRendererTest, NoiseHasTheSpreadAskedFor) {
   EXPECT_NEAR(level.sigma, 1.5, 0.1);
 }
 
-TEST(SceneRendererTest, LightShadowHazeAndGlareSetTheLevel) {
+TEST(SceneRendererTest, LightShadowHazeAndGlareSetLevel) {
   const SceneRenderer renderer(CameraModel(PaperCamera()), ClearLens());
   const RigidTransform pose = NadirPose(2);  // y of the pattern points up in the image
   const auto at = [&](const Scene& scene, const ImagingOptions& imaging, int u, int v) {
@@ -314,7 +314,7 @@ TEST(SceneRendererTest, LightShadowHazeAndGlareSetTheLevel) {
   EXPECT_NEAR(at(scene, imaging, 100, 240), 50, 1);
 }
 
-TEST(SceneRendererTest, SkyIsAboveTheHorizonAndNothingOutsideOfTheLens) {
+TEST(SceneRendererTest, SkyIsAboveHorizonAndLensEdgeIsDark) {
   LensOptions lens = ClearLens();
   lens.half_angle_deg = 60;  // 265 px
   const SceneRenderer renderer(CameraModel(PaperCamera()), lens);
@@ -330,7 +330,7 @@ TEST(SceneRendererTest, SkyIsAboveTheHorizonAndNothingOutsideOfTheLens) {
   EXPECT_EQ(image.at<std::uint8_t>(200, 376 - 275), 0);
 }
 
-TEST(SceneRendererTest, AirframeCoversTheScene) {
+TEST(SceneRendererTest, AirframeCoversScene) {
   LensOptions lens = ClearLens();
   lens.airframe.Add(Drawing::Ring{{300, 400}, 20});
   lens.airframe_radiance = 0.4;
@@ -350,7 +350,7 @@ std::string ErrorOf(Action action) {
   return "";
 }
 
-TEST(SceneRendererTest, RefusesBadInputInWords) {
+TEST(SceneRendererTest, RefusesInvalidInput) {
   const CameraModel camera(PaperCamera());
   LensOptions lens;
   lens.vignette = -1;

@@ -15,9 +15,9 @@ namespace kestrel {
 // Place and properties of a shadow.
 struct SunLight {
   Eigen::Vector2d center;  // approximate centre of the shadows, on the plane
-  double height_m;  // of a UAV above the plane; the sun's disc makes edges soft in proportion to
-                    // the height
-  double ambient;   // part of the light that remains in a shadow, 0 to 1
+  // Height of a UAV above the plane. The sun's disc makes edges soft in proportion to it.
+  double height_m;
+  double ambient;  // part of the light that remains in a shadow, 0 to 1
 };
 
 // A thing between the sun and the pattern. Its parts may overlap, which makes several levels of

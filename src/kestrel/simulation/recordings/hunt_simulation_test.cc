@@ -51,7 +51,7 @@ Eigen::Vector2d RedCenter(const cv::Mat& image, const Eigen::Vector2d& near, dou
   return sum / weights;
 }
 
-TEST(HuntSimulationTest, ObjectsAreWhereTheirRowsSayRollingShutterAndVibrationIncluded) {
+TEST(HuntSimulationTest, ObjectsMatchTruthWithRollingShutterAndVibration) {
   // A fast, shaking flight over only large red discs.
   const RecordingPlan plan = PlanHunt(
       Small("sweep", {"frames=24", "objects.size_m=0.5", "objects.red=14", "objects.green=0",
@@ -94,7 +94,7 @@ TEST(HuntSimulationTest, CuboidsHaveDigits) {
   EXPECT_EQ(plan.render(0).type(), CV_8UC3);
 }
 
-TEST(HuntSimulationTest, YellowMovesAndTheOthersDoNot) {
+TEST(HuntSimulationTest, OnlyYellowMoves) {
   const RecordingPlan plan =
       PlanHunt(Small("sweep", {"frames=60", "objects.yellow=6"}), SmallHuntCamera(), 2);
   const std::string objects_text = TextOf(plan, "objects0/objects.csv");
@@ -113,7 +113,7 @@ TEST(HuntSimulationTest, YellowMovesAndTheOthersDoNot) {
   EXPECT_GT(moving, 3);
 }
 
-TEST(HuntSimulationTest, DescentEndsOverTheFirstObject) {
+TEST(HuntSimulationTest, DescentEndsOverFirstObject) {
   const RecordingPlan plan = PlanHunt(Small("descend", {"frames=20"}), SmallHuntCamera(), 2);
   const std::string text = TextOf(plan, "objects0/data.csv");
   const CsvTable rows(text, "objects");
@@ -140,7 +140,7 @@ std::map<std::int64_t, std::string> Positions(const RecordingPlan& plan) {
   return positions;
 }
 
-TEST(HuntSimulationTest, UavsOfATeamFlyOverOneField) {
+TEST(HuntSimulationTest, UavsOfTeamShareField) {
   const auto plan = [](std::uint64_t seed, const char* first_lane) {
     return PlanHunt(Small("sweep", {"frames=60", "field_seed=7", "objects.yellow=0", first_lane}),
                     SmallHuntCamera(), seed);
@@ -160,7 +160,7 @@ TEST(HuntSimulationTest, UavsOfATeamFlyOverOneField) {
   EXPECT_GT(seen_by_both, 2);
 }
 
-TEST(HuntSimulationTest, RefusesWhatCannotBeFlown) {
+TEST(HuntSimulationTest, RefusesUnflyableOptions) {
   EXPECT_EQ(InputErrorOf([] {
               Small("descend", {"objects.red=0", "objects.green=0", "objects.blue=0",
                                 "objects.yellow=0", "objects.orange=0", "objects.orange_bars=0"});

@@ -48,7 +48,7 @@ RigidTransform PoseIn(const CsvTable& table, std::size_t row) {
           {number(1), number(2), number(3)}};
 }
 
-TEST(LandingSimulationTest, TruthOfPatternAndBodyIsOneStory) {
+TEST(LandingSimulationTest, TruthOfPatternAndBodyIsConsistent) {
   const CameraCalibration camera = SmallCamera();
   const RecordingPlan plan = PlanLanding(SmallFlight(), camera, 7);
   const CsvTable pattern(TextOf(plan, "landing_pattern0/data.csv"), "pattern");
@@ -73,7 +73,7 @@ TEST(LandingSimulationTest, TruthOfPatternAndBodyIsOneStory) {
   }
 }
 
-TEST(LandingSimulationTest, SameSeedSameBytesWhateverTheThreads) {
+TEST(LandingSimulationTest, SameSeedGivesSameBytesWithAnyThreads) {
   const TestFolder folder;
   const auto always = [](std::size_t) { return true; };
   WriteRecording(PlanLanding(SmallFlight(), SmallCamera(), 3), folder / "one", false, 1, always);
@@ -90,7 +90,7 @@ TEST(LandingSimulationTest, SameSeedSameBytesWhateverTheThreads) {
   EXPECT_NE(other.files[2].text, ReadFile(folder / "one/mav0/nav0/data.csv"));
 }
 
-TEST(LandingSimulationTest, RecordingIsReadAsAnyOther) {
+TEST(LandingSimulationTest, RecordingIsReadable) {
   const TestFolder folder;
   WriteRecording(PlanLanding(SmallFlight(), SmallCamera(), 3), folder / "flight", false, 1,
                  [](std::size_t) { return true; });
@@ -108,7 +108,7 @@ TEST(LandingSimulationTest, RecordingIsReadAsAnyOther) {
   EXPECT_GT(max, 120) << "the board is white";
 }
 
-TEST(LandingSimulationTest, LookalikesHaveNoRowOfAPattern) {
+TEST(LandingSimulationTest, LookalikesHaveNoPatternRow) {
   LandingSimulationOptions options = SmallFlight();
   options.stills.show = "lookalikes";
   const RecordingPlan plan = PlanLanding(options, SmallCamera(), 3);
@@ -118,7 +118,7 @@ TEST(LandingSimulationTest, LookalikesHaveNoRowOfAPattern) {
   EXPECT_FALSE(plan.render(0).empty());
 }
 
-TEST(LandingSimulationTest, StillsSeeThePatternWhereTheirPosesSay) {
+TEST(LandingSimulationTest, StillsShowPatternAtTheirPoses) {
   LandingSimulationOptions options = SmallFlight();
   options.stills.show = "pattern";
   options.stills.max_altitude_m = 3;
@@ -137,7 +137,7 @@ TEST(LandingSimulationTest, StillsSeeThePatternWhereTheirPosesSay) {
   }
 }
 
-TEST(LandingSimulationTest, SceneFileSaysWhatWasDrawn) {
+TEST(LandingSimulationTest, SceneFileDescribesScene) {
   const RecordingPlan plan = PlanLanding(SmallFlight(), SmallCamera(), 7);
   EXPECT_THAT(plan.scene, HasSubstr("time_offset_s: 0."));
   EXPECT_THAT(plan.scene, HasSubstr("true_T_BS:\n"));

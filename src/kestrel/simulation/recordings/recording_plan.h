@@ -18,7 +18,7 @@ namespace kestrel {
 
 // A recording to be rendered: it has everything except the images.
 struct RecordingPlan {
-  std::vector<Time> times;  // of the images
+  std::vector<Time> times;  // image times
   // Renders the image at an index of 'times'; the result is the same at any time and on any thread.
   std::function<cv::Mat(std::size_t index)> render;
   // scene.yaml: names everything on which the images depend.

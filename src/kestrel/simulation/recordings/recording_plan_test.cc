@@ -49,7 +49,7 @@ std::vector<std::string> FilesBelow(const fs::path& folder) {
   return files;
 }
 
-TEST(RecordingPlanTest, WritesAWholeRecording) {
+TEST(RecordingPlanTest, WritesCompleteRecording) {
   const TestFolder folder;
   std::atomic<int> rendered = 0;
   ASSERT_TRUE(WriteRecording(TestPlan(&rendered), folder / "flight", false, 1, Always));
@@ -62,7 +62,7 @@ TEST(RecordingPlanTest, WritesAWholeRecording) {
   EXPECT_FALSE(fs::exists(folder / "flight.part"));
 }
 
-TEST(RecordingPlanTest, TwoDoNotWriteOneRecordingAtATime) {
+TEST(RecordingPlanTest, RefusesSecondWriterOfRecording) {
   const TestFolder folder;
   std::atomic<int> rendered = 0;
   const std::string output = folder / "flight";
@@ -76,7 +76,7 @@ TEST(RecordingPlanTest, TwoDoNotWriteOneRecordingAtATime) {
   EXPECT_EQ(ReadFile(output + "/mav0/scene.yaml"), "seed: 1\n");
 }
 
-TEST(RecordingPlanTest, InterruptionLeavesNothingThatLooksCompleteAndIsGoneOnFrom) {
+TEST(RecordingPlanTest, InterruptedRecordingIsIncompleteAndResumed) {
   const TestFolder folder;
   std::atomic<int> rendered = 0;
   const RecordingPlan plan = TestPlan(&rendered);
@@ -96,7 +96,7 @@ TEST(RecordingPlanTest, InterruptionLeavesNothingThatLooksCompleteAndIsGoneOnFro
   }
 }
 
-TEST(RecordingPlanTest, AnotherSceneStartsAnew) {
+TEST(RecordingPlanTest, AnotherSceneRestartsRecording) {
   const TestFolder folder;
   std::atomic<int> rendered = 0;
   WriteRecording(TestPlan(&rendered), folder / "flight", false, 1,
@@ -106,7 +106,7 @@ TEST(RecordingPlanTest, AnotherSceneStartsAnew) {
   EXPECT_EQ(again, kImages);
 }
 
-TEST(RecordingPlanTest, ReplacesOnlyRecordingsAndOnlyWhenAsked) {
+TEST(RecordingPlanTest, ReplacesOnlyRecordingsOnRequest) {
   const TestFolder folder;
   std::atomic<int> rendered = 0;
   const RecordingPlan plan = TestPlan(&rendered);
@@ -125,7 +125,7 @@ TEST(RecordingPlanTest, ReplacesOnlyRecordingsAndOnlyWhenAsked) {
   EXPECT_EQ(write("empty", false), "");
 }
 
-TEST(RecordingPlanTest, AnErrorOfAThreadIsTheCallers) {
+TEST(RecordingPlanTest, RethrowsErrorOfThreadToCaller) {
   const TestFolder folder;
   std::atomic<int> rendered = 0;
   RecordingPlan plan = TestPlan(&rendered);

@@ -20,7 +20,7 @@ namespace {
 using Eigen::Vector3d;
 using ::testing::HasSubstr;
 
-TEST(ScenariosTest, AllAreValid) {
+TEST(ScenariosTest, AllScenariosAreValid) {
   for (const Scenario& scenario : LandingScenarios()) {
     EXPECT_NO_THROW(ReadLandingSimulation(scenario.name, "", {})) << scenario.name;
   }
@@ -32,7 +32,7 @@ TEST(ScenariosTest, AllAreValid) {
   }
 }
 
-TEST(ScenariosTest, FileAndSettingsGoOverTheScenario) {
+TEST(ScenariosTest, FileAndSettingsOverrideScenario) {
   const TestFolder folder;
   const std::string file =
       folder.Write("mine.yaml", "frames: 7\nrate_hz: 1\nvehicle:\n  speed_mps: 3\n");
@@ -47,14 +47,14 @@ TEST(ScenariosTest, StillsMayBeFew) {
   EXPECT_NO_THROW(ReadLandingSimulation("stills", "", {"frames=1"}));
 }
 
-TEST(ScenariosTest, PrintedOptionsAreAScenarioFile) {
+TEST(ScenariosTest, PrintedOptionsAreScenarioFile) {
   const TestFolder folder;
   const LandingSimulationOptions dust = ReadLandingSimulation("dust", "", {});
   const std::string file = folder.Write("dust.yaml", PrintOptions(dust));
   EXPECT_EQ(PrintOptions(ReadLandingSimulation("", file, {})), PrintOptions(dust));
 }
 
-TEST(ScenariosTest, BadScenarioFilesAreRefusedInWords) {
+TEST(ScenariosTest, RefusesMalformedScenarioFiles) {
   const TestFolder folder;
   const auto error = [&](const std::string& yaml) {
     const std::string file = folder.Write("bad.yaml", yaml);
@@ -106,7 +106,7 @@ Motion FlightOf(const char* scenario, std::uint64_t seed) {
   return LandingFlight(options.flight, target, options.recording.duration_s(), &random);
 }
 
-TEST(ScenarioFlightTest, CalmFlightAcceleratesLessThanThePapersLimit) {
+TEST(ScenarioFlightTest, CalmFlightAcceleratesLessThanLimitOfPaper) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     const Motion motion = FlightOf("calm", seed);
     for (double time_s = 0.5; time_s < 14.5; time_s += 0.1) {

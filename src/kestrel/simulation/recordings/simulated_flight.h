@@ -51,7 +51,7 @@ class SimulatedFlight {
   const FlightCamera& camera() const { return *camera_; }
   const World& world() const { return world_; }
   const NavigationErrors& errors() const { return errors_; }
-  const std::vector<double>& times_s() const { return times_s_; }  // of the images
+  const std::vector<double>& times_s() const { return times_s_; }  // image times
 
   // 'gain' multiplies the light, in addition to the varying gain of the options.
   cv::Mat Image(std::size_t index, double gain = 1) const;

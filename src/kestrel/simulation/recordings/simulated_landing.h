@@ -20,7 +20,7 @@ class SimulatedLanding {
                    const Motion& world_from_uav, std::uint64_t seed);
 
   const SimulatedFlight& flight() const { return flight_; }
-  const TargetPrint& print() const { return print_; }  // of the pad, as drawn
+  const TargetPrint& print() const { return print_; }  // print of the pad, as drawn
   const Motion& world_from_pattern() const { return world_from_pattern_; }
 
   // Leaves out the images from 'index' on: the flight has ended.

@@ -35,9 +35,9 @@ struct TouchdownResult {
   TouchdownOutcome outcome = TouchdownOutcome::kTimeUp;
   double time_s = 0;                   // from the start to the end
   std::optional<double> first_seen_s;  // time of the first image that showed it
-  double distance_m = 0;               // of the feet's middle from the pattern's, on the board
-  double slip_mps = 0;                 // horizontal speed relative to the board
-  double sink_mps = 0;                 // vertical speed relative to the board
+  double distance_m = 0;  // distance from the feet's middle to the pattern's, on the board
+  double slip_mps = 0;    // horizontal speed relative to the board
+  double sink_mps = 0;    // vertical speed relative to the board
   // Angle of the nose, rad, counter-clockwise from above, off the heading that was wanted over
   // the pad; nothing: any heading would do.
   std::optional<double> heading_error;

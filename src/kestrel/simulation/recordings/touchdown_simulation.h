@@ -148,7 +148,7 @@ class TouchdownSimulation {
   LandingPipeline pipeline_;
   LandingGuidance guidance_;
   ExposureController exposure_;
-  std::deque<double> exposures_s_;  // of the next images
+  std::deque<double> exposures_s_;  // exposures of the next images
   cv::Rect pattern_area_;           // in the newest processed image
   std::deque<TakenImage> images_;   // taken, not yet processed
   std::size_t next_image_ = 0;

@@ -23,7 +23,7 @@ TouchdownSimulationOptions Small() {
 
 const TouchdownSimulation::FrameSink kAll = [](const auto&...) { return true; };
 
-TEST(TouchdownSimulationTest, LandsOnAMovingVehicle) {
+TEST(TouchdownSimulationTest, LandsOnMovingVehicle) {
   TouchdownSimulation simulation(Small(), PaperCalibration(), 3);
   int images = 0;
   const auto result = simulation.Fly(
@@ -45,7 +45,7 @@ TEST(TouchdownSimulationTest, LandsOnAMovingVehicle) {
   EXPECT_NEAR(start.feet_in_world.z(), 10 - 0.35, 1e-6);
 }
 
-TEST(TouchdownSimulationTest, TheSameSeedGivesTheSameFlight) {
+TEST(TouchdownSimulationTest, SameSeedGivesSameFlight) {
   TouchdownSimulationOptions options = Small();
   options.recording.frames = 12;
   std::string rows[2];
@@ -60,12 +60,12 @@ TEST(TouchdownSimulationTest, TheSameSeedGivesTheSameFlight) {
   EXPECT_EQ(rows[0], rows[1]);
 }
 
-TEST(TouchdownSimulationTest, StopsWhenToldTo) {
+TEST(TouchdownSimulationTest, StopsWhenCallbackReturnsFalse) {
   TouchdownSimulation simulation(Small(), PaperCalibration(), 5);
   EXPECT_FALSE(simulation.Fly([](const auto&...) { return false; }));
 }
 
-TEST(TouchdownSimulationTest, FaultyOptionsAreNamed) {
+TEST(TouchdownSimulationTest, ReportsFaultyOptions) {
   TouchdownSimulationOptions options = Small();
   options.wind.max_mps = -1;
   options.touchdown.leg_m = 0;
@@ -77,7 +77,7 @@ TEST(TouchdownSimulationTest, FaultyOptionsAreNamed) {
   EXPECT_THAT(error, HasSubstr("vehicle.speed_mps is 99"));
 }
 
-TEST(TouchdownResultTest, SaysInWordsAndRowsHowItEnded) {
+TEST(TouchdownResultTest, ReportsEndAsTextAndRow) {
   TouchdownResult result;
   result.time_s = 90;
   EXPECT_THAT(InWords(result), HasSubstr("still in the air after 90.0 s; pattern never seen"));

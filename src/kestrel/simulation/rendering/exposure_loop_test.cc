@@ -66,7 +66,7 @@ void ExpectSettles(const std::vector<int>& grays, std::size_t settled, double li
   }
 }
 
-TEST(ExposureLoopTest, KeepsThePatternsWhiteThroughStepsOfLight) {
+TEST(ExposureLoopTest, KeepsWhiteOfPatternThroughLightSteps) {
   for (const double gamma : {1.0, 0.45}) {
     Loop loop(gamma, kExposure_s);
     for (const double light : {1.0, 50.0, 1.0, 0.3}) {

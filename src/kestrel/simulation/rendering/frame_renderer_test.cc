@@ -63,7 +63,7 @@ ShutterOptions Quick(double exposure_s, int rays = 8) {
   return {.exposure_s = exposure_s, .readout_s = 0, .rays_per_pixel = rays};
 }
 
-TEST(FrameRendererTest, RingLiesWhereItsOutlineIsProjected) {
+TEST(FrameRendererTest, RingLiesAtProjectedOutline) {
   const double radius = 0.5;
   World world = PlainWorld(0.3);
   AddInkPlate(Drawing().Add(Drawing::Ring{{0, 0}, radius, 0.3}), 1.5, 0.7, &world);
@@ -97,7 +97,7 @@ TEST(FrameRendererTest, RingLiesWhereItsOutlineIsProjected) {
   EXPECT_LT(std::abs(sum / kPoints), 0.02);
 }
 
-TEST(FrameRendererTest, FrameTimeIsTheMiddleOfTheExposure) {
+TEST(FrameRendererTest, FrameTimeIsMiddleOfExposure) {
   World world = PlainWorld(0.8);
   AddInkPlate(Drawing().Add(Drawing::Ring{{0, 0}, 0.25}), 1.5, 0.01, &world);
   const Lens lens{CameraModel(SmallFisheye())};
@@ -134,7 +134,7 @@ TEST(FrameRendererTest, RollingShutterShowsEveryRowAtItsTime) {
   EXPECT_GT((still - *center).norm(), 0.5) << "the test needs a shutter that can be seen";
 }
 
-TEST(FrameRendererTest, SunThrowsSoftShadowsWhereTheyBelong) {
+TEST(FrameRendererTest, SunCastsSoftShadowsAtRightPlace) {
   World world = PlainWorld(0.8);
   world.light.direct = 1;
   world.light.to_sun = Vector3d(1, 0, 1).normalized();
@@ -159,7 +159,7 @@ TEST(FrameRendererTest, SunThrowsSoftShadowsWhereTheyBelong) {
   EXPECT_NEAR(light(-1, 0.5), 0.4, 0.08);
 }
 
-TEST(FrameRendererTest, SkyHazeAndDarknessOutsideOfTheLens) {
+TEST(FrameRendererTest, DrawsSkyHazeAndDarknessOutsideLens) {
   World world = PlainWorld(0.5);
   world.light.sky_radiance = 0.9;
   const Lens lens(CameraModel(SmallFisheye()), {.half_angle_deg = 70, .airframe = {}});
@@ -186,7 +186,7 @@ TEST(FrameRendererTest, SkyHazeAndDarknessOutsideOfTheLens) {
   EXPECT_NEAR(hazy.at<float>(80, 120), 0.5 * std::exp(-2) + 0.3 * (1 - std::exp(-2)), 0.01);
 }
 
-TEST(FrameRendererTest, RefusesBadOptionsInWords) {
+TEST(FrameRendererTest, RefusesInvalidOptions) {
   ShutterOptions options{.exposure_s = 0, .readout_s = -1, .rays_per_pixel = 65};
   const auto violations = ViolationsOf(options);
   ASSERT_EQ(violations.size(), 3u);

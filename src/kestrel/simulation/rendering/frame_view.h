@@ -24,7 +24,7 @@ class ImageTiles {
     int left;
     int top;
     bool dark = true;                  // it receives no light
-    Eigen::Vector3f axis{0, 0, 1};     // of the cone
+    Eigen::Vector3f axis{0, 0, 1};     // axis of the cone
     float radius = 0;                  // rad, half the opening of the cone
     std::vector<Eigen::Vector3f> rim;  // rays around it
   };
@@ -37,11 +37,11 @@ class ImageTiles {
 // A surface (or the ground) seen by the camera during one exposure.
 struct SeenSurface {
   const Surface* surface = nullptr;  // null: the ground
-  double plane_distance = 0;         // of the camera from its plane, m
+  double plane_distance = 0;         // distance of the camera from its plane, m
   float ambient = 0;                 // light from the sky
   float direct = 0;                  // light from the sun where nothing is in between
   Eigen::Vector3f normal{0, 0, 1};   // in the world
-  double pixel_size_m = 1;           // of its paint, geometric mean
+  double pixel_size_m = 1;           // pixel size of its paint, geometric mean
   // Maps (x, y, 1) of a point on it to the point of the ground on the same ray of the sun.
   Eigen::Matrix<float, 2, 3> ground_from_point = Eigen::Matrix<float, 2, 3>::Zero();
   std::vector<ShadowMap> shadows;

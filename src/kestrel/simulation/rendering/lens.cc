@@ -11,7 +11,7 @@
 namespace kestrel {
 namespace {
 
-constexpr double kRimWidthDeg = 0.7;  // of the soft edge of the lens circle
+constexpr double kRimWidthDeg = 0.7;  // width of the soft edge of the lens circle
 
 double DegFromRad(double angle) { return angle * 180 / std::numbers::pi; }
 

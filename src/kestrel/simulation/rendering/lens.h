@@ -57,8 +57,8 @@ class Lens {
 
   CameraModel camera_;
   LensOptions options_;
-  std::vector<Eigen::Vector3f> corner_rays_;  // of the pixels' corners, row by row; zero where
-                                              // there is none
+  // Rays of the pixels' corners, row by row; zero where there is none.
+  std::vector<Eigen::Vector3f> corner_rays_;
   cv::Mat gain_;
   cv::Mat airframe_cover_;
 };

@@ -18,7 +18,7 @@ World WithPlate(double height_m) {
   return world;
 }
 
-TEST(IsHidden, PlateHidesWhatIsUnderIt) {
+TEST(IsHidden, PlateHidesPointsBelow) {
   const World world = WithPlate(1);
   EXPECT_TRUE(IsHidden(world, 0, kEye, {0, 0, 0}));
   EXPECT_TRUE(IsHidden(world, 0, kEye, {0.24, 0, 0})) << "seen obliquely, past its edge";
@@ -27,11 +27,11 @@ TEST(IsHidden, PlateHidesWhatIsUnderIt) {
   EXPECT_FALSE(IsHidden(world, 0, {0, 0, 0.5}, {0, 0, 2})) << "its back is not seen";
 }
 
-TEST(IsHidden, PointOnASurfaceIsNotHiddenByIt) {
+TEST(IsHidden, PointOnSurfaceIsNotHiddenByIt) {
   EXPECT_FALSE(IsHidden(WithPlate(1), 0, kEye, {0, 0, 1}));
 }
 
-TEST(IsHidden, RoundMaskedAndInvisibleOnesHideLess) {
+TEST(IsHidden, RoundMaskedAndInvisibleSurfacesHideLess) {
   World world = WithPlate(1);
   Surface& plate = world.surfaces.front();
   const Eigen::Vector3d corner(0.23, 0.23, 0);

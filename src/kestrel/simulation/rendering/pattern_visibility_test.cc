@@ -21,7 +21,7 @@ RigidTransform NadirPose(const Vector3d& ray, double altitude_m) {
   return {down, ray * (altitude_m / ray.z())};
 }
 
-TEST(VisibleFractionTest, KnowsWhatTheBorderCutsOff) {
+TEST(VisibleFractionTest, AccountsForImageBorder) {
   const CameraModel camera(PaperCamera());
   const Lens lens(camera);
   const TargetPrint pattern = PrintOf(LandingPattern());
@@ -33,7 +33,7 @@ TEST(VisibleFractionTest, KnowsWhatTheBorderCutsOff) {
   EXPECT_EQ(VisibleFraction(pattern, NadirPose(ray, 3), lens), 0);
 }
 
-TEST(VisibleFractionTest, KnowsTheLensCircleAndTheAirframe) {
+TEST(VisibleFractionTest, AccountsForLensCircleAndAirframe) {
   const CameraModel camera(PaperCamera());
   LensOptions options;
   options.half_angle_deg = 30;

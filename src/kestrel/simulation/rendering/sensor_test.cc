@@ -35,7 +35,7 @@ cv::Vec2d Statistics(const cv::Mat& image) {
   return {mean[0], deviation[0]};
 }
 
-TEST(SensorTest, LevelsGainAndSaturation) {
+TEST(SensorTest, AppliesLevelsGainAndSaturation) {
   const SensorOptions options = Noiseless();
   EXPECT_EQ(Statistics(Expose(options, TestLens(), 1, 1, Even(0)))[0], 10);
   EXPECT_NEAR(Statistics(Expose(options, TestLens(), 1, 1, Even(0.5f)))[0], 110, 0.1);
@@ -43,7 +43,7 @@ TEST(SensorTest, LevelsGainAndSaturation) {
   EXPECT_NEAR(Statistics(Expose(options, TestLens(), 1, 1, Even(3)))[0], 255, 0.1);
 }
 
-TEST(SensorTest, GammaLiftsTheDark) {
+TEST(SensorTest, GammaBrightensDarkTones) {
   SensorOptions options = Noiseless();
   options.gamma = 0.5;
   options.black_level = 0;
@@ -51,7 +51,7 @@ TEST(SensorTest, GammaLiftsTheDark) {
   EXPECT_NEAR(Statistics(Expose(options, TestLens(), 1, 1, Even(0.25f)))[0], 127.5, 1);
 }
 
-TEST(SensorTest, NoiseGrowsWithTheRootOfTheLight) {
+TEST(SensorTest, NoiseGrowsWithRootOfLight) {
   SensorOptions options = Noiseless();
   options.read_noise = 2;
   EXPECT_NEAR(Statistics(Expose(options, TestLens(), 1, 1, Even(0.5f)))[1], 2, 0.1);
@@ -61,7 +61,7 @@ TEST(SensorTest, NoiseGrowsWithTheRootOfTheLight) {
   EXPECT_NEAR(Statistics(Expose(options, TestLens(), 1, 1, Even(0.125f)))[1], 1.5, 0.1);
 }
 
-TEST(SensorTest, SeedMakesTheNoise) {
+TEST(SensorTest, SeedDeterminesNoise) {
   const SensorOptions options;
   const cv::Mat one = Expose(options, TestLens(), 1, 1, Even(0.5f));
   EXPECT_EQ(cv::norm(one, Expose(options, TestLens(), 1, 1, Even(0.5f)), cv::NORM_INF), 0);

@@ -11,7 +11,7 @@
 namespace kestrel {
 namespace {
 
-constexpr double kMinSine = 0.02;  // of the angle between the sun's rays and an occluder
+constexpr double kMinSine = 0.02;  // sine of the angle between the sun's rays and an occluder
 
 // True when all corners of the receiver are on the same outer side of the occluder, or above it.
 bool IsBeside(const Eigen::Matrix3d& map) {

@@ -23,7 +23,7 @@ TEST(DrawingTest, RingHasTwoEdges) {
   EXPECT_NEAR(ring.NearestEdge({1, 2}).distance, 0.4, 1e-12);
 }
 
-TEST(DrawingTest, BarIsARotatedRectangle) {
+TEST(DrawingTest, BarIsRotatedRectangle) {
   const Vector2d axis = Vector2d(3, 4) / 5;
   const Drawing bar = Drawing().Add(Drawing::Bar{{1, 1}, axis, 2, 0.5});
   EXPECT_NEAR(bar.NearestEdge(Vector2d(1, 1) + 2.25 * axis).distance, 0.25, 1e-12);
@@ -33,7 +33,7 @@ TEST(DrawingTest, BarIsARotatedRectangle) {
   EXPECT_NEAR(bar.NearestEdge(beyond_corner).distance, 0.5, 1e-12);
 }
 
-TEST(DrawingTest, WhatIsErasedIsOutside) {
+TEST(DrawingTest, ErasedAreaIsOutside) {
   Drawing drawing = Drawing().Add(Drawing::Ring{{0, 0}, 1});
   drawing.Erase(Drawing::Bar{{0, 0}, {1, 0}, 0.5, 0.1});
   EXPECT_NEAR(drawing.NearestEdge({0, 0}).distance, 0.1, 1e-12);
@@ -53,7 +53,7 @@ std::vector<Lookalike> AllLookalikes() {
 }
 
 // The renderer uses a single ray where the edge is farther away than the size of the pixel.
-TEST(DrawingTest, NoEdgeIsNearerThanTheNearest) {
+TEST(DrawingTest, NearestEdgeIsLowerBound) {
   Random random(3);
   for (const Lookalike& kind : AllLookalikes()) {
     const Drawing drawing = kind.draw({0.5, -0.2}, 1, 0.3, &random);
@@ -83,7 +83,7 @@ double Overlap(const Drawing& a, const Drawing& b, double radius) {
   return static_cast<double>(both) / any;
 }
 
-TEST(LandingDrawingsTest, NoLookalikeIsTheLandingPattern) {
+TEST(LandingDrawingsTest, NoLookalikeEqualsLandingPattern) {
   Random random(5);
   const LandingPattern pattern;
   const Drawing ink = LandingPatternInk(pattern);
@@ -107,7 +107,7 @@ TEST(LandingDrawingsTest, LookalikesStayInTheirCircle) {
   }
 }
 
-TEST(LandingDrawingsTest, WearOnlyTakesInkAway) {
+TEST(LandingDrawingsTest, WearOnlyRemovesInk) {
   Random random(11);
   const Drawing whole = LandingPatternInk(LandingPattern());
   Drawing worn = whole;

@@ -15,8 +15,8 @@ namespace kestrel {
 struct GroundMaterial {
   const char* name;
   Color color;
-  double map_variation;     // of the reflectance, at scales of decimetres and metres
-  double detail_variation;  // of the reflectance, at scales of millimetres and centimetres
+  double map_variation;     // variation of the reflectance at scales of decimetres and metres
+  double detail_variation;  // variation of the reflectance at scales of millimetres and centimetres
   double grain_m;           // size of the smallest grains
   bool paved;               // roads are made of this material
 };

@@ -22,7 +22,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kDiscHeight_m = 0.012;
-constexpr double kPostHeight_m = 0.14;  // of the yellow discs, which ride on robots
+constexpr double kPostHeight_m = 0.14;  // height of the yellow discs, which ride on robots
 constexpr double kOrangeDiameter_m = 0.5;
 constexpr double kBarLength_m = 2;
 constexpr double kBarWidth_m = 0.15;

@@ -56,9 +56,9 @@ struct HuntObject {
   std::string color;  // red, green, blue, yellow, orange
   std::string shape;  // disc, cuboid, bar
   double size_m;      // diameter, side or length
-  int digit = -1;     // of a cuboid, 0 to 9
+  int digit = -1;     // digit on a cuboid, 0 to 9
   double yaw = 0;     // rad, in the world: reading direction of its digit
-  Path center;        // of its upper face, in the world
+  Path center;        // centre of its upper face, in the world
   // Half the sides of its upper face, in the world; for a disc, of the square around it.
   Eigen::Vector2d half_size;
 };

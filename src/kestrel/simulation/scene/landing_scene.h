@@ -82,7 +82,7 @@ struct LandingSceneOptions {
 struct LandingScene {
   World world;
   LandingPattern pattern;  // as drawn, where the pad has one
-  TargetPrint print;       // of the pad, as drawn
+  TargetPrint print;       // print of the pad, as drawn
   Motion world_from_pattern;
   Path target;  // the pad's centre without the vehicle's shaking, which a UAV follows
 };

@@ -8,7 +8,7 @@
 namespace kestrel {
 namespace {
 
-TEST(MotionTest, WanderHasTheSpreadAskedFor) {
+TEST(MotionTest, WanderHasRequestedSpread) {
   Random random(4);
   const auto wander = Wander(2, 1, &random);
   double squares = 0;

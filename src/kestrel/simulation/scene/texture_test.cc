@@ -15,7 +15,7 @@ cv::Mat Codes(std::initializer_list<double> reflectances) {
   return codes;
 }
 
-TEST(TextureTest, CodesKeepReflectancesToAPercentOfWhite) {
+TEST(TextureTest, CodesKeepReflectancesWithinOnePercentOfWhite) {
   for (const double reflectance : {0.0, 0.01, 0.1, 0.5, 1.0}) {
     EXPECT_NEAR(kReflectanceOfCode[CodeOfReflectance(reflectance)], reflectance, 0.004);
   }
@@ -28,7 +28,7 @@ TEST(TextureTest, SamplesBetweenPixelCentres) {
   EXPECT_FLOAT_EQ(texture.Sample<1>(1.5f, 0.5f, 0)[0], 1);
 }
 
-TEST(TextureTest, GoesOnBeyondItsEdgesAsAsked) {
+TEST(TextureTest, ExtendsBeyondEdgesAsRequested) {
   const cv::Mat codes = Codes({0, 1});
   const Texture clamped(codes, 1, Texture::Beyond::kClamp);
   const Texture repeated(codes, 1, Texture::Beyond::kRepeat);
@@ -49,7 +49,7 @@ TEST(TextureTest, LevelsAverageLightNotCodes) {
   EXPECT_NEAR(texture.Sample<1>(2, 0.5f, 2)[0], 0.5, 0.01);
 }
 
-TEST(TextureTest, ColourAndGrayCameraSeeTheSamePaint) {
+TEST(TextureTest, ColourAndGrayCameraSeeSamePaint) {
   const cv::Mat codes(2, 2, CV_8UC3, cv::Scalar(10, 100, 200));
   const Light<3> color = Texture(codes, 3).Sample<3>(1, 1, 0);
   EXPECT_FLOAT_EQ(color[2], kReflectanceOfCode[200]);

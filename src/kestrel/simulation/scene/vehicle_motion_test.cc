@@ -49,7 +49,7 @@ TEST(VehicleMotionTest, ChangesLanesSoftly) {
   EXPECT_LT(largest_acceleration, 1.5);
 }
 
-TEST(VehicleMotionTest, StopsAndTurnsOnTheSpot) {
+TEST(VehicleMotionTest, StopsAndTurnsInPlace) {
   Random random(5);
   VehicleMotionOptions options;
   options.path = "stops";
@@ -92,7 +92,7 @@ TEST(VehicleMotionTest, HeavesAndRollsOnWaves) {
   EXPECT_LT(Degrees(largest_tilt), 9.1);
 }
 
-TEST(VehicleMotionTest, RefusesBadOptionsInWords) {
+TEST(VehicleMotionTest, RefusesInvalidOptions) {
   VehicleMotionOptions vehicle;
   vehicle.path = "spiral";
   EXPECT_EQ(ViolationsOf(vehicle).at(0),

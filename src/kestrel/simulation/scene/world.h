@@ -64,7 +64,7 @@ struct Lighting {
 
 // Everything that a camera can see. Body 0 stands still and has the world's frame.
 struct World {
-  int channels = 1;  // of all textures but masks, detail and sunlit: 1 gray, 3 blue green red
+  int channels = 1;  // colour channels of all textures but masks, detail and sunlit: 1 gray, 3 BGR
   Ground ground;
   std::vector<Motion> bodies{[](double) { return RigidTransform(); }};
   std::vector<Surface> surfaces;

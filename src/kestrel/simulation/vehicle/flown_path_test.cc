@@ -15,7 +15,7 @@ RigidTransform Turned(double angle, const Vector3d& place) {
   return {Quaterniond(AngleAxisd(angle, Vector3d::UnitZ())), place};
 }
 
-TEST(FlownPathTest, InterpolatesAndStaysAtItsEnds) {
+TEST(FlownPathTest, InterpolatesAndHoldsEnds) {
   FlownPath path(1, 0.5);
   path.Add(Turned(0, {0, 0, 0}));
   EXPECT_EQ(path.At(7).translation, Vector3d(0, 0, 0)) << "a single pose";

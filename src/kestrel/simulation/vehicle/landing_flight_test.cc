@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-TEST(LandingFlightTest, ApproachEndsWhereItShould) {
+TEST(LandingFlightTest, ApproachEndsAtGivenAltitude) {
   const LandingFlightOptions options{.start_altitude_m = 13, .end_altitude_m = 0.4};
   Random random(3);
   const Motion motion = LandingFlight(
@@ -19,7 +19,7 @@ TEST(LandingFlightTest, ApproachEndsWhereItShould) {
   EXPECT_NEAR(motion(15).translation.z(), 2 + 0.4, 0.01);
 }
 
-TEST(LandingFlightTest, RefusesBadOptionsInWords) {
+TEST(LandingFlightTest, RefusesInvalidOptions) {
   LandingFlightOptions flight;
   flight.end_altitude_m = -1;
   EXPECT_EQ(ViolationsOf(flight).at(0), "end_altitude_m is -1, expected 0.1 to 100");

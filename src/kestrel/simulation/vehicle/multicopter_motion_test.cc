@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-TEST(MulticopterMotionTest, ThrustPointsWhereTheAccelerationIs) {
+TEST(MulticopterMotionTest, ThrustPointsAlongAcceleration) {
   Random random(1);
   const Path path = [](double time_s) { return Vector3d(0.5 * 4 * time_s * time_s, 0, 5); };
   const Motion motion = MulticopterMotion(

@@ -23,7 +23,7 @@ double Tilt(const Multicopter& multicopter) {
   return std::acos(std::min(1.0, up.z()));
 }
 
-TEST(MulticopterTest, ReachesItsVelocityInAnyWind) {
+TEST(MulticopterTest, ReachesVelocityInAnyWind) {
   for (const Vector3d& wind : {Vector3d(0, 0, 0), Vector3d(5, -3, 0.5)}) {
     Multicopter multicopter({}, {0, 0, 10}, 0);
     for (int i = 0; i < 1000; ++i) multicopter.Step({{4, 1, -1}, {0, 0, 0}}, wind, kStep_s);
@@ -55,7 +55,7 @@ TEST(MulticopterTest, KeepsItsLimits) {
   EXPECT_NEAR(sink, options.max_climb_mps, 0.5);
 }
 
-TEST(MulticopterTest, TiltsWithALag) {
+TEST(MulticopterTest, TiltsWithLag) {
   const MulticopterOptions options;
   Multicopter multicopter(options, {0, 0, 10}, 0);
   multicopter.Step({{0, 0, 0}, {3, 0, 0}}, {0, 0, 0}, kStep_s);
@@ -64,7 +64,7 @@ TEST(MulticopterTest, TiltsWithALag) {
   EXPECT_GT(Tilt(multicopter), 0.1);
 }
 
-TEST(WindTest, HasTheSpeedAndTheGustsAskedFor) {
+TEST(WindTest, HasRequestedSpeedAndGusts) {
   for (int seed = 1; seed <= 5; ++seed) {
     Random random(seed);
     const WindOptions options{.min_mps = 4, .max_mps = 5, .gusts = 0.2};

@@ -29,7 +29,7 @@ NavigationOptions Perfect() {
   return options;
 }
 
-TEST(NavigationModelTest, OffsetLeadsFromImageTimeToNavigationTime) {
+TEST(NavigationModelTest, OffsetConvertsImageTimeToNavigationTime) {
   Random random(1);
   const NavigationErrors errors = DrawNavigationErrors(Perfect(), &random);
   const auto poses = NavigationSensor(Perfect(), errors, random).ReportAll(MovingAt, -0.5, 1.5);
@@ -41,7 +41,7 @@ TEST(NavigationModelTest, OffsetLeadsFromImageTimeToNavigationTime) {
   EXPECT_LT(found->rotation.angularDistance(MovingAt(0.777).rotation), 1e-6);
 }
 
-TEST(NavigationModelTest, ItsWorldMayLieElsewhereAndBeTurned) {
+TEST(NavigationModelTest, WorldMayBeShiftedAndTurned) {
   NavigationOptions options = Perfect();
   options.origin_x_m = 3;
   options.origin_y_m = -1;
@@ -53,7 +53,7 @@ TEST(NavigationModelTest, ItsWorldMayLieElsewhereAndBeTurned) {
   EXPECT_NEAR(HeadingOf(told.rotation), std::numbers::pi / 2, 1e-9);
 }
 
-TEST(NavigationModelTest, NoiseHasTheSpreadAskedFor) {
+TEST(NavigationModelTest, NoiseHasRequestedSpread) {
   NavigationOptions options = Perfect();
   options.position_noise_m = 0.05;
   options.attitude_noise_deg = 0.5;
@@ -70,7 +70,7 @@ TEST(NavigationModelTest, NoiseHasTheSpreadAskedFor) {
   EXPECT_NEAR(deg * std::sqrt(attitude / (3 * poses.size())), 0.5, 0.02);
 }
 
-TEST(NavigationModelTest, MountErrorTurnsInTheBodyFrame) {
+TEST(NavigationModelTest, MountErrorRotatesInBodyFrame) {
   NavigationErrors errors;
   errors.mount_yaw_deg = 90;
   const RigidTransform nominal{Quaterniond::Identity(), {0.1, 0.2, 0.3}};

@@ -74,13 +74,13 @@ class HelipadDetectorTest : public ::testing::Test {
   std::unique_ptr<TargetWorkspace> workspace_;
 };
 
-TEST_F(HelipadDetectorTest, IsFoundWithoutAHint) {
+TEST_F(HelipadDetectorTest, FindsPadWithoutHint) {
   Use({});
   for (const double altitude : {0.7, 2.0, 4.0, 11.0, 14.0})
     EXPECT_EQ(Found(altitude, 3, 0, 1), 3) << altitude;
 }
 
-TEST_F(HelipadDetectorTest, IsFollowedNearAndFar) {
+TEST_F(HelipadDetectorTest, FollowsPadNearAndFar) {
   Use({});
   for (const double altitude : {0.5, 1.0, 4.0, 15.0}) {
     EXPECT_EQ(Found(altitude, 3, 0.02 + 0.03 * altitude, 1), 3) << altitude;
@@ -100,7 +100,7 @@ TEST_F(HelipadDetectorTest, FindsEachKindOfPad) {
 }
 
 // With the camera over one leg, with or without a frame around the H.
-TEST_F(HelipadDetectorTest, IsFollowedByOneLegDownToTheGround) {
+TEST_F(HelipadDetectorTest, FollowsSingleLegDownToGround) {
   const Vector3d on_leg(-0.233, 0.2, 0);
   for (const char* frame : {"circle", "none"}) {
     HelipadDetectorOptions options;
@@ -129,7 +129,7 @@ TEST_F(HelipadDetectorTest, IsFollowedByOneLegDownToTheGround) {
   }
 }
 
-TEST_F(HelipadDetectorTest, StandsMotionAndDust) {
+TEST_F(HelipadDetectorTest, ToleratesMotionAndDust) {
   Use({});
   taken_ = {.motion_px = 5};
   EXPECT_EQ(Found(3, 3, 0.1, 5), 3) << "motion";
@@ -137,7 +137,7 @@ TEST_F(HelipadDetectorTest, StandsMotionAndDust) {
   EXPECT_EQ(Found(5, 3, 0, 5), 3) << "dust";
 }
 
-TEST_F(HelipadDetectorTest, StandsTheEdgeOfAShadow) {
+TEST_F(HelipadDetectorTest, ToleratesShadowEdge) {
   Use({});
   Random random(6);
   constexpr int kShadows = 8;
@@ -152,7 +152,7 @@ TEST_F(HelipadDetectorTest, StandsTheEdgeOfAShadow) {
   EXPECT_GE(followed, kShadows - 2);
 }
 
-TEST_F(HelipadDetectorTest, TheCovarianceIsThatOfTheErrors) {
+TEST_F(HelipadDetectorTest, CovarianceMatchesErrors) {
   Use({});
   Random random(9);
   double sum = 0;
@@ -179,7 +179,7 @@ TEST_F(HelipadDetectorTest, TheCovarianceIsThatOfTheErrors) {
   EXPECT_LT(sum / kViews, 14);
 }
 
-TEST_F(HelipadDetectorTest, TheHintTellsTheHeading) {
+TEST_F(HelipadDetectorTest, HintResolvesHeading) {
   Use({});
   Random random(4);
   const RigidTransform pose = RandomPadBelow(2, &random);
@@ -199,7 +199,7 @@ TEST_F(HelipadDetectorTest, TheHintTellsTheHeading) {
   }
 }
 
-TEST_F(HelipadDetectorTest, RefusesWhatIsNotAnImageOfItsCamera) {
+TEST_F(HelipadDetectorTest, RefusesImageOfAnotherCamera) {
   Use({});
   EXPECT_FALSE(Detect(cv::Mat(10, 10, CV_8UC1, cv::Scalar(0))).detection);
   EXPECT_FALSE(Detect(cv::Mat(10, 10, CV_8UC1, cv::Scalar(0))).reason.empty());
@@ -208,7 +208,7 @@ TEST_F(HelipadDetectorTest, RefusesWhatIsNotAnImageOfItsCamera) {
   EXPECT_THROW(HelipadDetector(camera_, wrong), InputError);
 }
 
-TEST_F(HelipadDetectorTest, NoLookalikeIsAccepted) {
+TEST_F(HelipadDetectorTest, RejectsLookalikes) {
   constexpr int kBoards = 4;  // of nine each
   for (const bool white : {true, false}) {
     HelipadDetectorOptions options;
@@ -226,7 +226,7 @@ TEST_F(HelipadDetectorTest, NoLookalikeIsAccepted) {
 }
 
 // A frame around the H is evidence; what has none is nearer to the scratches of a ground.
-TEST_F(HelipadDetectorTest, NoTextureIsTakenForAnHWithoutAFrame) {
+TEST_F(HelipadDetectorTest, RejectsTexturesForHWithoutFrame) {
   constexpr int kImages = 8;  // of each kind
   for (const bool white : {true, false}) {
     HelipadDetectorOptions options;

@@ -25,7 +25,7 @@ double AreaOf(const std::vector<Eigen::Vector2d>& corners) {
   return area;
 }
 
-TEST(Helipad, TheHHasTheProportionsOfTheStandard) {
+TEST(Helipad, HHasStandardProportions) {
   const Helipad helipad;
   EXPECT_DOUBLE_EQ(helipad.width_m / helipad.height_m, 1.8 / 3);
   EXPECT_DOUBLE_EQ(helipad.stroke_m / helipad.height_m, 0.4 / 3);
@@ -36,14 +36,14 @@ TEST(Helipad, TheHHasTheProportionsOfTheStandard) {
   EXPECT_NEAR(AreaOf(corners), -helipad.stroke_m * (2 * helipad.height_m + gap), 1e-12);
 }
 
-TEST(Helipad, LooksTheSameAfterHalfATurn) {
+TEST(Helipad, LooksSameAfterHalfTurn) {
   const auto corners = CornersOf(Helipad());
   for (std::size_t i = 0; i < corners.size(); ++i) {
     EXPECT_LT((corners[i] + corners[(i + 6) % 12]).norm(), 1e-12);
   }
 }
 
-TEST(Helipad, MillimetresAreRefused) {
+TEST(Helipad, RefusesMillimetres) {
   for (double Helipad::*length :
        {&Helipad::height_m, &Helipad::width_m, &Helipad::stroke_m, &Helipad::frame_size_m,
         &Helipad::frame_width_m, &Helipad::board_size_m}) {
@@ -59,7 +59,7 @@ TEST(Helipad, MillimetresAreRefused) {
       IsEmpty());
 }
 
-TEST(Helipad, EachDimensionIsChecked) {
+TEST(Helipad, ChecksEachDimension) {
   EXPECT_THAT(ViolationsOf(Helipad()), IsEmpty());
   EXPECT_THAT(ViolationsOf(Helipad{.frame = "none", .frame_size_m = 0}), IsEmpty());
   EXPECT_THAT(ViolationsOf(Helipad{.height_m = 3000}).at(0), HasSubstr("height_m"));
@@ -72,7 +72,7 @@ TEST(Helipad, EachDimensionIsChecked) {
               HasSubstr("board_size_m"));
 }
 
-TEST(Helipad, APrintIsOneInkOnItsBoard) {
+TEST(Helipad, PrintUsesOneInkOnBoard) {
   for (const bool white : {true, false}) {
     for (const auto& [frame, shapes] : {std::pair("circle", 2u), {"square", 2u}, {"none", 1u}}) {
       const TargetPrint print = PrintOf({.frame = frame, .white = white});
@@ -84,7 +84,7 @@ TEST(Helipad, APrintIsOneInkOnItsBoard) {
   }
 }
 
-TEST(Helipad, TheShapeIsThatOfTheH) {
+TEST(Helipad, ShapeMatchesH) {
   const TargetShape shape = ShapeOf(Helipad{.frame = "square"});
   EXPECT_NEAR(shape.diameter_m, std::hypot(1, 0.6), 1e-12);
   ASSERT_EQ(shape.outlines.size(), 2u);

@@ -20,10 +20,10 @@ struct LensBlur {
 
 // Gray values of 8 bits, of which noise and rounding take one or two. White minus black.
 struct GrayContrast {
-  static constexpr double kLeast = 2;        // of a print
-  static constexpr double kLeastEdge = 2;    // of an edge, per pixel
-  static constexpr double kLeastRing = 5;    // of a ring that is worth a look at its inside
-  static constexpr double kLeastInside = 6;  // of the brightest and the darkest place inside of it
+  static constexpr double kLeast = 2;      // contrast of a print
+  static constexpr double kLeastEdge = 2;  // contrast of an edge, per pixel
+  static constexpr double kLeastRing = 5;  // contrast of a ring that is worth a look at its inside
+  static constexpr double kLeastInside = 6;  // brightest minus darkest place inside the ring
 };
 
 }  // namespace kestrel

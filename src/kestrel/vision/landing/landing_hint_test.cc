@@ -15,7 +15,7 @@ namespace {
 
 using LandingHintTest = LandingPatternDetectorTest;
 
-TEST_F(LandingHintTest, AnImageThatContradictsWhatIsUpPrevails) {
+TEST_F(LandingHintTest, ImageOverridesContradictoryUp) {
   LandingHint hint;
   const Eigen::Vector3d normal = pose_.rotation * Eigen::Vector3d::UnitZ();
   hint.up_in_camera = Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitX()) * normal;  // 23 degrees off
@@ -24,7 +24,7 @@ TEST_F(LandingHintTest, AnImageThatContradictsWhatIsUpPrevails) {
   EXPECT_LT(PoseError(report.detection->camera_from_pattern, pose_).head<3>().norm(), 0.015);
 }
 
-TEST_F(LandingHintTest, AHintFitsAPatternThatFillsTheImageOfAFisheye) {
+TEST_F(LandingHintTest, HintFitsPatternThatFillsFisheyeImage) {
   // Half a metre above the board the ring spans 90 degrees, much less than its size divided by its
   // distance.
   const CameraModel fisheye(
@@ -44,7 +44,7 @@ TEST_F(LandingHintTest, AHintFitsAPatternThatFillsTheImageOfAFisheye) {
 }
 
 // With two patterns side by side, the expected one is chosen.
-TEST_F(LandingHintTest, AHintSaysWhereToLook) {
+TEST_F(LandingHintTest, HintSelectsOneOfTwoPatterns) {
   const RigidTransform left = PrintPose({-1.1, 0.1, 4}, 0.1, 1, 0.3);
   const RigidTransform right = PrintPose({1.1, -0.1, 4}, 0.1, 1, 0.6);
   cv::Mat image = Draw(SpokedPrint(pattern_, 4), left);
@@ -61,7 +61,7 @@ TEST_F(LandingHintTest, AHintSaysWhereToLook) {
 }
 
 // However wrong the hint is, a pattern in plain view is found and located.
-TEST_F(LandingHintTest, AWrongHintHidesNothing) {
+TEST_F(LandingHintTest, WrongHintDoesNotHidePattern) {
   struct Told {
     const char* what;
     LandingHint hint;
@@ -125,7 +125,7 @@ TEST_F(LandingHintTest, AWrongHintHidesNothing) {
   }
 }
 
-TEST_F(LandingHintTest, AGoodPredictionNeedsNoSearch) {
+TEST_F(LandingHintTest, GoodPredictionNeedsNoSearch) {
   constexpr auto kAreas = static_cast<int>(LandingStage::kAreas);
   for (const double distance : {1.1, 3.0, 6.0, 9.0}) {
     const RigidTransform truth =
@@ -155,7 +155,7 @@ TEST_F(LandingHintTest, AGoodPredictionNeedsNoSearch) {
   }
 }
 
-TEST_F(LandingHintTest, TheQualityIsThatOfTheImageWhateverIsTold) {
+TEST_F(LandingHintTest, QualityDependsOnImageOnly) {
   LandingHint hint;
   hint.altitude_m = 3;
   const LandingReport right = Detect(image_, hint);
@@ -167,7 +167,7 @@ TEST_F(LandingHintTest, TheQualityIsThatOfTheImageWhateverIsTold) {
 }
 
 // A pattern that only a late step finds: the search goes on in the next frame where it stopped.
-TEST_F(LandingHintTest, ASearchThatIsOutOfTimeGoesOnInTheNextFrame) {
+TEST_F(LandingHintTest, SearchOutOfTimeContinuesInNextFrame) {
   LandingPatternDetectorOptions options;
   options.max_search_ms = 1e-6;  // one step a frame
   const LandingPatternDetector bounded(camera_, options);
@@ -190,7 +190,7 @@ TEST_F(LandingHintTest, ASearchThatIsOutOfTimeGoesOnInTheNextFrame) {
   EXPECT_GT(frames, 1) << "the first steps look for larger rings";
 }
 
-TEST_F(LandingHintTest, ABoundedSearchOfAnEmptyImageTakesEveryStepInTurn) {
+TEST_F(LandingHintTest, BoundedSearchOfEmptyImageTakesStepsInTurn) {
   LandingPatternDetectorOptions options;
   options.max_search_ms = 1e-6;
   const LandingPatternDetector bounded(camera_, options);
@@ -214,7 +214,7 @@ TEST_F(LandingHintTest, ABoundedSearchOfAnEmptyImageTakesEveryStepInTurn) {
   }
 }
 
-TEST_F(LandingHintTest, WithoutABoundEverySearchIsWhole) {
+TEST_F(LandingHintTest, UnboundedSearchIsComplete) {
   LandingPatternDetectorOptions options;
   options.max_search_ms = 1e9;
   const LandingPatternDetector generous(camera_, options);
@@ -234,7 +234,7 @@ TEST_F(LandingHintTest, WithoutABoundEverySearchIsWhole) {
   }
 }
 
-TEST_F(LandingHintTest, TheAttitudeResolvesTheMirrorPose) {
+TEST_F(LandingHintTest, AttitudeResolvesMirrorPose) {
   Random random(3);
   for (int trial = 0; trial < 6; ++trial) {
     const RigidTransform truth =

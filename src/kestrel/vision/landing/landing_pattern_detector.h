@@ -46,7 +46,7 @@ class LandingWorkspace final : public TargetWorkspace {
   LandingWorkspace(LandingWorkspace&&) noexcept;
   LandingWorkspace& operator=(LandingWorkspace&&) noexcept;
 
-  struct Buffers;  // of LandingSearch
+  struct Buffers;  // memory of LandingSearch
 
  private:
   friend class LandingPatternDetector;

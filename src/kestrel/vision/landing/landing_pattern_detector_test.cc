@@ -25,7 +25,7 @@ namespace {
 using ::testing::HasSubstr;
 
 // A ring of 24 px whose centre moves over the left image border: half of it is in view at 0.
-TEST_F(LandingPatternDetectorTest, FindsSmallPatternsThatTheImageBorderCutsOff) {
+TEST_F(LandingPatternDetectorTest, FindsSmallPatternsCutOffByImageBorder) {
   for (const double center_px : {8.0, 4.0, 0.0}) {
     const double distance = 9;
     const RigidTransform truth =
@@ -72,7 +72,7 @@ TEST_F(LandingPatternDetectorTest, FindsFlatPatternsUnderShadows) {
 // With about a quarter in view, a wrong pose may agree with the print at full quality. Its edges
 // hardly determine it, so the search goes on to the right pose. Of 300 images, 1 and 5 were wrong
 // in two draws.
-TEST_F(LandingPatternDetectorTest, PutsPrintsThatAreCutOffWhereTheyAre) {
+TEST_F(LandingPatternDetectorTest, LocatesCutOffPatterns) {
   constexpr int kImages = 300;
   Random random(3);
   int found = 0, wrong = 0;
@@ -94,7 +94,7 @@ TEST_F(LandingPatternDetectorTest, PutsPrintsThatAreCutOffWhereTheyAre) {
   EXPECT_LE(wrong, kImages / 50);
 }
 
-TEST_F(LandingPatternDetectorTest, FindsThePatternAtAllSizes) {
+TEST_F(LandingPatternDetectorTest, FindsPatternOfAllSizes) {
   for (const double distance : {1.1, 3.0, 9.0}) {
     const RigidTransform truth =
         PrintPose({0.03 * distance, 0.02 * distance, distance}, 0.1, 2, 0.5);
@@ -116,7 +116,7 @@ TEST_F(LandingPatternDetectorTest, FindsThePatternAtAllSizes) {
 
 // Ink of 5 and white of 25 gray values, with noise of 4: an eye sees rings of 130 to 240 px, though
 // not in single pixels.
-TEST_F(LandingPatternDetectorTest, FindsNearPatternsInTheNoiseOfDarkFrames) {
+TEST_F(LandingPatternDetectorTest, FindsNearPatternsInNoiseOfDarkFrames) {
   constexpr int kImages = 40;
   Random random(5);
   int found = 0;
@@ -137,7 +137,7 @@ TEST_F(LandingPatternDetectorTest, FindsNearPatternsInTheNoiseOfDarkFrames) {
   EXPECT_GE(found, 38);
 }
 
-TEST_F(LandingPatternDetectorTest, OtherSignsAreNotThePattern) {
+TEST_F(LandingPatternDetectorTest, RejectsOtherSigns) {
   const Print empty = [this](double x, double y) { return IsRing(pattern_, x, y); };
   const Print cross_only = [this](double x, double y) {
     return IsSpoke(x, y, 4, 0.05, pattern_.arm_half_length_m);
@@ -178,9 +178,9 @@ TEST_F(LandingPatternDetectorTest, OtherSignsAreNotThePattern) {
   EXPECT_LE(taken, 2);
 }
 
-// Rings of 44 px, 6 to 15 px high and blurred: too few pixels across to tell every letter from a
-// cross.
-TEST_F(LandingPatternDetectorTest, LettersInFlatRingsAreNotThePattern) {
+// Rings of 44 px, 6 to 15 px high and blurred: too few pixels across to distinguish every letter
+// from a cross.
+TEST_F(LandingPatternDetectorTest, RejectsLettersInFlatRings) {
   constexpr int kImages = 150;
   Random random(12);
   int found = 0;
@@ -207,7 +207,7 @@ TEST_F(LandingPatternDetectorTest, LettersInFlatRingsAreNotThePattern) {
   EXPECT_LE(found, 1);
 }
 
-TEST_F(LandingPatternDetectorTest, TheSizeOfARingIsThatOfItsImage) {
+TEST_F(LandingPatternDetectorTest, MeasuresRingSizeInImage) {
   // 85 degrees from its axis, the lens stretches its image by half along the rim.
   const CameraModel fisheye(
       {752, 752, 230, 230, 375.5, 375.5, DistortionModel::kEquidistant, {0, 0, 0, 0}});
@@ -225,14 +225,14 @@ TEST_F(LandingPatternDetectorTest, TheSizeOfARingIsThatOfItsImage) {
   EXPECT_NEAR(report.detection->semi_major_px, angle / std::sin(angle) * by_angle, 0.03 * by_angle);
 }
 
-TEST_F(LandingPatternDetectorTest, AFlatImageFallsAtTheFirstStages) {
+TEST_F(LandingPatternDetectorTest, RejectsFlatImageAtFirstStages) {
   const LandingReport report = Detect(cv::Mat(240, 320, CV_8UC1, cv::Scalar(100)));
   EXPECT_FALSE(report.detection);
   EXPECT_EQ(report.reached, LandingStage::kBinarize);
   EXPECT_EQ(report.candidates[static_cast<int>(LandingStage::kRing)], 0);
 }
 
-TEST_F(LandingPatternDetectorTest, AnImageThatIsNotTheCamerasIsAnswered) {
+TEST_F(LandingPatternDetectorTest, ReportsImageOfAnotherCamera) {
   for (const cv::Mat& image : {cv::Mat(240, 320, CV_8UC3), cv::Mat(240, 319, CV_8UC1),
                                cv::Mat(240, 320, CV_16UC1), cv::Mat()}) {
     const LandingReport report = Detect(image);
@@ -242,7 +242,7 @@ TEST_F(LandingPatternDetectorTest, AnImageThatIsNotTheCamerasIsAnswered) {
   }
 }
 
-TEST_F(LandingPatternDetectorTest, SameImageSameReport) {
+TEST_F(LandingPatternDetectorTest, SameImageGivesSameReport) {
   const LandingReport first = Detect(image_);
   ASSERT_TRUE(first.detection);
   // Other images in between.
@@ -254,7 +254,7 @@ TEST_F(LandingPatternDetectorTest, SameImageSameReport) {
   ExpectSame(detector_.Detect(image_, {}, fresh), first);
 }
 
-TEST_F(LandingPatternDetectorTest, ThreadsShareADetector) {
+TEST_F(LandingPatternDetectorTest, ThreadsShareDetector) {
   std::vector<cv::Mat> images;
   Random random(2);
   for (int i = 0; i < 8; ++i) {
@@ -282,7 +282,7 @@ TEST_F(LandingPatternDetectorTest, ThreadsShareADetector) {
 }
 
 // A higher min_quality gives fewer detections, none of them improbable.
-TEST_F(LandingPatternDetectorTest, TheQualityThatIsAskedForIsKept) {
+TEST_F(LandingPatternDetectorTest, RespectsMinimumQuality) {
   const double quality = Detect(image_).detection->quality;
   for (const double least : {0.0, 0.3, 0.9, 1.0}) {
     LandingPatternDetectorOptions options;
@@ -296,7 +296,7 @@ TEST_F(LandingPatternDetectorTest, TheQualityThatIsAskedForIsKept) {
 
 // For far prints, the two poses of a ring differ by less than the noise. Mostly the right one is
 // reported, and the covariance covers the other one.
-TEST_F(LandingPatternDetectorTest, TheCovarianceKnowsOfTheMirrorPose) {
+TEST_F(LandingPatternDetectorTest, CovarianceCoversMirrorPose) {
   Random random(11);
   int mirrored = 0, wrong = 0;
   for (int i = 0; i < 60; ++i) {
@@ -323,7 +323,7 @@ TEST_F(LandingPatternDetectorTest, TheCovarianceKnowsOfTheMirrorPose) {
   EXPECT_LT(wrong, 0.1 * mirrored);
 }
 
-TEST_F(LandingPatternDetectorTest, StagesAreCountedAndTimed) {
+TEST_F(LandingPatternDetectorTest, CountsAndTimesStages) {
   const LandingReport report = Detect(image_);
   ASSERT_TRUE(report.detection);
   for (const LandingStage stage :
@@ -334,7 +334,7 @@ TEST_F(LandingPatternDetectorTest, StagesAreCountedAndTimed) {
   EXPECT_GT(std::accumulate(report.stage_ns.begin(), report.stage_ns.end(), std::int64_t{0}), 0);
 }
 
-TEST(LandingPatternDetectorOptions, EveryViolationIsNamed) {
+TEST(LandingPatternDetectorOptions, ReportsEveryViolation) {
   LandingPatternDetectorOptions options;
   EXPECT_TRUE(ViolationsOf(options).empty());
   options.pattern.board_size_m = 0.2;
@@ -355,7 +355,7 @@ TEST(LandingPatternDetectorOptions, EveryViolationIsNamed) {
   }
 }
 
-TEST_F(LandingPatternDetectorTest, AWorkspaceOfAnotherDetectorIsRefused) {
+TEST_F(LandingPatternDetectorTest, RefusesWorkspaceOfAnotherDetector) {
   TargetWorkspace other;
   const LandingReport report = detector_.Detect(image_, {}, other);
   EXPECT_FALSE(report.detection);

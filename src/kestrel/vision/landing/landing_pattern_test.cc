@@ -15,14 +15,14 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-TEST(LandingPattern, TheDefaultsCanExist) {
+TEST(LandingPattern, DefaultsAreValid) {
   const LandingPattern pattern{};
   EXPECT_THAT(ViolationsOf(pattern), IsEmpty());
   EXPECT_DOUBLE_EQ(pattern.outer_radius_m(), 0.5);
   EXPECT_DOUBLE_EQ(pattern.inner_radius_m(), 0.4);
 }
 
-TEST(LandingPattern, ArmsMayReachIntoTheRing) {
+TEST(LandingPattern, ArmsMayReachIntoRing) {
   LandingPattern pattern;
   pattern.arm_half_length_m = 0.5;
   EXPECT_THAT(ViolationsOf(pattern), IsEmpty());
@@ -30,7 +30,7 @@ TEST(LandingPattern, ArmsMayReachIntoTheRing) {
   EXPECT_THAT(ViolationsOf(pattern), ElementsAre(HasSubstr("arm_half_length_m is 0.51")));
 }
 
-TEST(LandingPattern, EveryViolationIsNamed) {
+TEST(LandingPattern, ReportsEveryViolation) {
   LandingPattern pattern;
   pattern.ring_width_m = 0.5;
   pattern.board_size_m = 0.9;
@@ -38,7 +38,7 @@ TEST(LandingPattern, EveryViolationIsNamed) {
   EXPECT_THAT(ViolationsOf(pattern), ::testing::Contains(HasSubstr("board_size_m is 0.9")));
 }
 
-TEST(LandingPattern, MillimetresAreRefused) {
+TEST(LandingPattern, RefusesMillimetres) {
   for (double LandingPattern::*length :
        {&LandingPattern::outer_diameter_m, &LandingPattern::ring_width_m,
         &LandingPattern::arm_width_m, &LandingPattern::arm_half_length_m,
@@ -52,7 +52,7 @@ TEST(LandingPattern, MillimetresAreRefused) {
   EXPECT_THAT(ViolationsOf(pattern), ElementsAre("ring_width_m is 160, expected metres: 0.16?"));
 }
 
-TEST(LandingPattern, NaNIsNoLength) {
+TEST(LandingPattern, RefusesNanLengths) {
   for (double LandingPattern::*length :
        {&LandingPattern::outer_diameter_m, &LandingPattern::ring_width_m,
         &LandingPattern::arm_width_m, &LandingPattern::arm_half_length_m,

@@ -7,7 +7,7 @@ namespace kestrel {
 namespace {
 
 // A predicted ring up to this factor below the limit of small rings is still tested by its edges
-// first, which tell more than the fit as a whole. Areas seem larger by this factor.
+// first, which give more information than the fit as a whole. Areas seem larger by this factor.
 constexpr double kNearlyLarge = 1.1;
 
 RingSize SizeOf(const SearchStep& step) {
@@ -130,8 +130,8 @@ void LandingSearch::TestCrosses(std::size_t pass) {
 }
 
 bool LandingSearch::IsOutOfTime() const {
-  const double told_ms = models_.options.max_search_ms;
-  const double limit_ms = told_ms > 0 ? told_ms : hint_.max_search_ms;
+  const double configured_ms = models_.options.max_search_ms;
+  const double limit_ms = configured_ms > 0 ? configured_ms : hint_.max_search_ms;
   if (limit_ms == 0) return false;
   const std::chrono::duration<double, std::milli> spent = models_.now() - start_;
   return spent.count() > limit_ms;

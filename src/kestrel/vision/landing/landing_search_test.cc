@@ -36,7 +36,7 @@ class LandingSearchTest : public ::testing::Test {
 };
 
 // An ideal print raises no doubts except those that its size raises.
-TEST_F(LandingSearchTest, NothingSpeaksAgainstAnIdealPrint) {
+TEST_F(LandingSearchTest, IdealPrintRaisesNoDoubts) {
   for (const double distance : {1.1, 1.7, 3.0, 5.5, 7.5}) {
     const auto findings =
         Findings(SpokedPrint(pattern_, 4), PrintPose({0.05, -0.04, distance}, 0.25, 1, 0.3));
@@ -64,7 +64,7 @@ TEST_F(LandingSearchTest, NothingSpeaksAgainstAnIdealPrint) {
 }
 
 // Each defect raises the doubt of its name.
-TEST_F(LandingSearchTest, WhatIsMissingOrTooMuchIsDoubted) {
+TEST_F(LandingSearchTest, MissingOrExtraInkRaisesDoubts) {
   const Print three_arms = [this](double x, double y) {
     return SpokedPrint(pattern_, 4)(x, y) && !(x > 0.06 && std::abs(y) < 0.06 && x < 0.39);
   };
@@ -108,7 +108,7 @@ std::chrono::steady_clock::time_point StepClock() {
 
 // With time for a quarter of the steps, a pattern in view is found within four frames, whatever
 // step the search has come to.
-TEST_F(LandingSearchTest, FindsPatternsInFourFramesInQuarterOfTheTime) {
+TEST_F(LandingSearchTest, FindsPatternsInFourFramesAtQuarterOfTime) {
   constexpr int kSteps = static_cast<int>(kSearchSteps), kFrames = 4;
   LandingModels bounded(TestPrintCamera(), {});
   bounded.now = &StepClock;

@@ -31,14 +31,14 @@ double LeastCost(const Eigen::MatrixXd& costs) {
   return least;
 }
 
-TEST(AssignmentSolver, NearestIsNotAlwaysCheapestInAll) {
+TEST(AssignmentSolver, MinimisesTotalCostRatherThanNearest) {
   Eigen::MatrixXd costs(2, 2);
   costs << 1, 2,  //
       1.1, 10;
   EXPECT_THAT(AssignmentSolver().Solve(costs), ElementsAre(1, 0));
 }
 
-TEST(AssignmentSolver, IsAsCheapAsTheBestOfAllAssignments) {
+TEST(AssignmentSolver, MatchesBestOfAllAssignments) {
   Random random(1);
   AssignmentSolver solver;
   for (int i = 0; i < 200; ++i) {

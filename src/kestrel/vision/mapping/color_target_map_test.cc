@@ -14,7 +14,7 @@ ColorTarget TargetAt(double x, const Eigen::Vector2d& likelihoods) {
   return target;
 }
 
-TEST(ColorTargetMap, NearDetectionsAreAveragedFarOnesAreNew) {
+TEST(ColorTargetMap, AveragesNearDetectionsAndAddsFarOnes) {
   ColorTargetMap map(1.0);
   map.Update(std::vector<ColorTarget>{TargetAt(0, {0.9, 0.1})});
   map.Update(std::vector<ColorTarget>{TargetAt(0.6, {0.2, 0.8}), TargetAt(5, {0.5, 0.5})});

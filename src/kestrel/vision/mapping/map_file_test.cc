@@ -37,7 +37,7 @@ std::string ErrorOf(const std::string& text) {
   return "";
 }
 
-TEST(MapFile, KeepsEveryBit) {
+TEST(MapFile, RoundTripsExactly) {
   const std::string text = PrintObjects(SomeObjects());
   EXPECT_EQ(PrintObjects(ParseObjects(text, "map")), text);
   EXPECT_TRUE(ParseObjects(PrintObjects({}), "map").empty());
@@ -49,14 +49,14 @@ TEST(MapFile, KeepsEveryBit) {
   EXPECT_EQ(parsed[0].move_log_odds, 5.25);
 }
 
-TEST(MapFile, CutOffAnywhereIsRefused) {
+TEST(MapFile, RefusesFileTruncatedAnywhere) {
   const std::string text = PrintObjects(SomeObjects());
   for (std::size_t size = 0; size + 2 < text.size(); size += 37) {
     EXPECT_NE(ErrorOf(text.substr(0, size)), "") << size;
   }
 }
 
-TEST(MapFile, ValuesThatNoMapHasAreNamed) {
+TEST(MapFile, ReportsInvalidValues) {
   const std::string text = PrintObjects(SomeObjects());
   const auto with = [&](const std::string& from, const std::string& to) {
     std::string changed = text;
@@ -68,7 +68,7 @@ TEST(MapFile, ValuesThatNoMapHasAreNamed) {
   EXPECT_THAT(ErrorOf(with("\"covariance\": [", "\"covariance\": [-")), HasSubstr("map.json:2"));
 }
 
-TEST(MapFile, FailedSaveKeepsTheOldFile) {
+TEST(MapFile, FailedSaveKeepsOldFile) {
   const TestFolder folder;
   const std::string path = folder / "map.json";
   SaveObjects(path, SomeObjects());
@@ -79,7 +79,7 @@ TEST(MapFile, FailedSaveKeepsTheOldFile) {
   EXPECT_EQ(LoadObjects(path).size(), 2U);
 }
 
-TEST(GeoJson, PlacesObjectsAroundTheOrigin) {
+TEST(GeoJson, PlacesObjectsAroundOrigin) {
   std::vector<MappedObject> objects = {SomeObjects()[0]};
   objects[0].state.head<3>() = Eigen::Vector3d(0, 1000, 0);
   const std::string text = PrintGeoJson(objects, DefaultObjectModel(), {0, 10});

@@ -46,7 +46,7 @@ struct MappedObject {
   ObjectShape shape = ObjectShape::kDisc;
   Time first_seen;
   Time last_seen;
-  Time time;  // of the state
+  Time time;  // time of the state
   // Position (m), velocity (m/s) and acceleration (m/s^2) in the world. An object that stands, or
   // more likely stands than moves, has no motion.
   State state = State::Zero();

@@ -20,10 +20,10 @@ using Eigen::Vector3d;
 using Path = std::function<Vector3d(double time_s)>;
 
 constexpr double kPeriod_s = 0.1;
-constexpr double kSigma_m = 0.035;  // of a detection from 6 m, as estimated by the pipeline
+constexpr double kSigma_m = 0.035;  // error of a detection from 6 m, as estimated by the pipeline
 constexpr int kSeeds = 20;
 
-// Errors that sightings at one time share, and the clock shift that the map is told.
+// Errors that sightings at one time share, and the clock shift that the map is given.
 struct SharedError {
   Path error = [](double /*time_s*/) { return Vector3d(0, 0, 0); };
   Path clock_shift = [](double /*time_s*/) { return Vector3d(0, 0, 0); };
@@ -93,7 +93,7 @@ int FirstSaid(const std::vector<MappedObject>& said) {
   return first == said.end() ? 0 : 1 + static_cast<int>(first - said.begin());
 }
 
-TEST(MotionFilter, WhatStandsNeverMoves) {
+TEST(MotionFilter, StandingObjectNeverMoves) {
   for (int seed = 1; seed <= kSeeds; ++seed) {
     Random random(seed);
     const auto said = Watch(Stand, {.error = Drift(&random)}, 2000, &random);
@@ -103,7 +103,7 @@ TEST(MotionFilter, WhatStandsNeverMoves) {
   }
 }
 
-TEST(MotionFilter, AWrongClockDoesNotMoveWhatStands) {
+TEST(MotionFilter, WrongClockDoesNotMoveStandingObject) {
   for (int seed = 1; seed <= kSeeds; ++seed) {
     Random random(seed);
     const Path drift = Drift(&random);
@@ -114,7 +114,7 @@ TEST(MotionFilter, AWrongClockDoesNotMoveWhatStands) {
   }
 }
 
-TEST(MotionFilter, OneWrongDetectionDoesNotMoveWhatStands) {
+TEST(MotionFilter, SingleOutlierDoesNotMoveStandingObject) {
   Random random(1);
   const Path jump = [](double time_s) {
     return Vector3d(std::abs(time_s - 5) < 0.01 ? 0.5 : 0, 0, 0);
@@ -122,7 +122,7 @@ TEST(MotionFilter, OneWrongDetectionDoesNotMoveWhatStands) {
   EXPECT_EQ(FirstSaid(Watch(Stand, {.error = jump}, 100, &random)), 0);
 }
 
-TEST(MotionFilter, WhatMovesIsSaidToMoveWithItsVelocity) {
+TEST(MotionFilter, DetectsMovingObjectAndItsVelocity) {
   struct Case {
     double speed_mps;
     int sightings;  // latest sighting at which it must be reported as moving
@@ -140,7 +140,7 @@ TEST(MotionFilter, WhatMovesIsSaidToMoveWithItsVelocity) {
   }
 }
 
-TEST(MotionFilter, VelocityIsKnownAfterTenSightings) {
+TEST(MotionFilter, EstimatesVelocityAfterTenSightings) {
   for (const double speed_mps : {0.6, 1.4, 2.0}) {
     double squares = 0;
     for (int seed = 1; seed <= kSeeds; ++seed) {
@@ -153,7 +153,7 @@ TEST(MotionFilter, VelocityIsKnownAfterTenSightings) {
   }
 }
 
-TEST(MotionFilter, WhatStopsStandsWhereItStopped) {
+TEST(MotionFilter, StoppedObjectStandsWhereItStopped) {
   constexpr double kStop_s = 20;
   for (int seed = 1; seed <= kSeeds; ++seed) {
     Random random(seed);
@@ -166,7 +166,7 @@ TEST(MotionFilter, WhatStopsStandsWhereItStopped) {
   }
 }
 
-TEST(MotionFilter, WhatBeginsToDriveIsSaidToMove) {
+TEST(MotionFilter, DetectsObjectThatStartsMoving) {
   constexpr int kStands = 1000;
   for (int seed = 1; seed <= kSeeds; ++seed) {
     Random random(seed);

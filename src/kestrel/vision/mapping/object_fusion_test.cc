@@ -24,7 +24,7 @@ std::vector<MappedObject> MapOfTwo(double x, Random* random) {
   return map.objects();
 }
 
-TEST(FuseObjects, TheSameObjectOfTwoMapsIsOneAndBetterKnown) {
+TEST(FuseObjects, FusesSameObjectOfTwoMaps) {
   Random random(2);
   std::vector<MappedObject> fused;
   const std::vector<MappedObject> first = MapOfTwo(8, &random);
@@ -36,7 +36,7 @@ TEST(FuseObjects, TheSameObjectOfTwoMapsIsOneAndBetterKnown) {
   EXPECT_LT((fused[0].position() - Eigen::Vector3d(1, 2, 0)).norm(), 0.1);
 }
 
-TEST(FuseObjects, ThoseOfOneMapStayApart) {
+TEST(FuseObjects, KeepsObjectsOfOneMapSeparate) {
   Random random(3);
   std::vector<MappedObject> objects = MapOfTwo(8, &random);
   objects[1] = objects[0];
@@ -57,7 +57,7 @@ MappedObject Yellow(double x, double move_log_odds) {
   return object;
 }
 
-TEST(FuseObjects, OfOneThatMovesAndOneThatStandsTheSurerIsRight) {
+TEST(FuseObjects, SurerObjectDecidesWhetherFusedOneMoves) {
   std::vector<MappedObject> fused = {Yellow(0, -2)};
   FuseObjects({Yellow(0.1, 6)}, &fused);
   ASSERT_THAT(fused, SizeIs(1));

@@ -79,7 +79,7 @@ class FieldOfView {
 // finally removed. Bounded memory and time per update.
 class ObjectMap {
  public:
-  // Throws InputError when the options are invalid. 'model' says which objects may move.
+  // Throws InputError when the options are invalid. 'model' defines which objects may move.
   ObjectMap(const ObjectModel& model, const ObjectMapOptions& options);
   ~ObjectMap();
   ObjectMap(ObjectMap&&) noexcept;

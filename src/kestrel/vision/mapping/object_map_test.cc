@@ -18,7 +18,7 @@ namespace {
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-TEST(ObjectMap, ObjectIsConfirmedAndItsPositionIsFused) {
+TEST(ObjectMap, ConfirmsObjectAndFusesPosition) {
   ObjectMap map(DefaultObjectModel(), {});
   Random random(1);
   const Eigen::Vector3d truth(3, -2, 0.01);
@@ -36,7 +36,7 @@ TEST(ObjectMap, ObjectIsConfirmedAndItsPositionIsFused) {
   EXPECT_EQ(objects[0].velocity().norm(), 0);
 }
 
-TEST(ObjectMap, NeighboursAreToldApartTogether) {
+TEST(ObjectMap, DistinguishesNeighboursJointly) {
   ObjectMap map(DefaultObjectModel(), {});
   Random random(2);
   // Nearer to each other than detections scatter: assignment to the nearest object would confuse
@@ -61,7 +61,7 @@ TEST(ObjectMap, OtherColoursAreOtherObjects) {
   EXPECT_THAT(map.Confirmed(), SizeIs(2));
 }
 
-TEST(ObjectMap, MovingObjectHasItsVelocity) {
+TEST(ObjectMap, EstimatesVelocityOfMovingObject) {
   ObjectMap map(DefaultObjectModel(), {});
   Random random(3);
   const Eigen::Vector3d velocity(0.5, -0.3, 0);
@@ -74,7 +74,7 @@ TEST(ObjectMap, MovingObjectHasItsVelocity) {
   EXPECT_LT((objects[0].velocity() - velocity).norm(), 0.15);
 }
 
-TEST(ObjectMap, RowsOfARollingShutterHaveTimesOfTheirOwn) {
+TEST(ObjectMap, AccountsForRowTimesOfRollingShutter) {
   ObjectMap map(DefaultObjectModel(), {});
   Random random(7);
   const Eigen::Vector3d velocity(1, 0.5, 0);
@@ -118,7 +118,7 @@ TEST(ObjectMap, VelocityFollowsCurves) {
   EXPECT_LT(std::sqrt(squares / kSeeds), 0.1);
 }
 
-TEST(ObjectMap, AfterAnHourTheStateIsStillFinite) {
+TEST(ObjectMap, StateStaysFiniteForAnHour) {
   ObjectMap map(DefaultObjectModel(), {});
   map.Update(At(0), std::vector{MeasureDisc({0, 0, 0}, kYellow)}, SeesNothing());
   MappedObject object = map.objects()[0];
@@ -127,7 +127,7 @@ TEST(ObjectMap, AfterAnHourTheStateIsStillFinite) {
   EXPECT_LT(object.sigma_m(), 1000) << "far less than at the speed that it may have";
 }
 
-TEST(ObjectMap, WhatIsPickedUpFadesAndWhatIsOutOfViewStays) {
+TEST(ObjectMap, RemovedObjectFadesAndObjectOutOfViewStays) {
   ObjectMap map(DefaultObjectModel(), {});
   for (int i = 0; i < 20; ++i) {
     map.Update(At(0.1 * i), std::vector{MeasureDisc({0, 0, 0}, kRed)}, SeesAll());
@@ -140,7 +140,7 @@ TEST(ObjectMap, WhatIsPickedUpFadesAndWhatIsOutOfViewStays) {
   EXPECT_THAT(map.objects(), IsEmpty());
 }
 
-TEST(ObjectMap, MemoryIsBounded) {
+TEST(ObjectMap, LimitsMemory) {
   ObjectMapOptions options;
   options.capacity = 20;
   ObjectMap map(DefaultObjectModel(), options);
@@ -150,7 +150,7 @@ TEST(ObjectMap, MemoryIsBounded) {
   EXPECT_THAT(map.objects(), SizeIs(20));
 }
 
-TEST(ObjectMap, NonsenseAndThePastAreLeftOut) {
+TEST(ObjectMap, IgnoresInvalidAndOldMeasurements) {
   ObjectMap map(DefaultObjectModel(), {});
   ObjectMeasurement nonsense = MeasureDisc({0, 0, 0}, kRed);
   nonsense.position.x() = std::numeric_limits<double>::quiet_NaN();
@@ -162,7 +162,7 @@ TEST(ObjectMap, NonsenseAndThePastAreLeftOut) {
   EXPECT_THAT(map.objects(), IsEmpty());
 }
 
-TEST(ObjectMap, DigitIsTheMostLikelyOfAllDetections) {
+TEST(ObjectMap, DigitIsMostLikelyOfAllDetections) {
   ObjectMap map(DefaultObjectModel(), {});
   for (int i = 0; i < 5; ++i) {
     ObjectMeasurement measurement = MeasureDisc({0, 0, 0}, kRed);
@@ -176,7 +176,7 @@ TEST(ObjectMap, DigitIsTheMostLikelyOfAllDetections) {
   EXPECT_EQ(ScoreOf(map.Confirmed()[0], DefaultObjectModel()), 7);
 }
 
-TEST(ObjectMapOptions, ViolationsAreNamed) {
+TEST(ObjectMapOptions, ReportsViolations) {
   ObjectMapOptions options;
   options.capacity = 0;
   options.moving_probability = 0.4;

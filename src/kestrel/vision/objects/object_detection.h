@@ -55,8 +55,8 @@ struct ObjectDetection {
   double misfit = 0;
   Hsv mean_color;
   ColorProbabilities color_probabilities{};
-  double class_probability = 0;            // of the class, given colour and shape
-  std::optional<DigitLikelihoods> digits;  // of cuboids only
+  double class_probability = 0;            // probability of the class, given colour and shape
+  std::optional<DigitLikelihoods> digits;  // for cuboids only
   std::optional<ObjectLocation> location;  // camera frame; not of merged discs
   std::optional<HeightBySize> height;      // where the attitude is known; not of merged discs
 };

@@ -89,7 +89,7 @@ class ObjectWorkspace {
   ObjectWorkspace(ObjectWorkspace&&) noexcept;
   ObjectWorkspace& operator=(ObjectWorkspace&&) noexcept;
 
-  struct Buffers;  // of ObjectExaminer
+  struct Buffers;  // memory of ObjectExaminer
 
  private:
   friend class ObjectDetector;

@@ -63,7 +63,7 @@ TEST_F(ObjectDetectorTest, FindsDiscsWithClassCentreAndPlace) {
   }
 }
 
-TEST_F(ObjectDetectorTest, OtherShapesAreNotTakenForDiscs) {
+TEST_F(ObjectDetectorTest, RejectsOtherShapesAsDiscs) {
   ObjectScene scene;
   scene.DrawRectangle(scene.PointUnder({150, 120}, 0), 0.2, 0.2, 0.3, kRedPaint);
   scene.DrawRectangle(scene.PointUnder({400, 120}, 0), 0.4, 0.1, 0.8, kGreenPaint);
@@ -72,14 +72,14 @@ TEST_F(ObjectDetectorTest, OtherShapesAreNotTakenForDiscs) {
   EXPECT_GT(report_.passed[static_cast<int>(ObjectStage::kSize)], 2);
 }
 
-TEST_F(ObjectDetectorTest, DiscsOfAnotherSizeAreNotOnTheGround) {
+TEST_F(ObjectDetectorTest, RejectsDiscsOfWrongSizeForGround) {
   ObjectScene scene;
   scene.DrawDisc(scene.PointUnder({150, 120}, 0), 0.2, kRedPaint);
   EXPECT_EQ(DetectSingle(scene, {}).size(), 1U) << "it could be nearer";
   EXPECT_THAT(DetectSingle(scene, {{}, scene.up(), scene.height_m()}), IsEmpty());
 }
 
-TEST_F(ObjectDetectorTest, RingIsNoDisc) {
+TEST_F(ObjectDetectorTest, RejectsRing) {
   ObjectScene scene(3);
   const Eigen::Vector3d center = scene.PointUnder({320, 240}, 0.012);
   scene.DrawDisc(center, 0.1, kBluePaint);
@@ -88,7 +88,7 @@ TEST_F(ObjectDetectorTest, RingIsNoDisc) {
   EXPECT_THAT(DetectOnGround(scene), IsEmpty());
 }
 
-TEST_F(ObjectDetectorTest, InsideOfALetterOnABannerIsNoDisc) {
+TEST_F(ObjectDetectorTest, RejectsInsideOfLetterOnBanner) {
   const cv::Scalar letter(60, 60, 60);
   const auto draw_letter = [&](const Eigen::Vector2d& pixel, ObjectScene* scene) {
     scene->DrawDisc(scene->PointUnder(pixel, 0), 0.2, letter);
@@ -104,7 +104,7 @@ TEST_F(ObjectDetectorTest, InsideOfALetterOnABannerIsNoDisc) {
   EXPECT_EQ(DetectOnGround(ground).size(), 1U) << "on the ground it may be a disc on a plate";
 }
 
-TEST_F(ObjectDetectorTest, CutOffDiscHasItsCentre) {
+TEST_F(ObjectDetectorTest, FindsCentreOfCutOffDisc) {
   ObjectScene scene;
   const Eigen::Vector2d center(634, 200);
   scene.DrawDisc(scene.PointUnder(center, 0), 0.1, kGreenPaint);
@@ -114,7 +114,7 @@ TEST_F(ObjectDetectorTest, CutOffDiscHasItsCentre) {
   EXPECT_LT((detections[0].center_px - center).norm(), 0.7);
 }
 
-TEST_F(ObjectDetectorTest, DiscsThatTouchAreReportedAsMerged) {
+TEST_F(ObjectDetectorTest, ReportsTouchingDiscsAsMerged) {
   ObjectScene scene;
   const Eigen::Vector3d first = scene.PointUnder({300, 200}, 0);
   scene.DrawDisc(first, 0.1, kGreenPaint);
@@ -125,7 +125,7 @@ TEST_F(ObjectDetectorTest, DiscsThatTouchAreReportedAsMerged) {
   EXPECT_FALSE(detections[0].location);
 }
 
-TEST_F(ObjectDetectorTest, BarIsFoundWithItsPlace) {
+TEST_F(ObjectDetectorTest, FindsBarWithPlace) {
   ObjectScene scene(6);
   scene.DrawRectangle(scene.PointUnder({330, 250}, 0.1), 2, 0.15, 0.7, kOrangePaint);
   const auto detections = DetectOnGround(scene);
@@ -135,7 +135,7 @@ TEST_F(ObjectDetectorTest, BarIsFoundWithItsPlace) {
   EXPECT_LT((detections[0].location->position - truth).norm(), 0.03 * truth.norm());
 }
 
-TEST_F(ObjectDetectorTest, TrackLooksNowhereElse) {
+TEST_F(ObjectDetectorTest, SearchesOnlyNearTrackedObjects) {
   ObjectScene scene;
   scene.DrawDisc(scene.PointUnder({150, 120}, 0), 0.1, kRedPaint);
   scene.DrawDisc(scene.PointUnder({480, 330}, 0), 0.1, kRedPaint);
@@ -146,12 +146,12 @@ TEST_F(ObjectDetectorTest, TrackLooksNowhereElse) {
   EXPECT_EQ(report_.passed[static_cast<int>(ObjectStage::kSegmented)], 1);
 }
 
-TEST_F(ObjectDetectorTest, ImageWithoutTheColoursHasNothing) {
+TEST_F(ObjectDetectorTest, FindsNothingWithoutColours) {
   EXPECT_THAT(Detect(ObjectScene(), {}), IsEmpty());
   EXPECT_EQ(report_.passed[0], 0);
 }
 
-TEST(ObjectDetectorOptions, ViolationsAreNamed) {
+TEST(ObjectDetectorOptions, ReportsViolations) {
   ObjectDetectorOptions options;
   options.min_pixels = 0;
   options.max_gap = 2;

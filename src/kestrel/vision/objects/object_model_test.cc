@@ -32,7 +32,7 @@ std::string Replaced(std::string text, const std::string& from, const std::strin
   return text.replace(text.find(from), from.size(), to);
 }
 
-TEST(ParseObjectModel, ReadsWhatPrintObjectModelWrites) {
+TEST(ParseObjectModel, RoundTripsThroughText) {
   const ObjectModel model = DefaultObjectModel();
   const std::string text = PrintObjectModel(model);
   const ObjectModel again = ParseObjectModel(text, "again");
@@ -42,12 +42,12 @@ TEST(ParseObjectModel, ReadsWhatPrintObjectModelWrites) {
             model.colors.colors[2].components[0].mean.hue_deg);
 }
 
-TEST(ParseObjectModel, ASizeInMillimetresIsRefused) {
+TEST(ParseObjectModel, RefusesSizeInMillimetres) {
   EXPECT_THAT(ErrorOf(Replaced(kModel, "size_m: 0.2", "size_m: 200")),
               HasSubstr("class 1 (red): size_m is 200, expected metres: 0.2?"));
 }
 
-TEST(ParseObjectModel, CorrelationOfHueAndSaturationIsKept) {
+TEST(ParseObjectModel, KeepsCorrelationOfHueAndSaturation) {
   const std::string yaml =
       Replaced(kModel, "sigma: [8, 0.1, 0.2]", "sigma: [8, 0.1, 0.2], correlation: -0.625");
   const ObjectModel model = ParseObjectModel(yaml, "model.yaml");

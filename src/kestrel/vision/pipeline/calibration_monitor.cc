@@ -30,7 +30,7 @@ constexpr double kSharedShare = 0.001;
 constexpr double kSharedSigma = 0.003;
 constexpr double kOfSquare = 0.1;
 constexpr double kFarSurprise = 4;  // a side with this surprise has half the weight (Cauchy)
-constexpr int kRounds = 2;          // of weights, per view; they converge over the views
+constexpr int kRounds = 2;          // updates of the weights per view; they converge over the views
 
 Eigen::Vector4d PriorInformation() {
   return Eigen::Vector4d(kPriorSigma.data()).cwiseAbs2().cwiseInverse();

@@ -70,8 +70,8 @@ class CalibrationMonitor {
   MisfitCount misfits_{};
 };
 
-// Returns a line that says how the detections contradict the calibration, whose focal length is
-// 'focal_px', and what to do; empty where they do not.
+// Returns a line that describes how the detections contradict the calibration, whose focal length
+// is 'focal_px', and what to do; empty where they do not.
 std::string LensWarning(const CalibrationMonitor& monitor, double focal_px);
 
 }  // namespace kestrel

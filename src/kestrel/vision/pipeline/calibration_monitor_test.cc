@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 // Views through a lens, each from its own side unless 'turn' is 0. A view determines two of four
 // numbers: each combines the focal length with a part of the principal point and the distortion.
 struct Views {
-  Eigen::Vector4d error = Eigen::Vector4d::Zero();  // of the calibration
+  Eigen::Vector4d error = Eigen::Vector4d::Zero();  // error of the calibration
   double outliers = 0;                              // share of the views that are completely wrong
   double turn = 0.4;                                // rad
 
@@ -50,7 +50,7 @@ struct Views {
   }
 };
 
-TEST(CalibrationMonitor, SaysTheFocalLengthThatTheViewsSay) {
+TEST(CalibrationMonitor, EstimatesFocalLengthOfViews) {
   const Views views{{std::log(0.8), 0.03, -0.02, 0.05}};
   double squared_error = 0;
   constexpr int kRuns = 40;
@@ -67,7 +67,7 @@ TEST(CalibrationMonitor, SaysTheFocalLengthThatTheViewsSay) {
   EXPECT_LT(squared_error, 1.7);
 }
 
-TEST(CalibrationMonitor, AFewViewsAreEnoughForALargeError) {
+TEST(CalibrationMonitor, DetectsLargeErrorWithFewViews) {
   const Views views{{std::log(370.0 / 500), 0, 0, 0}};
   for (int seed = 0; seed < 40; ++seed) {
     const auto focal = views.Watch(30, seed).Contradiction();
@@ -76,7 +76,7 @@ TEST(CalibrationMonitor, AFewViewsAreEnoughForALargeError) {
   }
 }
 
-TEST(CalibrationMonitor, IsSilentWhereTheFocalLengthIsRight) {
+TEST(CalibrationMonitor, IsSilentForRightFocalLength) {
   const Views right, other_center{{0, 0.1, -0.05, 0}}, other_distortion{{0, 0, 0, -0.15}};
   for (const Views& views : {right, other_center, other_distortion}) {
     for (int seed = 0; seed < 100; ++seed) {
@@ -95,13 +95,13 @@ TEST(CalibrationMonitor, IsSilentAboutLessThanOneAndAHalfPercent) {
 }
 
 // Views from one side share the errors of the print.
-TEST(CalibrationMonitor, ViewsFromOneSideAreNotEnough) {
+TEST(CalibrationMonitor, RequiresViewsFromSeveralSides) {
   Views views{{std::log(0.7), 0, 0, 0}};
   views.turn = 0;
   EXPECT_FALSE(views.Watch(300, 1).Focal());
 }
 
-TEST(CalibrationMonitor, AFifthOfTheViewsMayBeWrong) {
+TEST(CalibrationMonitor, ToleratesFifthOfWrongViews) {
   Views views{{std::log(0.8), 0, 0, 0}, 0.2};
   EXPECT_NEAR(views.Watch(200, 3).Contradiction()->factor, 0.8, 0.05);
   views.error.setZero();
@@ -110,7 +110,7 @@ TEST(CalibrationMonitor, AFifthOfTheViewsMayBeWrong) {
   }
 }
 
-TEST(CalibrationMonitor, ViewsThatSayNothingAreLeftOut) {
+TEST(CalibrationMonitor, IgnoresViewsWithoutEvidence) {
   CalibrationMonitor monitor;
   Random random(1);
   for (int i = 0; i < 20; ++i) {
@@ -127,7 +127,7 @@ TEST(LensWarning, NamesBothFocalLengths) {
   EXPECT_EQ(LensWarning(Views().Watch(200, 1), 500), "");
 }
 
-TEST(LensWarning, CountsTheMisfits) {
+TEST(LensWarning, CountsMisfits) {
   CalibrationMonitor monitor;
   LandingDetection detection{};
   detection.misfit_px = 0.3;

@@ -8,16 +8,16 @@
 
 namespace kestrel {
 
-// A height of the ground above the world's z = 0 (m), told or seen, with a standard deviation.
+// A height of the ground above the world's z = 0 (m), given or seen, with a standard deviation.
 struct GroundHeight {
   double height_m = 0;
   double sigma_m = 0;
 };
 
-// Estimates the height of the ground from what is told (a setting, and a navigation whose z may be
-// an altitude above sea level, or drift) and from sightings (objects of known size). The told
+// Estimates the height of the ground from a given height (a setting, and a navigation whose z may
+// be an altitude above sea level, or drift) and from sightings (objects of known size). The given
 // height holds until the sightings contradict it: for several frames in a row, most of the latest
-// sightings agree with each other and not with the told height. The standard deviation of a
+// sightings agree with each other and not with the given height. The standard deviation of a
 // sighting must include the errors that sightings share (the focal length, the size of a print):
 // heights are averaged, but the mean is not considered more certain than a single sighting.
 class GroundHeightEstimator {
@@ -32,15 +32,15 @@ class GroundHeightEstimator {
   // own.
   void ForgetSightings();
 
-  // Returns the height that holds: the told one, or the seen one where that contradicts it.
+  // Returns the height that holds: the given one, or the seen one where that contradicts it.
   GroundHeight Estimate(const GroundHeight& told) const { return contradiction_.value_or(told); }
 
-  // Returns how much higher the ground is seen than told; nothing as long as they agree or too
+  // Returns how much higher the ground is seen than given; nothing as long as they agree or too
   // little was seen.
   std::optional<GroundHeight> Contradiction() const;
 
-  // True when most of the latest sightings contradict the told height and agree with this sighting.
-  // The first sighting has none against it.
+  // True when most of the latest sightings contradict the given height and agree with this
+  // sighting. The first sighting has none against it.
   bool Supports(const GroundHeight& sighting) const;
 
  private:

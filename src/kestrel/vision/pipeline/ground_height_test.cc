@@ -17,14 +17,14 @@ void UpdateTimes(int times, const Sightings& seen, GroundHeightEstimator* ground
   for (int i = 0; i < times; ++i) ground->Update(kTold, seen);
 }
 
-TEST(GroundHeightEstimator, WhatIsToldHoldsAsLongAsItAgreesWithWhatIsSeen) {
+TEST(GroundHeightEstimator, KeepsGivenHeightThatAgreesWithSightings) {
   GroundHeightEstimator ground;
   UpdateTimes(20, {{0.1, 0.1}, {-0.2, 0.1}}, &ground);
   EXPECT_FALSE(ground.Contradiction());
   EXPECT_EQ(ground.Estimate(kTold).height_m, kTold.height_m);
 }
 
-TEST(GroundHeightEstimator, SightingsThatAgreeContradictWhatIsToldAfterSomeFrames) {
+TEST(GroundHeightEstimator, ConsistentSightingsContradictGivenHeight) {
   GroundHeightEstimator ground;
   UpdateTimes(4, {{9.9, 0.1}, {10.1, 0.1}}, &ground);
   EXPECT_FALSE(ground.Contradiction());
@@ -37,33 +37,33 @@ TEST(GroundHeightEstimator, SightingsThatAgreeContradictWhatIsToldAfterSomeFrame
   EXPECT_NEAR(ground.Estimate(kTold).height_m, 10, 1e-9);
 }
 
-TEST(GroundHeightEstimator, AHeightIsWeighedByItsVariance) {
+TEST(GroundHeightEstimator, WeightsHeightByVariance) {
   GroundHeightEstimator ground;
   UpdateTimes(5, {{10, 0.1}, {10.4, 0.2}}, &ground);
   EXPECT_NEAR(ground.Estimate(kTold).height_m, 10.08, 1e-9);
 }
 
-TEST(GroundHeightEstimator, FramesWithoutASightingChangeNothing) {
+TEST(GroundHeightEstimator, FramesWithoutSightingChangeNothing) {
   GroundHeightEstimator ground;
   UpdateTimes(5, {{10, 0.1}}, &ground);
   UpdateTimes(100, {}, &ground);
   EXPECT_NEAR(ground.Estimate(kTold).height_m, 10, 1e-9);
 }
 
-TEST(GroundHeightEstimator, WhatDoesNotAgreeWithItselfDoesNotContradict) {
+TEST(GroundHeightEstimator, InconsistentSightingsDoNotContradict) {
   GroundHeightEstimator ground;
   for (int i = 0; i < 30; ++i) ground.Update(kTold, Sightings{{1.0 + i, 0.1}});
   EXPECT_FALSE(ground.Contradiction());
 }
 
-TEST(GroundHeightEstimator, AMinorityDoesNotContradict) {
+TEST(GroundHeightEstimator, MinorityDoesNotContradict) {
   GroundHeightEstimator ground;
   UpdateTimes(20, {{0, 0.1}, {0.1, 0.1}, {2, 0.1}}, &ground);
   EXPECT_FALSE(ground.Contradiction());
   EXPECT_FALSE(ground.Supports({2, 0.1}));
 }
 
-TEST(GroundHeightEstimator, AContradictionEndsWithWhatContradicts) {
+TEST(GroundHeightEstimator, ContradictionEndsWithItsSightings) {
   GroundHeightEstimator ground;
   UpdateTimes(10, {{10, 0.1}}, &ground);
   ASSERT_TRUE(ground.Contradiction());
@@ -72,7 +72,7 @@ TEST(GroundHeightEstimator, AContradictionEndsWithWhatContradicts) {
   EXPECT_EQ(ground.Estimate(kTold).height_m, kTold.height_m);
 }
 
-TEST(GroundHeightEstimator, FramesOfTheirOwnContradictTogether) {
+TEST(GroundHeightEstimator, IndependentFramesContradictTogether) {
   GroundHeightEstimator ground;
   for (int i = 0; i < 5; ++i) {
     ground.ForgetSightings();
@@ -82,14 +82,14 @@ TEST(GroundHeightEstimator, FramesOfTheirOwnContradictTogether) {
   EXPECT_NEAR(ground.Contradiction()->height_m, 14, 1e-9) << "by the last one alone";
 }
 
-TEST(GroundHeightEstimator, AFrameWithoutAFiniteSightingDoesNotContradict) {
+TEST(GroundHeightEstimator, FrameWithoutFiniteSightingDoesNotContradict) {
   GroundHeightEstimator ground;
   UpdateTimes(4, {{10, 0.1}}, &ground);
   UpdateTimes(20, {{std::numeric_limits<double>::quiet_NaN(), 0.1}}, &ground);
   EXPECT_FALSE(ground.Contradiction());
 }
 
-TEST(GroundHeightEstimator, SightingsThatAreNotFiniteAreLeftOut) {
+TEST(GroundHeightEstimator, IgnoresNonFiniteSightings) {
   GroundHeightEstimator ground;
   const double infinity = std::numeric_limits<double>::infinity();
   UpdateTimes(5, {{10, 0.1}, {infinity, 0.1}, {10, infinity}}, &ground);

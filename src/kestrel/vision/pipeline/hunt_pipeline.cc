@@ -15,7 +15,7 @@
 namespace kestrel {
 namespace {
 
-// Standard deviations for a flight with a told altitude and without an attitude.
+// Standard deviations for a flight with a given altitude and without an attitude.
 constexpr double kTilt_deg = 5;
 constexpr double kAltitudeShare = 0.05;
 
@@ -23,8 +23,8 @@ constexpr double kAltitudeShare = 0.05;
 // deviation, share of the height.
 constexpr double kSizeShare = 0.02;
 
-// The told ground is no evidence against objects that contradict it. An object that shows where the
-// ground is must therefore have a clear shape and enough pixels.
+// The given ground is no evidence against objects that contradict it. An object that shows where
+// the ground is must therefore have a clear shape and enough pixels.
 constexpr double kMaxMisfit = 0.75;
 constexpr int kMinPixels = 150;
 
@@ -51,16 +51,16 @@ class HuntPipeline::Impl {
   std::optional<GroundHeight> ground_contradiction() const { return ground_.Contradiction(); }
 
  private:
-  // The told heights of camera and ground, in the world or, with an altitude, in a world whose z =
+  // The given heights of camera and ground, in the world or, with an altitude, in a world whose z =
   // 0 is the ground.
-  struct ToldHeights {
+  struct GivenHeights {
     double camera_m;
     GroundHeight ground;
   };
-  std::optional<ToldHeights> HeightsTold() const;
+  std::optional<GivenHeights> FindGivenHeights() const;
 
   void Detect(const cv::Mat& image);
-  void UpdateGround(const ToldHeights& told);
+  void UpdateGround(const GivenHeights& told);
   void LocateInWorld();
   void UpdateMap();
   void RememberForTracking();
@@ -74,7 +74,7 @@ class HuntPipeline::Impl {
   std::optional<double> altitude_m_;
   HuntObservation observation_;
   GroundHeightEstimator ground_;
-  std::vector<GroundHeight> ground_sightings_;  // of the current frame
+  std::vector<GroundHeight> ground_sightings_;  // sightings of the current frame
   std::vector<TrackedObject> track_;
   bool saw_all_ = true;  // the last frame was searched completely
   ObjectMap map_;
@@ -110,20 +110,20 @@ const HuntObservation& HuntPipeline::Impl::Process(const cv::Mat& image, Time ti
   return observation_;
 }
 
-std::optional<HuntPipeline::Impl::ToldHeights> HuntPipeline::Impl::HeightsTold() const {
+std::optional<HuntPipeline::Impl::GivenHeights> HuntPipeline::Impl::FindGivenHeights() const {
   if (const auto& world_from_camera = observation_.world_from_camera) {
-    return ToldHeights{
+    return GivenHeights{
         world_from_camera->translation.z(),
         {options_.ground_height_m, std::hypot(options_.pose_sigma_m, options_.ground_sigma_m)}};
   }
   if (!altitude_m_) return std::nullopt;
-  return ToldHeights{*altitude_m_,
-                     {0, std::hypot(kAltitudeShare * *altitude_m_, options_.ground_sigma_m)}};
+  return GivenHeights{*altitude_m_,
+                      {0, std::hypot(kAltitudeShare * *altitude_m_, options_.ground_sigma_m)}};
 }
 
 void HuntPipeline::Impl::Detect(const cv::Mat& image) {
   ObjectHint hint;
-  std::optional<ToldHeights> told = HeightsTold();
+  std::optional<GivenHeights> told = FindGivenHeights();
   if (const auto& world_from_camera = observation_.world_from_camera) {
     hint.up_in_camera = world_from_camera->rotation.conjugate() * Eigen::Vector3d::UnitZ();
     hint.up_sigma_rad = Radians(options_.attitude_sigma_deg);
@@ -151,8 +151,8 @@ void HuntPipeline::Impl::Detect(const cv::Mat& image) {
   if (told) UpdateGround(*told);
 }
 
-// Objects that agree on another height of the ground overrule the told height.
-void HuntPipeline::Impl::UpdateGround(const ToldHeights& told) {
+// Objects that agree on another height of the ground overrule the given height.
+void HuntPipeline::Impl::UpdateGround(const GivenHeights& told) {
   ObjectReport& report = observation_.report;
   const auto ground_by = [&](const HeightBySize& height, double share) {
     return GroundHeight{told.camera_m - height.camera_height_m,
@@ -165,7 +165,7 @@ void HuntPipeline::Impl::UpdateGround(const ToldHeights& told) {
       ground_sightings_.push_back(ground_by(*detection.height, kSizeShare));
     }
   }
-  // For independent frames and for a flight with only a told altitude.
+  // For independent frames and for a flight with only a given altitude.
   if (options_.still || !observation_.world_from_camera) ground_.ForgetSightings();
   ground_.Update(told.ground, ground_sightings_);
   const double tolerance = options_.detector.ground_tolerance / 3;

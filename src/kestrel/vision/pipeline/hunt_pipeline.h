@@ -67,13 +67,13 @@ struct HuntPipelineOptions {
 
 // The result of one frame.
 struct HuntObservation {
-  Time time;  // of the frame, on the images' clock
+  Time time;  // time of the frame on the images' clock
   ObjectReport report;
   std::optional<RigidTransform> world_from_camera;  // when there is a pose for this time
   // For each detection, in order: position and covariance in the world (ENU, m), when it has a
   // location and there is a pose. With a rolling shutter, the pose is that of its row.
   std::vector<std::optional<ObjectLocation>> in_world;
-  Duration detect_time{};  // of ObjectDetector::Detect alone, both calls if there were two
+  Duration detect_time{};  // time of ObjectDetector::Detect alone, both calls if there were two
 };
 
 // Locates the coloured objects of an image in the world. For use by one thread at a time.
@@ -113,7 +113,7 @@ class HuntPipeline {
   const ObjectMap& map() const;
   const HuntPipelineOptions& options() const;
 
-  // Returns how much higher the ground is, by the size of the objects, than told (by the options'
+  // Returns how much higher the ground is, by the size of the objects, than given (by the options'
   // height with the navigation's poses, or by the altitude); nothing as long as they agree.
   std::optional<GroundHeight> ground_contradiction() const;
 

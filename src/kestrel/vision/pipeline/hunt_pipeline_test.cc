@@ -45,7 +45,7 @@ RigidTransform Over(double x, double y) {
   return {Eigen::Quaterniond::Identity(), {x, y, kHeight_m}};
 }
 
-TEST(HuntPipeline, ObjectsAreWhereTheyAreInTheWorld) {
+TEST(HuntPipeline, LocatesObjectsInWorld) {
   HuntPipeline pipeline(Calibration(), DefaultObjectModel(), {});
   const cv::Mat image = DrawDiscs({{420, 140}});
   for (int i = 0; i < 5; ++i) {
@@ -64,7 +64,7 @@ TEST(HuntPipeline, ObjectsAreWhereTheyAreInTheWorld) {
   EXPECT_EQ(ScoreOf(objects[0], DefaultObjectModel()), 1);
 }
 
-TEST(HuntPipeline, WithoutPosesThereIsNoMapButADistance) {
+TEST(HuntPipeline, GivesDistanceButNoMapWithoutPoses) {
   HuntPipeline pipeline(Calibration(), DefaultObjectModel(), {});
   const HuntObservation& seen = pipeline.Process(DrawDiscs({{320, 240}}), At(0));
   ASSERT_THAT(seen.report.detections, SizeIs(1));
@@ -73,7 +73,7 @@ TEST(HuntPipeline, WithoutPosesThereIsNoMapButADistance) {
   EXPECT_THAT(pipeline.map().objects(), IsEmpty());
 }
 
-TEST(HuntPipeline, WhatIsNotOfItsSizeIsDiscardedBesideWhatIs) {
+TEST(HuntPipeline, DiscardsWrongSizeBesideRightOnes) {
   HuntPipeline pipeline(Calibration(), DefaultObjectModel(), {});
   ObjectScene scene(kHeight_m, /*tilt=*/0);
   scene.DrawDisc(scene.PointUnder({150, 150}, 0.012), 0.1, kRedPaint);
@@ -87,7 +87,7 @@ TEST(HuntPipeline, WhatIsNotOfItsSizeIsDiscardedBesideWhatIs) {
   }
 }
 
-TEST(HuntPipeline, AWrongAltitudeDoesNotHideWhatIsSeen) {
+TEST(HuntPipeline, WrongAltitudeDoesNotHideObjects) {
   for (const double told_m : {1.5, 6.0, 14.0}) {
     HuntPipeline pipeline(Calibration(), DefaultObjectModel(), {});
     pipeline.SetAltitude(told_m);
@@ -102,7 +102,7 @@ TEST(HuntPipeline, AWrongAltitudeDoesNotHideWhatIsSeen) {
   }
 }
 
-TEST(HuntPipeline, AWrongHeightOfTheNavigationIsCorrectedByWhatIsSeen) {
+TEST(HuntPipeline, CorrectsWrongNavigationHeightBySightings) {
   for (const double error_m : {-2.0, 2.0, 10.0, 500.0}) {
     HuntPipeline pipeline(Calibration(), DefaultObjectModel(), {});
     const cv::Mat image = DrawDiscs({{420, 140}, {200, 300}});
@@ -120,7 +120,7 @@ TEST(HuntPipeline, AWrongHeightOfTheNavigationIsCorrectedByWhatIsSeen) {
   }
 }
 
-TEST(HuntPipeline, RowsOfARollingShutterHaveTheirOwnPose) {
+TEST(HuntPipeline, UsesPoseOfEachRowOfRollingShutter) {
   HuntPipelineOptions options;
   options.readout_s = 0.1;
   HuntPipeline pipeline(Calibration(), DefaultObjectModel(), options);
@@ -133,7 +133,7 @@ TEST(HuntPipeline, RowsOfARollingShutterHaveTheirOwnPose) {
   EXPECT_NEAR(0.5 * (lower + upper), 3 * 0.5, 0.02);
 }
 
-TEST(HuntPipeline, ClockOffsetIsAppliedToThePoses) {
+TEST(HuntPipeline, AppliesClockOffsetToPoses) {
   CameraCalibration calibration = Calibration();
   calibration.clock_offset = DurationFromSeconds(0.2);
   HuntPipeline pipeline(calibration, DefaultObjectModel(), {});
@@ -165,14 +165,14 @@ bool IsSaidToMove(const HuntPipelineOptions& options) {
   return is_said;
 }
 
-TEST(HuntPipeline, AWrongClockDoesNotMoveWhatStands) {
+TEST(HuntPipeline, WrongClockDoesNotMoveStandingObject) {
   HuntPipelineOptions options;
   EXPECT_FALSE(IsSaidToMove(options));
   options.map.clock_sigma_s = 0;
   EXPECT_TRUE(IsSaidToMove(options)) << "else it proves nothing";
 }
 
-TEST(HuntPipeline, TrackFollowsSoManyAndSearchesWhenOneIsLost) {
+TEST(HuntPipeline, TracksGivenCountAndSearchesWhenOneIsLost) {
   HuntPipelineOptions options;
   options.track_count = 1;
   HuntPipeline pipeline(Calibration(), DefaultObjectModel(), options);
@@ -185,7 +185,7 @@ TEST(HuntPipeline, TrackFollowsSoManyAndSearchesWhenOneIsLost) {
   EXPECT_NEAR(found[0].center_px.x(), 500, 1);
 }
 
-TEST(HuntPipeline, IndependentFramesHaveNoMap) {
+TEST(HuntPipeline, GivesNoMapForIndependentFrames) {
   HuntPipelineOptions options;
   options.still = true;
   HuntPipeline pipeline(Calibration(), DefaultObjectModel(), options);
@@ -194,7 +194,7 @@ TEST(HuntPipeline, IndependentFramesHaveNoMap) {
   EXPECT_THAT(pipeline.map().objects(), IsEmpty());
 }
 
-TEST(HuntPipeline, OtherOptionsKeepTheMap) {
+TEST(HuntPipeline, ChangedOptionsKeepMap) {
   HuntPipeline pipeline(Calibration(), DefaultObjectModel(), {});
   const cv::Mat image = DrawDiscs({{420, 140}});
   for (int i = 0; i < 4; ++i) {
@@ -210,7 +210,7 @@ TEST(HuntPipeline, OtherOptionsKeepTheMap) {
   EXPECT_THROW(pipeline.ChangeOptions(options), InputError);
 }
 
-TEST(HuntPipeline, BadOptionsAreRefused) {
+TEST(HuntPipeline, RefusesInvalidOptions) {
   HuntPipelineOptions options;
   options.readout_s = -1;
   options.map.capacity = 0;

@@ -76,7 +76,7 @@ class LandingPipeline::Impl {
 
   void Detect(const cv::Mat& image, LandingObservation* observation);
   void LookForOthers(const cv::Mat& image, LandingObservation* observation);
-  ToldView WhatIsTold(const LandingObservation& observation) const;
+  GivenView GivenViewOf(const LandingObservation& observation) const;
   double AltitudeExcess() const;
   void AddErrorOfFocalLength(LandingDetection* detection) const;
   void AddTrack(const LandingObservation& observation, LandingHint* hint) const;
@@ -168,7 +168,7 @@ LandingObservation LandingPipeline::Impl::Process(const cv::Mat& image, Time tim
 }
 
 void LandingPipeline::Impl::Detect(const cv::Mat& image, LandingObservation* observation) {
-  const ToldView told = WhatIsTold(*observation);
+  const GivenView told = GivenViewOf(*observation);
   LandingHint hint;
   const double excess_m = AltitudeExcess();
   if (told.altitude_m > excess_m) hint.altitude_m = *told.altitude_m - excess_m;
@@ -190,7 +190,7 @@ void LandingPipeline::Impl::Detect(const cv::Mat& image, LandingObservation* obs
   if (!options_.still) AddErrorOfFocalLength(&*detection);
 }
 
-// Returns by how much (m) the told altitude is too large, as far as the detections contradict it.
+// Returns by how much (m) the given altitude is too large, as far as the detections contradict it.
 double LandingPipeline::Impl::AltitudeExcess() const {
   if (options_.still) return 0;
   const auto excess = contradictions_.Altitude();
@@ -206,10 +206,10 @@ void LandingPipeline::Impl::AddErrorOfFocalLength(LandingDetection* detection) c
   detection->covariance.topLeftCorner<3, 3>() += error_m * error_m.transpose();
 }
 
-ToldView LandingPipeline::Impl::WhatIsTold(const LandingObservation& observation) const {
+GivenView LandingPipeline::Impl::GivenViewOf(const LandingObservation& observation) const {
   const auto& world_from_camera = observation.world_from_camera;
   if (!world_from_camera) return {altitude_m_, {}};
-  ToldView told;
+  GivenView told;
   if (options_.altitude_hint) {
     told.altitude_m = world_from_camera->translation.z() - options_.target_height_m;
   }
@@ -323,7 +323,7 @@ void LandingPipeline::Impl::Remember(const LandingObservation& observation) {
   if (detection->heading_symmetry == 0) return;
   last_->rotation_in_camera = pose.rotation;
   if (!observation.world_from_camera || !is_track_trusted_) return;
-  // The ring alone does not tell the heading that its tags have told before.
+  // The ring alone does not determine the heading that its tags gave before.
   if (heading_ && heading_->symmetry < detection->heading_symmetry) return;
   heading_ = {observation.time, observation.world_from_camera->rotation * pose.rotation,
               detection->id, detection->heading_symmetry};

@@ -87,13 +87,13 @@ std::string InWords(const OtherTag& other);
 
 // The result of one frame.
 struct LandingObservation {
-  Time time;             // of the frame, on the images' clock
+  Time time;             // time of the frame on the images' clock
   LandingReport report;  // the detection in the camera frame, or the reason of a miss
   // With a miss, as long as the target was never found: another tag that was read.
   std::optional<OtherTag> other_tag = {};
   std::optional<RigidTransform> world_from_camera;  // when there is a pose for this time
   PoseLookup pose = PoseLookup::kEmpty;             // whether there is a pose, or why not
-  PoseUncertainty pose_uncertainty;                 // of a predicted pose
+  PoseUncertainty pose_uncertainty;                 // uncertainty of a predicted pose
   // With a detection and a pose: the pattern's centre in the world (ENU, m), the method, and the
   // yaw of the pattern, see PatternYaw, if it has one.
   std::optional<Eigen::Vector3d> center_in_world;
@@ -104,7 +104,7 @@ struct LandingObservation {
   std::optional<MeasurementFate> fate;
   TrackState track_state = TrackState::kSearching;
   std::optional<TargetEstimate> target;
-  Duration detect_time{};  // of TargetDetector::Detect alone
+  Duration detect_time{};  // time of TargetDetector::Detect alone
 };
 
 // Returns in words why the target was not found in a frame: that another tag was, or else as
@@ -148,7 +148,7 @@ class LandingPipeline {
   // not throw, and does not allocate once it has warmed up.
   LandingObservation Process(const cv::Mat& image, Time time);
 
-  // Contradictions between the told height and attitude and the detections.
+  // Contradictions between the detections and the given height and attitude.
   const ToldContradictions& contradictions() const;
 
   // Evidence of the detections about the calibration.

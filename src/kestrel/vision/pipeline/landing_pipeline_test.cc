@@ -57,7 +57,7 @@ class LandingPipelineTest : public ::testing::Test {
   RigidTransform world_from_pattern_ = {Rotation(0.3, Eigen::Vector3d::UnitZ()), {10.2, 20.1, 0.5}};
 };
 
-TEST_F(LandingPipelineTest, WithoutPoseItKnowsThePositionInTheCameraOnly) {
+TEST_F(LandingPipelineTest, GivesPositionInCameraOnlyWithoutPose) {
   LandingPipeline pipeline(calibration_, options_);
   const LandingObservation observation = pipeline.Process(Draw(), kTime);
   ASSERT_TRUE(observation.report.detection) << observation.report.reason;
@@ -68,7 +68,7 @@ TEST_F(LandingPipelineTest, WithoutPoseItKnowsThePositionInTheCameraOnly) {
   EXPECT_GT(observation.detect_time.count(), 0);
 }
 
-TEST_F(LandingPipelineTest, AnotherTagOfTheFamilyIsNamed) {
+TEST_F(LandingPipelineTest, ReportsOtherTagOfFamily) {
   SetOption("target.kind=apriltag", &options_);
   SetOption("target.id=8", &options_);
   LandingPipeline pipeline(calibration_, options_);
@@ -89,7 +89,7 @@ TEST_F(LandingPipelineTest, AnotherTagOfTheFamilyIsNamed) {
   EXPECT_FALSE(pipeline.Process(seven, kTime + std::chrono::milliseconds(120)).other_tag);
 }
 
-TEST_F(LandingPipelineTest, LocatesInTheWorldBySize) {
+TEST_F(LandingPipelineTest, LocatesInWorldBySize) {
   calibration_.clock_offset = Duration(5);
   options_.target_height_m = 0.5;
   const LandingObservation observation = ProcessWithPose(options_);
@@ -99,7 +99,7 @@ TEST_F(LandingPipelineTest, LocatesInTheWorldBySize) {
   EXPECT_NEAR(*observation.yaw_in_world, 0.3, 0.02);
 }
 
-TEST_F(LandingPipelineTest, LocatesInTheWorldByAltitude) {
+TEST_F(LandingPipelineTest, LocatesInWorldByAltitude) {
   calibration_.clock_offset = Duration(5);
   options_.position_by_altitude = true;
   options_.target_height_m = 0.5;
@@ -110,7 +110,7 @@ TEST_F(LandingPipelineTest, LocatesInTheWorldByAltitude) {
   EXPECT_LT((*observation.center_in_world - world_from_pattern_.translation).norm(), 0.02);
 }
 
-TEST_F(LandingPipelineTest, FallsBackToSizeWhereTheAltitudeSaysNothing) {
+TEST_F(LandingPipelineTest, FallsBackToSizeWithoutUsableAltitude) {
   calibration_.clock_offset = Duration(5);
   options_.position_by_altitude = true;
   options_.target_height_m = 50;  // above the camera
@@ -119,14 +119,14 @@ TEST_F(LandingPipelineTest, FallsBackToSizeWhereTheAltitudeSaysNothing) {
   EXPECT_EQ(observation.position_method, PositionMethod::kSize);
 }
 
-TEST_F(LandingPipelineTest, PoseIsTakenAtTheNavigationsTimeOfTheFrame) {
+TEST_F(LandingPipelineTest, LooksUpPoseAtNavigationTimeOfFrame) {
   calibration_.clock_offset = Duration(0);
   EXPECT_FALSE(ProcessWithPose(options_).world_from_camera);  // the only pose is 5 ns later
   calibration_.clock_offset = Duration(5);
   EXPECT_TRUE(ProcessWithPose(options_).world_from_camera);
 }
 
-TEST_F(LandingPipelineTest, WithoutMountThereIsNoWorld) {
+TEST_F(LandingPipelineTest, GivesNoWorldPositionWithoutMount) {
   calibration_.body_from_camera.reset();
   calibration_.clock_offset = Duration(5);
   const LandingObservation observation = ProcessWithPose(options_);
@@ -134,7 +134,7 @@ TEST_F(LandingPipelineTest, WithoutMountThereIsNoWorld) {
   EXPECT_FALSE(observation.center_in_world);
 }
 
-TEST_F(LandingPipelineTest, FindsThePatternAgainWhereverItJumps) {
+TEST_F(LandingPipelineTest, FindsPatternAgainAfterAnyJump) {
   LandingPipeline pipeline(calibration_, options_);
   for (int i = 0; i < 6; ++i) {
     world_from_pattern_.translation.x() = 10.2 + (i % 2 == 0 ? 0.6 : -0.6);
@@ -147,7 +147,7 @@ TEST_F(LandingPipelineTest, FindsThePatternAgainWhereverItJumps) {
 
 // The UAV swings, and its poses are stamped 10 ms too late: a pattern 10 m below seems to move to
 // and fro by a third of a metre. Who knows how uncertain the stamps are keeps the track.
-TEST_F(LandingPipelineTest, PosesOfAnUncertainTimeDoNotEndATrack) {
+TEST_F(LandingPipelineTest, UncertainPoseTimesDoNotEndTrack) {
   constexpr Duration kFrame = std::chrono::milliseconds(50);
   constexpr Duration kLate = std::chrono::milliseconds(10);
   const auto body_at = [](Time time) {
@@ -174,7 +174,7 @@ TEST_F(LandingPipelineTest, PosesOfAnUncertainTimeDoNotEndATrack) {
 }
 
 // The UAV hovers, the pattern moves at 2 m/s; the frames are 0.1 s apart.
-TEST_F(LandingPipelineTest, FollowsAndPredictsThePattern) {
+TEST_F(LandingPipelineTest, FollowsAndPredictsPattern) {
   LandingPipeline pipeline(calibration_, options_);
   LandingObservation observation;
   for (int i = 0; i < 8; ++i) {
@@ -193,7 +193,7 @@ TEST_F(LandingPipelineTest, FollowsAndPredictsThePattern) {
 }
 
 // The pose before the frame's time moves. The pose after it arrives after the frame was processed.
-TEST_F(LandingPipelineTest, PredictsAPoseThatIsLateAndTakesItWhenItComes) {
+TEST_F(LandingPipelineTest, PredictsLatePoseAndUsesItOnArrival) {
   const BodyMotion motion{{2, 0, 0}, {0, 0, 0}};
   RigidTransform before = world_from_body_;
   before.translation.x() -= 0.04;
@@ -216,7 +216,7 @@ TEST_F(LandingPipelineTest, PredictsAPoseThatIsLateAndTakesItWhenItComes) {
 }
 
 // The pattern turns in place at 0.4 rad/s.
-TEST_F(LandingPipelineTest, SeesThePatternTurnUnlessItIsToldNotTo) {
+TEST_F(LandingPipelineTest, TracksTurnOfPatternUnlessDisabled) {
   for (const bool track_yaw : {true, false}) {
     options_.track_yaw = track_yaw;
     LandingPipeline pipeline(calibration_, options_);
@@ -232,7 +232,7 @@ TEST_F(LandingPipelineTest, SeesThePatternTurnUnlessItIsToldNotTo) {
   }
 }
 
-TEST_F(LandingPipelineTest, AWrongTrackDoesNotHideThePattern) {
+TEST_F(LandingPipelineTest, WrongTrackDoesNotHidePattern) {
   LandingPipeline pipeline(calibration_, options_);
   for (int i = 0; i < 10; ++i) {
     const Time time = kTime + i * DurationFromSeconds(0.1);
@@ -249,8 +249,8 @@ TEST_F(LandingPipelineTest, AWrongTrackDoesNotHideThePattern) {
   }
 }
 
-// A standing pattern in 12 frames, with a told altitude that contradicts the view.
-TEST_F(LandingPipelineTest, AWrongAltitudeOfTheNavigationHidesNothingAndIsSaid) {
+// A standing pattern in 12 frames, with a given altitude that contradicts the view.
+TEST_F(LandingPipelineTest, WrongNavigationAltitudeIsReportedAndHidesNothing) {
   options_.target_height_m = 0.5;
   for (const double excess_m : {0.0, 10.0, 500.0, -10.0}) {
     LandingPipeline pipeline(calibration_, options_);
@@ -270,7 +270,7 @@ TEST_F(LandingPipelineTest, AWrongAltitudeOfTheNavigationHidesNothingAndIsSaid) 
   }
 }
 
-TEST_F(LandingPipelineTest, ACameraUpsideDownHidesNothingAndIsSaid) {
+TEST_F(LandingPipelineTest, UpsideDownCameraIsReportedAndHidesNothing) {
   CameraCalibration wrong = calibration_;
   wrong.body_from_camera->rotation =
       wrong.body_from_camera->rotation * Rotation(std::numbers::pi, Eigen::Vector3d::UnitX());
@@ -285,7 +285,7 @@ TEST_F(LandingPipelineTest, ACameraUpsideDownHidesNothingAndIsSaid) {
   EXPECT_GT(pipeline.contradictions().Attitude()->difference, 2.5);
 }
 
-TEST_F(LandingPipelineTest, AWrongAltitudeOfTheUserHidesNothingAndIsSaid) {
+TEST_F(LandingPipelineTest, WrongUserAltitudeIsReportedAndHidesNothing) {
   LandingPipeline pipeline(calibration_, options_);
   pipeline.SetAltitude(20);
   world_from_body_.translation.z() = 6.5;
@@ -298,7 +298,7 @@ TEST_F(LandingPipelineTest, AWrongAltitudeOfTheUserHidesNothingAndIsSaid) {
   EXPECT_NEAR(pipeline.contradictions().Altitude()->difference, 14, 0.3);
 }
 
-TEST_F(LandingPipelineTest, LocatesByAltitudeWhateverTheWorldsZeroIs) {
+TEST_F(LandingPipelineTest, LocatesByAltitudeForAnyWorldOrigin) {
   options_.position_by_altitude = true;
   LandingPipeline pipeline(calibration_, options_);
   const cv::Mat image = Draw();
@@ -318,7 +318,7 @@ TEST_F(LandingPipelineTest, LocatesByAltitudeWhateverTheWorldsZeroIs) {
 
 // Near and tilted views from all sides show that the focal length is wrong. The distance of a far
 // view is then uncertain, but its direction is not.
-TEST_F(LandingPipelineTest, AWrongFocalLengthMakesDistancesUnsure) {
+TEST_F(LandingPipelineTest, WrongFocalLengthMakesDistancesUncertain) {
   const CameraModel camera(calibration_.intrinsics);
   calibration_.intrinsics.fx_px = calibration_.intrinsics.fy_px = 1.15 * 400;
   const auto covariance_of_far_one = [&](int near_views) {
@@ -346,7 +346,7 @@ TEST_F(LandingPipelineTest, AWrongFocalLengthMakesDistancesUnsure) {
 }
 
 // A lens of 370 px. The right calibration is never contradicted; a wrong one is, within 30 frames.
-TEST_F(LandingPipelineTest, AnotherLensIsSaidWithinThirtyFrames) {
+TEST_F(LandingPipelineTest, ReportsOtherLensWithinThirtyFrames) {
   constexpr double kFocal_px = 370;
   options_.still = true;
   const auto intrinsics = [](double focal_px, double center_x_px) {
@@ -387,7 +387,7 @@ TEST_F(LandingPipelineTest, AnotherLensIsSaidWithinThirtyFrames) {
 }
 
 // The time limit allows one step per frame.
-TEST_F(LandingPipelineTest, ASearchOutOfTimeGoesOnInTheNextFrame) {
+TEST_F(LandingPipelineTest, SearchOutOfTimeContinuesInNextFrame) {
   constexpr double kOneStep_ms = 1e-6;
   world_from_body_.translation.z() = 12.5;  // small: none of the first steps finds it
   const cv::Mat image = Draw();
@@ -405,7 +405,7 @@ TEST_F(LandingPipelineTest, ASearchOutOfTimeGoesOnInTheNextFrame) {
   }
 }
 
-TEST_F(LandingPipelineTest, StillFramesHaveNoTrack) {
+TEST_F(LandingPipelineTest, KeepsNoTrackOfStillFrames) {
   options_.still = true;
   calibration_.clock_offset = Duration(5);
   const LandingObservation observation = ProcessWithPose(options_);
@@ -414,7 +414,7 @@ TEST_F(LandingPipelineTest, StillFramesHaveNoTrack) {
   EXPECT_FALSE(observation.target);
 }
 
-TEST_F(LandingPipelineTest, ImageOfAnotherSizeIsAMissWithAReason) {
+TEST_F(LandingPipelineTest, ReportsImageOfAnotherSizeAsMiss) {
   LandingPipeline pipeline(calibration_, options_);
   for (const cv::Size size : {cv::Size(1, 1), cv::Size(20000, 2), cv::Size(480, 640)}) {
     const auto observation = pipeline.Process(cv::Mat(size, CV_8UC1, 100), kTime);
@@ -423,7 +423,7 @@ TEST_F(LandingPipelineTest, ImageOfAnotherSizeIsAMissWithAReason) {
   }
 }
 
-TEST_F(LandingPipelineTest, OptionsAndCalibrationAreChecked) {
+TEST_F(LandingPipelineTest, ChecksOptionsAndCalibration) {
   options_.hint_sigma_m = 0;
   options_.pose_gap_s = std::numeric_limits<double>::quiet_NaN();
   options_.detector.min_quality = 2;
@@ -437,7 +437,7 @@ TEST_F(LandingPipelineTest, OptionsAndCalibrationAreChecked) {
   EXPECT_THROW(LandingPipeline(calibration_, LandingPipelineOptions()), InputError);
 }
 
-TEST_F(LandingPipelineTest, OptionsReadBackAsTheyArePrinted) {
+TEST_F(LandingPipelineTest, OptionsRoundTripThroughText) {
   options_.detector.pattern.outer_diameter_m = 0.6;
   options_.position_by_altitude = true;
   LandingPipelineOptions again;
@@ -446,7 +446,7 @@ TEST_F(LandingPipelineTest, OptionsReadBackAsTheyArePrinted) {
   EXPECT_EQ(again.detector.pattern.outer_diameter_m, 0.6);
 }
 
-TEST_F(LandingPipelineTest, OtherOptionsKeepTheTrack) {
+TEST_F(LandingPipelineTest, ChangedOptionsKeepTrack) {
   LandingPipeline pipeline(calibration_, options_);
   Time time = kTime;
   for (int i = 0; i < 8; ++i) {
@@ -521,7 +521,7 @@ class OwnDetectorTest : public LandingPipelineTest {
   LandingHint hint_;
 };
 
-TEST_F(OwnDetectorTest, TheHeadingIsKnownAndComesBackAsAHint) {
+TEST_F(OwnDetectorTest, HeadingIsKnownAndReturnsAsHint) {
   world_from_pattern_.rotation = Rotation(kYaw, Eigen::Vector3d::UnitZ());
   LandingPipeline pipeline = PipelineOf(/*symmetry=*/1);
   const LandingObservation seen = Fly(&pipeline);
@@ -535,7 +535,7 @@ TEST_F(OwnDetectorTest, TheHeadingIsKnownAndComesBackAsAHint) {
   EXPECT_EQ(hint_.id, 7);
 }
 
-TEST_F(OwnDetectorTest, WithoutPosesTheLastOrientationIsTheHint) {
+TEST_F(OwnDetectorTest, UsesLastOrientationAsHintWithoutPoses) {
   LandingPipeline pipeline = PipelineOf(/*symmetry=*/1);
   EXPECT_FALSE(Fly(&pipeline, /*has_poses=*/false).yaw_in_world);
   ASSERT_TRUE(hint_.rotation_in_camera);
@@ -543,7 +543,7 @@ TEST_F(OwnDetectorTest, WithoutPosesTheLastOrientationIsTheHint) {
   EXPECT_EQ(hint_.id, 7);
 }
 
-TEST_F(OwnDetectorTest, AHeadingIsKnownUpToTheTurnsOfThePad) {
+TEST_F(OwnDetectorTest, HeadingIsKnownUpToSymmetryOfPad) {
   world_from_pattern_.rotation = Rotation(kYaw, Eigen::Vector3d::UnitZ());
   LandingPipeline pipeline = PipelineOf(/*symmetry=*/2);
   const LandingObservation seen = Fly(&pipeline);
@@ -555,7 +555,7 @@ TEST_F(OwnDetectorTest, AHeadingIsKnownUpToTheTurnsOfThePad) {
   EXPECT_LT(hint_.rotation_in_camera->angularDistance(CameraFromPattern().rotation), 0.02);
 }
 
-TEST_F(OwnDetectorTest, ADiscHasNoYaw) {
+TEST_F(OwnDetectorTest, DiscHasNoYaw) {
   LandingPipeline pipeline = PipelineOf(/*symmetry=*/0);
   const LandingObservation seen = Fly(&pipeline);
   EXPECT_FALSE(seen.yaw_in_world);
@@ -563,7 +563,7 @@ TEST_F(OwnDetectorTest, ADiscHasNoYaw) {
   EXPECT_FALSE(seen.target->has_yaw());
 }
 
-TEST_F(OwnDetectorTest, OtherOptionsKeepTheDetector) {
+TEST_F(OwnDetectorTest, ChangedOptionsKeepDetector) {
   LandingPipeline pipeline = PipelineOf(/*symmetry=*/1);
   const TargetDetector* const own = &pipeline.detector();
   options_.detector.min_quality = 1;

@@ -33,14 +33,14 @@ TEST(SharedCovarianceInWorld, AddsEachErrorInItsDirection) {
   EXPECT_LT((covariance - Eigen::Matrix3d(expected.asDiagonal())).norm(), 1e-9);
 }
 
-TEST(YawVarianceInWorld, IsThatAboutTheVertical) {
+TEST(YawVarianceInWorld, IsVarianceAboutVertical) {
   // The world's z is the camera's -x.
   const double variance =
       YawVarianceInWorld(Eigen::Vector3d(0.01, 0.04, 0.09).asDiagonal(), kWorldFromCamera, kNoise);
   EXPECT_NEAR(variance, 0.01 + 0.02 * 0.02, 1e-9);
 }
 
-TEST(MeasurementNoise, IsChecked) {
+TEST(MeasurementNoise, ReportsInvalidValues) {
   EXPECT_TRUE(ViolationsOf(MeasurementNoise()).empty());
   EXPECT_EQ(ViolationsOf(MeasurementNoise{0, -1, -1, -1, 90, 2}).size(), 6u);
 }

@@ -29,7 +29,7 @@ class ObjectViewTest : public ::testing::Test {
   double height_m_ = 4;
 };
 
-TEST_F(ObjectViewTest, WellInsideOfTheImage) {
+TEST_F(ObjectViewTest, ExpectsObjectsWellInsideImage) {
   EXPECT_TRUE(Shows({0, 0, 0}));
   EXPECT_TRUE(Shows({1.5, 1, 0}));
   EXPECT_FALSE(Shows({2.5, 0, 0})) << "at the image's border";
@@ -37,7 +37,7 @@ TEST_F(ObjectViewTest, WellInsideOfTheImage) {
   EXPECT_FALSE(Shows({0, 0, 5})) << "behind the camera";
 }
 
-TEST_F(ObjectViewTest, OnlyWhatIsKnownWellAndLargeEnough) {
+TEST_F(ObjectViewTest, ExpectsOnlyWellKnownAndLargeObjects) {
   sigma_m_ = 1;
   EXPECT_FALSE(Shows({0, 0, 0}));
   sigma_m_ = 0.02;
@@ -45,11 +45,11 @@ TEST_F(ObjectViewTest, OnlyWhatIsKnownWellAndLargeEnough) {
   EXPECT_FALSE(Shows({0, 0, 0})) << "7 px across";
 }
 
-TEST_F(ObjectViewTest, NotWhenTheFrameWasNotSearched) {
+TEST_F(ObjectViewTest, ExpectsNothingInUnsearchedFrame) {
   EXPECT_FALSE(Shows({0, 0, 0}, /*saw_all=*/false));
 }
 
-TEST_F(ObjectViewTest, NotWhereSomethingWasFound) {
+TEST_F(ObjectViewTest, ExpectsNothingNearOtherDetection) {
   ObjectDetection detection;
   detection.center_px = {325, 240};
   report_.detections.push_back(detection);

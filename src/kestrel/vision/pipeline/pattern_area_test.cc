@@ -33,11 +33,11 @@ LandingDetection At(const Vector3d& center_in_camera) {
   return detection;
 }
 
-TEST(PatternAreaTest, IsAroundTheRing) {
+TEST(PatternAreaTest, SurroundsRing) {
   EXPECT_EQ(PatternArea(At({0, 0, 2}), kShape, Pinhole()), cv::Rect(75, 25, 51, 51));
 }
 
-TEST(PatternAreaTest, IsCutOffAtTheImagesBorder) {
+TEST(PatternAreaTest, EndsAtImageBorder) {
   EXPECT_EQ(PatternArea(At({2, 0, 2}), kShape, Pinhole()), cv::Rect(175, 25, 25, 51));
   EXPECT_TRUE(PatternArea(At({9, 0, 2}), kShape, Pinhole()).empty()) << "beside the image";
   EXPECT_TRUE(PatternArea(At({0, 0, -2}), kShape, Pinhole()).empty()) << "behind the camera";

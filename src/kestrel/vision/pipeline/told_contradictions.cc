@@ -33,7 +33,7 @@ double AngleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-// Returns the smaller of the differences of both mirror poses from what is told.
+// Returns the smaller of the differences of both mirror poses from the given view.
 template <class DifferenceOf>
 double LeastDifference(const LandingDetection& seen, const DifferenceOf& difference_of) {
   const double value = difference_of(seen.camera_from_pattern);
@@ -70,7 +70,7 @@ std::optional<Contradiction> ToldContradictions::Latest::Median() const {
   return Contradiction{value, std::hypot(sigma, scatter / std::sqrt(count)), count};
 }
 
-void ToldContradictions::Add(const ToldView& told, const LandingDetection& seen) {
+void ToldContradictions::Add(const GivenView& told, const LandingDetection& seen) {
   // Without an attitude the pattern is assumed to be level.
   const auto up_by = [&](const RigidTransform& pose) {
     return told.up_in_camera.value_or(Normal(pose));

@@ -11,28 +11,29 @@
 
 namespace kestrel {
 
-// Told knowledge about a view of the pattern, from the navigation or from the user.
-struct ToldView {
-  std::optional<double> altitude_m;             // of the camera above the pattern
+// Knowledge about a view of the pattern, given by the navigation or by the user.
+struct GivenView {
+  std::optional<double> altitude_m;             // height of the camera above the pattern
   std::optional<Eigen::Vector3d> up_in_camera;  // unit vector away from the ground
 };
 
-// A difference between what is told and what is seen.
+// A difference between a given value and the seen one.
 struct Contradiction {
   double difference;       // median over the detections
   double sigma;            // standard deviation of the median
   std::size_t detections;  // number of detections
 };
 
-// Compares what is told of the pattern with its latest detections. Both mirror poses of a detection
-// count: agreement with one of them is no contradiction.
+// Compares the given views of the pattern with its latest detections. Both mirror poses of a
+// detection count: agreement with one of them is no contradiction.
 class ToldContradictions {
  public:
-  void Add(const ToldView& told, const LandingDetection& seen);
+  void Add(const GivenView& told, const LandingDetection& seen);
 
-  // Returns how much larger (m) the altitude is told than seen. Nothing where they agree, where too
-  // little was seen, or where the attitude is wrong, because the altitude depends on it. With an
-  // attitude the pattern may lie on a vehicle, so its depth below the camera may be less than told.
+  // Returns by how much (m) the given altitude is larger than the seen one. Nothing where they
+  // agree, where too little was seen, or where the attitude is wrong, because the altitude depends
+  // on it. With an attitude the pattern may lie on a vehicle, so its depth below the camera may be
+  // less than given.
   std::optional<Contradiction> Altitude() const;
 
   // Returns the tilt (rad) of the pattern from level if the attitude were right. Nothing where that

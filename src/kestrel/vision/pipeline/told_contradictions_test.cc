@@ -50,7 +50,7 @@ class ToldContradictionsTest : public ::testing::Test {
   Random random_{7};
 };
 
-TEST_F(ToldContradictionsTest, AnAltitudeAboveSeaLevelIsSaid) {
+TEST_F(ToldContradictionsTest, ReportsAltitudeAboveSeaLevel) {
   for (const double excess_m : {10.0, 500.0, -10.0, -3.0}) {
     const ToldContradictions contradictions = FlyWithAltitude(20, excess_m);
     ASSERT_TRUE(contradictions.Altitude()) << excess_m;
@@ -61,18 +61,18 @@ TEST_F(ToldContradictionsTest, AnAltitudeAboveSeaLevelIsSaid) {
   }
 }
 
-TEST_F(ToldContradictionsTest, WhatAgreesOrMayBeAVehicleIsNot) {
+TEST_F(ToldContradictionsTest, AcceptsAltitudesThatAgreeOrFitVehicle) {
   for (const double excess_m : {0.0, 0.5, -0.5, 3.0}) {
     EXPECT_FALSE(FlyWithAltitude(100, excess_m).Altitude()) << excess_m;
   }
 }
 
-TEST_F(ToldContradictionsTest, TenDetectionsAreNeeded) {
+TEST_F(ToldContradictionsTest, RequiresTenDetections) {
   EXPECT_FALSE(FlyWithAltitude(9, 10).Altitude());
   EXPECT_TRUE(FlyWithAltitude(10, 10).Altitude());
 }
 
-TEST_F(ToldContradictionsTest, AThirdOfTheDetectionsMayBeWrong) {
+TEST_F(ToldContradictionsTest, ToleratesThirdOfWrongDetections) {
   ToldContradictions contradictions;
   for (int i = 0; i < 60; ++i) {
     const View view = See();
@@ -81,7 +81,7 @@ TEST_F(ToldContradictionsTest, AThirdOfTheDetectionsMayBeWrong) {
   EXPECT_FALSE(contradictions.Altitude());
 }
 
-TEST_F(ToldContradictionsTest, ADriftIsSaidHoweverLongAllWasWell) {
+TEST_F(ToldContradictionsTest, ReportsDriftAfterLongAgreement) {
   ToldContradictions contradictions = FlyWithAltitude(1000, 0);
   for (int i = 0; i < 64; ++i) {
     const View view = See();
@@ -91,7 +91,7 @@ TEST_F(ToldContradictionsTest, ADriftIsSaidHoweverLongAllWasWell) {
   EXPECT_NEAR(contradictions.Altitude()->difference, 10, 0.1);
 }
 
-TEST_F(ToldContradictionsTest, AnAltitudeWithoutAttitudeIsThatAboveThePattern) {
+TEST_F(ToldContradictionsTest, AltitudeWithoutAttitudeIsAbovePattern) {
   for (const double excess_m : {14.0, -2.5, 0.5}) {
     ToldContradictions contradictions;
     for (int i = 0; i < 20; ++i) contradictions.Add({5 + excess_m, {}}, See().seen);
@@ -101,7 +101,7 @@ TEST_F(ToldContradictionsTest, AnAltitudeWithoutAttitudeIsThatAboveThePattern) {
   }
 }
 
-TEST_F(ToldContradictionsTest, AMountUpsideDownIsSaidAndNothingOfTheAltitude) {
+TEST_F(ToldContradictionsTest, ReportsUpsideDownMountButNotAltitude) {
   const ToldContradictions contradictions = Fly(20, 10, Rotation(kPi, Eigen::Vector3d::UnitX()));
   ASSERT_TRUE(contradictions.Attitude());
   // The mount error turns 'up' over by half a turn, and the camera is tilted by up to 20 degrees:
@@ -110,7 +110,7 @@ TEST_F(ToldContradictionsTest, AMountUpsideDownIsSaidAndNothingOfTheAltitude) {
   EXPECT_FALSE(contradictions.Altitude());
 }
 
-TEST_F(ToldContradictionsTest, AMountTurnedByFortyDegreesIsSaidOneByTenIsNot) {
+TEST_F(ToldContradictionsTest, ReportsMountTurnedByFortyDegreesButNotTen) {
   const Eigen::Vector3d axis = Eigen::Vector3d::UnitY();
   const ToldContradictions wrong = Fly(20, 0, Rotation(40 * kPi / 180, axis));
   ASSERT_TRUE(wrong.Attitude());
@@ -118,7 +118,7 @@ TEST_F(ToldContradictionsTest, AMountTurnedByFortyDegreesIsSaidOneByTenIsNot) {
   EXPECT_FALSE(Fly(20, 0, Rotation(10 * kPi / 180, axis)).Attitude());
 }
 
-TEST_F(ToldContradictionsTest, TheOtherPoseOfADetectionMayAgree) {
+TEST_F(ToldContradictionsTest, MirrorPoseMayAgree) {
   ToldContradictions contradictions;
   for (int i = 0; i < 20; ++i) {
     View view = See();

@@ -11,7 +11,7 @@
 namespace kestrel {
 namespace {
 
-TEST(LocateByAltitude, FindsThePointThatTheRayCameFrom) {
+TEST(LocateByAltitude, FindsSourcePointOfRay) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(-1, 1);
   for (int i = 0; i < 1000; ++i) {
@@ -28,21 +28,21 @@ TEST(LocateByAltitude, FindsThePointThatTheRayCameFrom) {
   }
 }
 
-TEST(LocateByAltitude, StraightDownIsBelowTheCamera) {
+TEST(LocateByAltitude, StraightDownIsBelowCamera) {
   const RigidTransform world_from_camera = {Rotation(kPi, Eigen::Vector3d::UnitX()), {3, -4, 10}};
   const auto found = LocateByAltitude(Eigen::Vector3d::UnitZ(), world_from_camera, 1.5);
   ASSERT_TRUE(found);
   EXPECT_LT((*found - Eigen::Vector3d(3, -4, 1.5)).norm(), 1e-12);
 }
 
-TEST(LocateByAltitude, NothingWhereTheRayDoesNotMeetThePlane) {
+TEST(LocateByAltitude, ReturnsNothingWhenRayMissesPlane) {
   const RigidTransform world_from_camera = {Eigen::Quaterniond::Identity(), {0, 0, 10}};
   EXPECT_FALSE(LocateByAltitude(Eigen::Vector3d::UnitX(), world_from_camera, 0));
   EXPECT_FALSE(LocateByAltitude(Eigen::Vector3d::UnitZ(), world_from_camera, 0));
   EXPECT_FALSE(LocateByAltitude(-Eigen::Vector3d::UnitZ(), world_from_camera, 10));
 }
 
-TEST(PatternYaw, IsTheSameAfterTheTurnsOfThePadAndLiesWithinHalfOfOne) {
+TEST(PatternYaw, IsUniqueUpToSymmetryOfPad) {
   for (const int symmetry : {1, 2, 4}) {
     for (const double share : {-0.45, -0.1, 0.0, 0.2, 0.49}) {
       const double yaw = share * 2 * kPi / symmetry;

@@ -51,8 +51,8 @@ InkSamples::Contrast InkSamples::ContrastAt(std::span<const float> gray, std::si
 InkAgreement InkSamples::Compare(std::span<const float> gray, double area_px2,
                                  DimSample dim) const {
   constexpr double kLeastContrast = 0.02;
-  constexpr float kLeastDimContrast = 0.1F;  // of ink in a shadow
-  constexpr double kLeast = 0.45;            // of the usual contrast, of a sample that agrees
+  constexpr float kLeastDimContrast = 0.1F;  // contrast of ink in a shadow
+  constexpr double kLeast = 0.45;  // share of the usual contrast that a sample needs to agree
   InkAgreement agreement;
   std::array<float, kMostSamples> means, largest;
   std::size_t count = 0;
@@ -68,7 +68,7 @@ InkAgreement InkSamples::Compare(std::span<const float> gray, double area_px2,
   std::array<int, kMostParts> seen{}, right{};
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     if (std::isnan(largest[i])) continue;
-    // In one light with it: where the edge of a shadow runs, the others say little.
+    // In one light with it: at the edge of a shadow the others are no reference.
     const bool agrees = largest[i] / usual > kLeast;
     if (!agrees && dim == DimSample::kUnknown && largest[i] > kLeastDimContrast) continue;
     const std::size_t part = samples_[i].part;

@@ -20,7 +20,7 @@ struct InkAgreement {
   // independent samples, one for each area that the blur makes alike. k = 6: the pose was fitted to
   // the same gray values (Schwarz, Estimating the dimension of a model, 1978).
   double evidence = 0;
-  double worst_share = 1;  // of the samples of a part, those that agree, in the worst part
+  double worst_share = 1;  // share of agreeing samples in the worst part
   int parts = 0;           // number of parts in view
 };
 

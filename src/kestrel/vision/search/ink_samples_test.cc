@@ -37,7 +37,7 @@ double Even(const Eigen::Vector2d& /*place*/) { return 1; }
 // The edge of a shadow across the stripe.
 double Shaded(const Eigen::Vector2d& place) { return place.y() < 0.55 ? 1 : 0.5; }
 
-TEST(InkSamples, FindAPadLikelyInEvenLightAndUnderTheEdgeOfAShadow) {
+TEST(InkSamples, FindPadLikelyInEvenLightAndAtShadowEdge) {
   const InkSamples stripe = Stripe();
   for (const auto light : {Even, Shaded}) {
     const std::vector<float> gray = GraysOf(stripe, light);
@@ -49,7 +49,7 @@ TEST(InkSamples, FindAPadLikelyInEvenLightAndUnderTheEdgeOfAShadow) {
   }
 }
 
-TEST(InkSamples, TellThatColoursAreExchanged) {
+TEST(InkSamples, DetectExchangedColours) {
   const InkSamples stripe = Stripe();
   std::vector<float> gray = GraysOf(stripe, Even);
   for (float& value : gray) value = 240 - value;
@@ -57,21 +57,21 @@ TEST(InkSamples, TellThatColoursAreExchanged) {
   EXPECT_EQ(stripe.Compare(gray, kArea, DimSample::kWrong).evidence, 0);
 }
 
-TEST(InkSamples, TellFewerIndependentSamplesWhereTheyLieWithinTheBlur) {
+TEST(InkSamples, CountFewerIndependentSamplesWithinBlur) {
   const InkSamples stripe = Stripe();
   const std::vector<float> gray = GraysOf(stripe, Shaded);
   EXPECT_LT(stripe.Compare(gray, 1, DimSample::kWrong).evidence,
             0.3 * stripe.Compare(gray, kArea, DimSample::kWrong).evidence);
 }
 
-TEST(InkSamples, NameThePartThatIsWrong) {
+TEST(InkSamples, FindWorstPart) {
   const InkSamples stripe = Stripe();
   std::vector<float> gray = GraysOf(stripe, Even);
   for (int i = 0; i < 3; ++i) gray[3 * i] = 40;  // a quarter of the stripe is missing
   EXPECT_EQ(stripe.Compare(gray, kArea, DimSample::kUnknown).worst_share, 0.75);
 }
 
-TEST(InkSamples, MayBeDimOnAPadThatIsFollowed) {
+TEST(InkSamples, MayBeDimOnFollowedPad) {
   const InkSamples stripe = Stripe();
   std::vector<float> gray = GraysOf(stripe, Even);
   for (int i = 0; i < 3; ++i) gray[3 * i] = 70;  // ink in a narrow shadow
@@ -79,7 +79,7 @@ TEST(InkSamples, MayBeDimOnAPadThatIsFollowed) {
   EXPECT_EQ(stripe.Compare(gray, kArea, DimSample::kUnknown).worst_share, 1);
 }
 
-TEST(InkSamples, DoWithoutThoseOutOfView) {
+TEST(InkSamples, IgnoreSamplesOutOfView) {
   const InkSamples stripe = Stripe();
   std::vector<float> gray = GraysOf(stripe, Even);
   for (std::size_t i = gray.size() / 2; i < gray.size(); ++i) gray[i] = -1;

@@ -19,9 +19,9 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 constexpr int kProfile = 11;        // gray values across an edge
-constexpr double kReach = 0.5;      // of the stroke, on either side of an edge
+constexpr double kReach = 0.5;      // share of the stroke, on either side of an edge
 constexpr double kMostReachPx = 6;  // at last; four times as far at first
-constexpr int kHalvings = 2;        // of the reach, each once the edges move by less than a fourth
+constexpr int kHalvings = 2;  // steps of the reach, each once edges move by less than a fourth
 constexpr double kLeastReachPx = 1.2;
 constexpr double kFineStrokePx = 8;  // strokes whose fine edges are looked at, too
 constexpr float kLeastStep = 6;      // gray values across an edge
@@ -30,7 +30,7 @@ constexpr double kFloorPx = 0.06;  // noise of an edge's place that stays howeve
 constexpr double kOutlier = 4;     // standard deviations
 // Edges found anywhere within the reach are 0.4 to 0.58 of it off: such a pose explains none.
 constexpr double kMostRmsPx = 0.35 * kMostReachPx;
-constexpr double kMostTurn = 0.3;    // of a step, rad
+constexpr double kMostTurn = 0.3;    // largest rotation in a step, rad
 constexpr double kConverged = 1e-5;  // rad
 constexpr int kIterations = 12;
 

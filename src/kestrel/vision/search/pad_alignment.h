@@ -18,8 +18,8 @@ namespace kestrel {
 struct PadEdge {
   Eigen::Vector2d place;
   Eigen::Vector2d to_white;  // unit vector across the edge
-  double stroke_m;           // of its part
-  bool fine;                 // of use only where strokes are wide in the image
+  double stroke_m;           // stroke width of its part
+  bool fine;                 // useful only where strokes are wide in the image
 };
 
 // A part of a flat pad, as a tag, a letter or the line around it, by its edges.
@@ -30,8 +30,8 @@ struct PadPart {
   double stroke_m = 0;  // width of its thinnest strokes: of a tag, the side of its cells
   std::vector<PadEdge> edges{};
 
-  // Returns the width of a stroke in the image across its shorter direction, px, as far as distance
-  // and slant tell. 0 when the face is turned away.
+  // Returns the width of a stroke in the image across its shorter direction, px, by distance
+  // and slant. 0 when the face is turned away.
   double StrokePx(const CameraModel& camera, const RigidTransform& camera_from_pad) const;
 };
 
@@ -56,11 +56,11 @@ double CostAbove(const AlignedPad& best, const AlignedPad& other);
 // Memory of one thread's alignments.
 struct PadAlignmentBuffers {
   std::vector<const PadEdge*> edges;
-  std::vector<float> x, y, z, u, v;              // of the edges: camera frame (m) and image (px)
-  std::array<std::vector<float>, 6> derivative;  // of the place in the image
+  std::vector<float> x, y, z, u, v;  // edges in the camera frame (m) and in the image (px)
+  std::array<std::vector<float>, 6> derivative;  // derivative of the place in the image
   std::vector<float> profile_u, profile_v, gray;
   struct Equation {
-    Eigen::Matrix<double, 1, 6> derivative;  // of the edge's place along its normal, px
+    Eigen::Matrix<double, 1, 6> derivative;  // derivative of the edge's place along its normal, px
     float reach_px;                          // how far from its place the edge is searched
     double residual_px;                      // where it was found
   };

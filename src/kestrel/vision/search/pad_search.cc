@@ -11,12 +11,12 @@
 namespace kestrel {
 namespace {
 
-constexpr double kSigmas = 3;  // of the expected place that are searched
+constexpr double kSigmas = 3;  // size of the searched area around the expected place
 // Largest shift of a pad that is followed, to either side: so many pixels, or steps if that is
 // more.
 constexpr double kMostShiftPx = 30;
 constexpr int kMostShiftSteps = 10;
-constexpr double kMirrorCost = 4.5;  // below it the image cannot tell two poses apart: 3 sigma
+constexpr double kMirrorCost = 4.5;  // below it the image cannot distinguish two poses: 3 sigma
 constexpr double kMisfitBoundPx = 1;
 
 }  // namespace

@@ -23,8 +23,8 @@ namespace kestrel {
 struct PadSearchModels {
   const CameraModel& camera;
   const PadAlignment& alignment;
-  double radius_m;         // of the pad
-  double level_sigma_deg;  // of its tilt from level
+  double radius_m;         // radius of the pad
+  double level_sigma_deg;  // standard deviation of its tilt from level
   // The part of the image that is searched is so much larger than the pad where it is expected:
   // lenses magnify towards the edge, and thresholds look at boxes around a pixel.
   double part_factor;
@@ -38,8 +38,8 @@ struct PadSearchBuffers {
 };
 
 // The search of one image for a flat pad whose edges are known: by its appearance at the expected
-// place, then in passes over the image until a pose is found. A kind of pad says what a candidate
-// is and how likely a pose is. Does not allocate once the buffers have warmed up.
+// place, then in passes over the image until a pose is found. A kind of pad defines what a
+// candidate is and how likely a pose is. Does not allocate once the buffers have warmed up.
 class PadSearch {
  public:
   virtual ~PadSearch() = default;
@@ -77,10 +77,10 @@ class PadSearch {
   std::optional<AlignedPad> Align(const RigidTransform& start, const PadPart* only = nullptr);
 
   // Replaces 'best' by its mirror pose where that is likelier. Returns the other of the two where
-  // the image cannot tell them apart.
+  // the image cannot distinguish them.
   std::optional<RigidTransform> ResolveMirror(AlignedPad* best);
 
-  // Returns what every kind of pad says of a pose.
+  // Returns the part of a detection that is common to all kinds of pads.
   LandingDetection DetectionOf(const AlignedPad& aligned, double quality,
                                DetectionMethod method) const;
   // Returns the share of its length that a pad in this pose has across its tilt.

@@ -10,7 +10,7 @@
 namespace kestrel {
 namespace {
 
-constexpr std::size_t kMostPoints = 320;  // of a border that are looked at
+constexpr std::size_t kMostPoints = 320;  // points used of a border
 constexpr int kLargerTiles = 2;           // the threshold also looks at boxes four times as large
 
 Eigen::Matrix3d AxesAcross(const Eigen::Vector3d& ray) {
@@ -50,7 +50,7 @@ void NarrowBorderBuffers::Reserve(const cv::Mat& image, BorderBuffers* borders) 
 
 std::span<const Border> TraceNarrow(int level, bool white_ink, const BorderLimits& limits,
                                     BorderBuffers* borders, NarrowBorderBuffers* buffers) {
-  constexpr int kLeastContrast = 16;  // of 255
+  constexpr int kLeastContrast = 16;  // gray values, of 255
   const cv::Mat image = borders->pyramid.ImageAt(level);
   if (image.empty()) return {};
   buffers->top_hat.Binarize(white_ink ? Inverted(image, &buffers->inverted) : image, kLeastContrast,

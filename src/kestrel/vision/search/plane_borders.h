@@ -24,7 +24,7 @@ struct BorderPass {
   int tile_level;   // tiles of 2^tile_level pixels make the threshold's box
   int min_px;       // least and largest extent of a figure, full resolution
   int max_px;
-  int least_extent;     // of a traced border, pixels of the level
+  int least_extent;     // least extent of a traced border, pixels of the level
   bool at_rim = false;  // also figures that the rim of the image bounds above
 };
 
@@ -32,12 +32,12 @@ struct BorderPass {
 struct BorderBuffers {
   int width_px = 0;  // size of the image that it was reserved for
   int height_px = 0;
-  std::vector<std::uint8_t> log_grays;  // of the searched part
-  TilePyramid pyramid;                  // of these
+  std::vector<std::uint8_t> log_grays;  // grays of the searched part
+  TilePyramid pyramid;                  // pyramid of these grays
   LocalThreshold threshold;
   BinaryImage binary;
   BorderTracer tracer;
-  std::vector<Eigen::Vector2d> points;  // of one border, on the plane
+  std::vector<Eigen::Vector2d> points;  // points of one border on the plane
 };
 
 // Memory of one thread's narrow borders.

@@ -11,7 +11,7 @@ namespace kestrel {
 
 // Area and second moments of a plane figure about its centroid.
 struct FigureMoments {
-  double area = 0;  // of either sign, as the border goes around
+  double area = 0;  // area, with a sign by the direction of the border
   Eigen::Vector2d centroid = Eigen::Vector2d::Zero();
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
 

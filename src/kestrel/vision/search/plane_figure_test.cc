@@ -17,7 +17,7 @@ using Eigen::Vector2d;
 // A rectangle of 3 by 2 about (1, 5), anticlockwise.
 const std::vector<Vector2d> kRectangle{{-0.5, 4}, {2.5, 4}, {2.5, 6}, {-0.5, 6}};
 
-TEST(PlaneFigure, HasTheMomentsOfARectangle) {
+TEST(PlaneFigure, HasMomentsOfRectangle) {
   const FigureMoments moments = MomentsOf(kRectangle);
   EXPECT_NEAR(moments.area, 6, 1e-12);
   EXPECT_TRUE(moments.centroid.isApprox(Vector2d(1, 5)));
@@ -27,7 +27,7 @@ TEST(PlaneFigure, HasTheMomentsOfARectangle) {
   EXPECT_NEAR(MomentsOf(clockwise).area, -6, 1e-12);
 }
 
-TEST(PlaneFigure, IsAsCompactInAllAffineImages) {
+TEST(PlaneFigure, CompactnessIsAffineInvariant) {
   std::vector<Vector2d> circle, slanted;
   for (int i = 0; i < 200; ++i) {
     circle.emplace_back(std::cos(2 * kPi * i / 200), std::sin(2 * kPi * i / 200));
@@ -40,7 +40,7 @@ TEST(PlaneFigure, IsAsCompactInAllAffineImages) {
   EXPECT_LT(compactness, 0.97);
 }
 
-TEST(PlaneFigure, HasOneOfTheTwoPosesOfItsAffineMap) {
+TEST(PlaneFigure, HasOneOfTwoPosesOfItsAffineMap) {
   const RigidTransform pose{
       Eigen::Quaterniond(Eigen::AngleAxisd(0.6, Eigen::Vector3d(1, 0.4, 0).normalized()) *
                          Eigen::AngleAxisd(2, Eigen::Vector3d::UnitZ())),

@@ -8,7 +8,8 @@
 namespace kestrel {
 namespace {
 
-// Bits for one that may be misread: of few bits with one wrong, chance makes too many.
+// Data bits that a tag needs for each bit that may be misread. A tag with fewer bits has to match
+// exactly: with one wrong bit tolerated, random pictures would match too often.
 constexpr int kBitsPerWrong = 18;
 
 // Adds the edge between two cells that lie beside each other: from (column, row) by 'step'.
@@ -48,7 +49,8 @@ TagModel MakeTag(const BoardTag& tag, const PrintedTag& printed) {
   for (int row = 0; row < grid.width; ++row) {
     for (int column = 0; column < grid.width; ++column) {
       model.cell_centers.push_back(printed.OnBoard(column + 0.5, row + 0.5));
-      // Number of the ring around the centre: the two at the square's edge are all tags' own.
+      // Cells by their distance from the tag's rim. The two rings of cells at the edge of the
+      // square, black and white, are the same for all tags of a family and carry no data.
       const int ring = std::min(std::min(column, row), grid.width - 1 - std::max(column, row));
       model.is_data.push_back(ring != margin && ring != margin - 1);
       AddEdge(column, row, {1, 0}, &model);

@@ -24,7 +24,7 @@ std::string With(const std::string& part, const std::string& other) {
   return text.replace(at, part.size(), other);
 }
 
-TEST(FractalMarkerTest, IsABoardOfTagsInsideEachOther) {
+TEST(FractalMarkerTest, IsBoardOfNestedTags) {
   const TagBoard board = ParseTagBoard(FractalMarkerText(), "fractal.yml", "tag36h11", 0.6);
   EXPECT_THAT(board.Validate(), IsEmpty());
   ASSERT_EQ(board.tags.size(), 2u);
@@ -42,7 +42,7 @@ TEST(FractalMarkerTest, IsABoardOfTagsInsideEachOther) {
   EXPECT_EQ(outer.grid.at(3, 2), TagCell::kWhite);
 }
 
-TEST(FractalMarkerTest, AMarkerDoesWithoutTheCellsThatAnotherOneCovers) {
+TEST(FractalMarkerTest, MarkerOmitsCellsCoveredByAnother) {
   const TagBoard board = ParseFractalMarker(FractalMarkerText(), "fractal.yml", 0.6);
   const TagGrid& outer = board.tags[0].own;
   int covered = 0;
@@ -56,7 +56,7 @@ TEST(FractalMarkerTest, AMarkerDoesWithoutTheCellsThatAnotherOneCovers) {
   EXPECT_EQ(covered, 16);
 }
 
-TEST(FractalMarkerTest, HasTheSizeOfItsFileWhereThatIsInMetres) {
+TEST(FractalMarkerTest, TakesSizeInMetresFromFile) {
   const TagBoard board =
       ParseFractalMarker(With("mInfoType: 2", "mInfoType: 1"), "fractal.yml", 0.6);
   EXPECT_DOUBLE_EQ(board.tags[0].size_m, 2);
@@ -82,7 +82,7 @@ TEST(FractalMarkerTest, EachErrorNamesFileLineAndKey) {
               ThrowsMessage<InputError>(HasSubstr("submarkers")));
 }
 
-TEST(FractalMarkerTest, CutAnywhereItIsAnErrorOrABoard) {
+TEST(FractalMarkerTest, RefusesOrReadsFileTruncatedAnywhere) {
   const std::string text = FractalMarkerText();
   for (std::size_t length = 0; length < text.size(); length += 7) {
     try {

@@ -25,7 +25,7 @@ TagBoard BoardOf(const std::string& family, int id) {
   return {{tag}};
 }
 
-TEST(PlainTagsTest, AStripeABlockAndALetterAreNamedWithBetterIds) {
+TEST(PlainTagsTest, WarnsOfPlainTagsAndSuggestsBetterIds) {
   EXPECT_THAT(WarningsOfPlainTags(BoardOf("aruco_original", 0)),
               ElementsAre(AllOf(StartsWith("aruco_original id 0 is as plain as a window"),
                                 HasSubstr("; ids that are told apart: "))));
@@ -38,7 +38,7 @@ TEST(PlainTagsTest, AStripeABlockAndALetterAreNamedWithBetterIds) {
   EXPECT_THAT(WarningsOfPlainTags(inverted), ElementsAre(HasSubstr("id 17 is as plain")));
 }
 
-TEST(PlainTagsTest, OtherIdsAreNot) {
+TEST(PlainTagsTest, DoesNotWarnOfOtherIds) {
   for (int id = 0; id < 50; ++id) {
     if (id == 17) continue;
     EXPECT_THAT(WarningsOfPlainTags(BoardOf("aruco_4x4_50", id)), IsEmpty()) << id;
@@ -48,7 +48,7 @@ TEST(PlainTagsTest, OtherIdsAreNot) {
   }
 }
 
-TEST(PlainTagsTest, AMarkerOfNoFamilyIsNamedWithoutOtherIds) {
+TEST(PlainTagsTest, WarnsOfMarkerWithoutFamilyWithoutOtherIds) {
   TagBoard board = ParseTagBoard(FractalMarkerText(), "fractal.yml", "", 0.6);
   EXPECT_THAT(WarningsOfPlainTags(board), IsEmpty());
   BoardTag block = BoardOf("fractal", 3).tags[0];

@@ -53,7 +53,7 @@ TEST(SquarePose, IsExactForExactCorners) {
 }
 
 // A square of 17 pixels whose corners are off by half a pixel.
-TEST(SquarePose, OfASmallSquareTheDistanceIsRight) {
+TEST(SquarePose, DistanceOfSmallSquareIsUnbiased) {
   Random random(2);
   constexpr double kDistance = 20, kNoise = 0.5 / 17 / kDistance;  // rad
   std::vector<double> off;
@@ -75,7 +75,7 @@ TEST(SquarePose, OfASmallSquareTheDistanceIsRight) {
   EXPECT_LT(MedianInPlace(off), 0.03);
 }
 
-TEST(SquarePose, TheBackIsNone) {
+TEST(SquarePose, RejectsSquareSeenFromBehind) {
   Random random(3);
   SquareCorners corners = CornersAt(RandomPose(3, &random));
   std::swap(corners[1], corners[3]);

@@ -90,7 +90,7 @@ struct FamilyCase {
 
 class FamilyTest : public TagBoardDetectorTest, public testing::WithParamInterface<FamilyCase> {};
 
-TEST_P(FamilyTest, IsFoundWithoutAHintAtAnyHeight) {
+TEST_P(FamilyTest, IsFoundWithoutHintAtAnyHeight) {
   Use({{OneTag(GetParam().family, GetParam().id, 0.5)}});
   Random random(3);
   int found = 0, frames = 0;
@@ -120,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(Families, FamilyTest,
                                          FamilyCase{"aruco_6x6_250", 23, 5}),
                          [](const auto& test) { return std::string(test.param.family); });
 
-TEST_F(TagBoardDetectorTest, AFractalMarkerIsFoundFromFarToWhereItsInnerMarkerAloneIsInView) {
+TEST_F(TagBoardDetectorTest, FindsFractalMarkerUntilOnlyInnerMarkerIsInView) {
   Use(ParseTagBoard(FractalMarkerText(), "fractal.yml", "", 0.6));
   Random random(17);
   for (double height = 5; height > 0.12; height *= 0.8) {
@@ -132,7 +132,7 @@ TEST_F(TagBoardDetectorTest, AFractalMarkerIsFoundFromFarToWhereItsInnerMarkerAl
   }
 }
 
-TEST_F(TagBoardDetectorTest, AnotherFractalMarkerIsNotTaken) {
+TEST_F(TagBoardDetectorTest, RejectsAnotherFractalMarker) {
   const TagBoard other = ParseTagBoard(FractalMarkerText(), "fractal.yml", "", 0.6);
   std::string text = FractalMarkerText();
   for (std::size_t at = text.find("bits:"); at < text.find("corners:"); ++at) {
@@ -150,7 +150,7 @@ TEST_F(TagBoardDetectorTest, AnotherFractalMarkerIsNotTaken) {
   }
 }
 
-TEST_F(TagBoardDetectorTest, ErrorsAreWhatTheCovarianceSays) {
+TEST_F(TagBoardDetectorTest, ErrorsMatchCovariance) {
   Use({{OneTag("tag36h11", 7, 0.5)}});
   Random random(11);
   std::vector<double> squared;
@@ -167,7 +167,7 @@ TEST_F(TagBoardDetectorTest, ErrorsAreWhatTheCovarianceSays) {
   EXPECT_LT(nees, 1.5);
 }
 
-TEST_F(TagBoardDetectorTest, AnotherIdIsNeverTaken) {
+TEST_F(TagBoardDetectorTest, NeverAcceptsAnotherId) {
   for (const char* family : {"tag36h11", "aruco_4x4_50"}) {
     Use({{OneTag(family, 7, 0.5)}});
     Random random(5);
@@ -193,7 +193,7 @@ TagBoard NestedBoard() {
   return {{OneTag("tagCustom48h12", 0, 0.6), OneTag("tag36h11", 1, 0.15), beside}};
 }
 
-TEST_F(TagBoardDetectorTest, ANestedBoardIsFoundFromFarToNearWithoutAJump) {
+TEST_F(TagBoardDetectorTest, FindsNestedBoardFromFarToNearWithoutJump) {
   Use(NestedBoard());
   const Eigen::Vector3d tilt(0.05, -0.03, 0);
   std::optional<RigidTransform> last;
@@ -217,7 +217,7 @@ TEST_F(TagBoardDetectorTest, ANestedBoardIsFoundFromFarToNearWithoutAJump) {
   }
 }
 
-TEST_F(TagBoardDetectorTest, AQuarterOfATagIsFollowed) {
+TEST_F(TagBoardDetectorTest, FollowsQuarterOfTag) {
   Use({{OneTag("tag36h11", 7, 0.5)}});
   Random random(8);
   int found = 0;
@@ -240,7 +240,7 @@ TEST_F(TagBoardDetectorTest, AQuarterOfATagIsFollowed) {
   EXPECT_GE(found, kFrames - 2);
 }
 
-TEST_F(TagBoardDetectorTest, ANearTagThatIsFarFromItsExpectedPlaceIsFoundRightOrNotAtAll) {
+TEST_F(TagBoardDetectorTest, NearTagFarFromHintIsFoundRightOrNotAtAll) {
   Use({{OneTag("tag36h11", 7, 0.5)}});
   Random random(17);
   int found = 0;
@@ -265,7 +265,7 @@ TEST_F(TagBoardDetectorTest, ANearTagThatIsFarFromItsExpectedPlaceIsFoundRightOr
   EXPECT_LT(nees, 1.5);
 }
 
-TEST_F(TagBoardDetectorTest, ATagIsFollowedThroughBlurAndAShadow) {
+TEST_F(TagBoardDetectorTest, FollowsTagThroughBlurAndShadow) {
   Use({{OneTag("tag36h11", 7, 0.5)}});
   Random random(9);
   taken_.motion_px = 5;
@@ -287,7 +287,7 @@ TEST_F(TagBoardDetectorTest, ATagIsFollowedThroughBlurAndAShadow) {
   EXPECT_GE(found, kFrames - 2);
 }
 
-TEST_F(TagBoardDetectorTest, OfTwoPadsOfAFamilyEachIsFoundAtItsOwnPlace) {
+TEST_F(TagBoardDetectorTest, FindsEachOfTwoPadsOfFamilyAtItsPlace) {
   TagBoard pads{{OneTag("tag36h11", 7, 0.5), OneTag("tag36h11", 8, 0.5)}};
   pads.tags[0].board_from_tag.translation.x() = -0.6;
   pads.tags[1].board_from_tag.translation.x() = 0.6;
@@ -316,7 +316,7 @@ TEST_F(TagBoardDetectorTest, OfTwoPadsOfAFamilyEachIsFoundAtItsOwnPlace) {
   }
 }
 
-TEST_F(TagBoardDetectorTest, ATagIsFoundWithoutAHintUnderTheEdgeOfAShadow) {
+TEST_F(TagBoardDetectorTest, FindsTagWithoutHintUnderShadowEdge) {
   Use({{OneTag("tag36h11", 7, 0.5)}});
   Random random(19);
   taken_.shadow = true;
@@ -334,7 +334,7 @@ TEST_F(TagBoardDetectorTest, ATagIsFoundWithoutAHintUnderTheEdgeOfAShadow) {
 }
 
 // In the logarithms a light cell that blurs into the margin cuts the frame.
-TEST_F(TagBoardDetectorTest, ATagIsFoundWhoseLightCellsBlurIntoTheMargin) {
+TEST_F(TagBoardDetectorTest, FindsTagWithLightCellsBlurredIntoMargin) {
   Use({{OneTag("tag36h11", 7, 0.5)}});
   Random random(31);
   taken_.blur_px = 1;
@@ -351,7 +351,7 @@ TEST_F(TagBoardDetectorTest, ATagIsFoundWhoseLightCellsBlurIntoTheMargin) {
   EXPECT_GE(found, kFrames - 2);
 }
 
-TEST(WideLensTest, ATagIsFoundBeyondNinetyDegreesFromTheAxis) {
+TEST(WideLensTest, FindsTagBeyondNinetyDegreesFromAxis) {
   // TUM VI's lens: 108 degrees from the axis in the corners of the image.
   const CameraModel camera({512,
                             512,
@@ -399,7 +399,7 @@ cv::Mat DarkSquareWithBlock(int width, cv::Point from, cv::Point to, double side
   return drawing.Taken();
 }
 
-TEST(TagBoardDetectorPictures, AWindowALetterAndAButtonAreNoTagEvenIfTheyLookLikeAnId) {
+TEST(TagBoardDetectorPictures, RejectsWindowLetterAndButtonThatLookLikeId) {
   struct PlainId {
     const char* family;
     int id, width;
@@ -418,7 +418,7 @@ TEST(TagBoardDetectorPictures, AWindowALetterAndAButtonAreNoTagEvenIfTheyLookLik
   }
 }
 
-TEST(TagBoardDetectorPictures, TagsAreFoundAndPicturesWithoutThemShowNone) {
+TEST(TagBoardDetectorPictures, FindsTagsAndNoneInPicturesWithout) {
   const CameraModel camera = PinholeOf(kTaglessSize);
   const TagRenderer renderer(camera);
   Random random(31);
@@ -457,7 +457,7 @@ TEST(TagBoardDetectorPictures, TagsAreFoundAndPicturesWithoutThemShowNone) {
   EXPECT_GE(found, rendered - 2);
 }
 
-TEST(TagBoardDetectorPictures, ATagThatTouchesTheRimOfTheImageIsFound) {
+TEST(TagBoardDetectorPictures, FindsTagThatTouchesImageBorder) {
   const cv::Size size(320, 240);
   const CameraModel camera = PinholeOf(size);
   const TagBoard board{{OneTag("tag36h11", 7, 0.5)}};
@@ -488,7 +488,7 @@ TEST(TagBoardDetectorPictures, ATagThatTouchesTheRimOfTheImageIsFound) {
   EXPECT_TRUE(is_found(0.84, {159.5, 119.5}, 0)) << "from rim to rim";
 }
 
-TEST_F(TagBoardDetectorTest, UpDecidesBetweenTheTwoPosesOfAFarTag) {
+TEST_F(TagBoardDetectorTest, UpSelectsOneOfTwoPosesOfFarTag) {
   Use({{OneTag("tag36h11", 7, 0.5)}});
   Random random(21);
   for (int i = 0; i < 20; ++i) {
@@ -500,14 +500,14 @@ TEST_F(TagBoardDetectorTest, UpDecidesBetweenTheTwoPosesOfAFarTag) {
   }
 }
 
-TEST_F(TagBoardDetectorTest, AnImageOfAnotherSizeIsReported) {
+TEST_F(TagBoardDetectorTest, ReportsImageOfAnotherSize) {
   Use({{OneTag("tag36h11", 7, 0.5)}});
   const LandingReport report = Detect(cv::Mat(100, 100, CV_8UC1, cv::Scalar(0)));
   EXPECT_FALSE(report.detection);
   EXPECT_EQ(report.reason, "the image is not CV_8UC1 of the camera's size");
 }
 
-TEST_F(TagBoardDetectorTest, TheShapeIsThatOfTheBoard) {
+TEST_F(TagBoardDetectorTest, ShapeMatchesBoard) {
   Use(NestedBoard());
   const TargetShape& shape = detector_->shape();
   ASSERT_EQ(shape.outlines.size(), 3u);
@@ -515,7 +515,7 @@ TEST_F(TagBoardDetectorTest, TheShapeIsThatOfTheBoard) {
   EXPECT_GT(shape.diameter_m, 2 * 0.68);
 }
 
-TEST_F(TagBoardDetectorTest, BadInputIsAnError) {
+TEST_F(TagBoardDetectorTest, RefusesInvalidInput) {
   EXPECT_THROW(TagBoardDetector(camera_, TagBoard(), {}), InputError);
   TagBoardDetectorOptions options;
   options.min_quality = 2;

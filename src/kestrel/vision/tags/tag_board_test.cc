@@ -32,7 +32,7 @@ BoardTag Tag(const std::string& family, int id, double size_m, double x_m = 0, d
   return tag;
 }
 
-TEST(TagBoardTest, OneTagIsABoard) {
+TEST(TagBoardTest, SingleTagIsBoard) {
   const TagTargetOptions options;
   EXPECT_THAT(options.ValidateBoard(), IsEmpty());
   const std::vector<PrintedTag> printed = options.Board().Printed();
@@ -62,7 +62,7 @@ TEST(TagBoardTest, ReadsItsOwnYaml) {
   EXPECT_EQ(printed.grid.at(1, 1), TagCell::kWhite);
 }
 
-TEST(TagBoardTest, ReadsABundleOfApriltagRos) {
+TEST(TagBoardTest, ReadsBundleOfApriltagRos) {
   const std::string yaml =
       "standalone_tags: []\n"
       "tag_bundles:\n"
@@ -82,7 +82,7 @@ TEST(TagBoardTest, ReadsABundleOfApriltagRos) {
               ThrowsMessage<InputError>(HasSubstr("has 0 bundles, expected one")));
 }
 
-TEST(TagBoardTest, ErrorsOfAFileNameTheKey) {
+TEST(TagBoardTest, FileErrorsNameKey) {
   EXPECT_THAT([] { ParseTagBoard("tags:\n  - {id: 3, size: 0.5}\n", "b.yaml", "tag36h11", 0.5); },
               ThrowsMessage<InputError>(HasSubstr("unknown key 'size'")));
   TagTargetOptions options;
@@ -90,7 +90,7 @@ TEST(TagBoardTest, ErrorsOfAFileNameTheKey) {
   EXPECT_THAT(options.ValidateBoard(), ElementsAre(HasSubstr("/nowhere/board.yaml")));
 }
 
-TEST(TagBoardTest, FilesWithoutABoardAreRefusedWithTheWayOut) {
+TEST(TagBoardTest, RefusesFilesWithoutBoardWithAdvice) {
   const auto refusal = [](const std::string& yaml) {
     return InputErrorOf([&] { ParseTagBoard(yaml, "/a/tags.yaml", "tag36h11", 0.5); });
   };
@@ -103,7 +103,7 @@ TEST(TagBoardTest, FilesWithoutABoardAreRefusedWithTheWayOut) {
   }
 }
 
-TEST(TagBoardTest, ViolationsOfAFileNameItAsAPathThatExists) {
+TEST(TagBoardTest, FileViolationsNameExistingPath) {
   const TestFolder folder;
   TagTargetOptions options;
   options.board = folder.Write("board.yaml", "tags:\n  - {id: 7, size: 0.3}\n");
@@ -113,7 +113,7 @@ TEST(TagBoardTest, ViolationsOfAFileNameItAsAPathThatExists) {
               ElementsAre(StartsWith("board: " + options.board + ": tag36h11")));
 }
 
-TEST(TagBoardTest, EachViolationIsALine) {
+TEST(TagBoardTest, ReportsEachViolationInOneLine) {
   EXPECT_THAT(TagBoard().Validate(), ElementsAre("the board has no tag"));
   EXPECT_THAT((TagBoard{{Tag("tag36h11", 3, 0.5), Tag("tag36h11", 3, 0.1, 2)}}).Validate(),
               ElementsAre("tag36h11 id 3 is on the board twice"));
@@ -125,7 +125,7 @@ TEST(TagBoardTest, EachViolationIsALine) {
               ElementsAre("tag36h11 id 3: size_m is 0, expected more than 0"));
 }
 
-TEST(TagBoardTest, ATagMustLieInThePlane) {
+TEST(TagBoardTest, RequiresTagInPlane) {
   BoardTag high = Tag("tag36h11", 3, 0.5);
   high.board_from_tag.translation.z() = 0.1;
   EXPECT_THAT((TagBoard{{high}}).Validate(),
@@ -135,7 +135,7 @@ TEST(TagBoardTest, ATagMustLieInThePlane) {
   EXPECT_THAT((TagBoard{{tilted}}).Validate(), ElementsAre(HasSubstr("it is tilted by 90.0 deg")));
 }
 
-TEST(TagBoardTest, OverlapsAreAnErrorUnlessTheyAreMeant) {
+TEST(TagBoardTest, RefusesUndeclaredOverlaps) {
   const BoardTag large = Tag("tag36h11", 0, 0.8);
   BoardTag small = Tag("tag36h11", 1, 0.05, 0.1, 0.1);
   EXPECT_THAT((TagBoard{{large, small}}).Validate(),
@@ -153,7 +153,7 @@ TEST(TagBoardTest, OverlapsAreAnErrorUnlessTheyAreMeant) {
   EXPECT_EQ(empty(printed[1]), 0);
 }
 
-TEST(TagBoardTest, ATagFitsIntoAnEmptyCentre) {
+TEST(TagBoardTest, TagFitsIntoEmptyCentre) {
   // tagCustom48h12 has an empty centre of 2 x 2 cells; its square is 6 cells wide.
   const BoardTag large = Tag("tagCustom48h12", 0, 0.6);
   EXPECT_THAT((TagBoard{{large, Tag("tag36h11", 1, 0.15)}}).Validate(), IsEmpty());

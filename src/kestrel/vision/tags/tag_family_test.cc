@@ -53,7 +53,7 @@ class AprilTagFamilyTest : public testing::TestWithParam<AprilTagCase> {
       GetParam().create(), GetParam().destroy};
 };
 
-TEST_P(AprilTagFamilyTest, LooksLikeThePictureOfLibapriltag) {
+TEST_P(AprilTagFamilyTest, MatchesPictureOfLibapriltag) {
   const TagFamily family(GetParam().name);
   EXPECT_EQ(family.id_count(), static_cast<int>(family_->ncodes));
   for (const int id : {0, 7, family.id_count() - 1}) {
@@ -116,7 +116,7 @@ struct ArucoCase {
 
 class ArucoFamilyTest : public testing::TestWithParam<ArucoCase> {};
 
-TEST_P(ArucoFamilyTest, EveryIdIsReadByOpenCvUpright) {
+TEST_P(ArucoFamilyTest, OpenCvReadsEveryIdUpright) {
   const cv::aruco::Dictionary dictionary = ArucoDictionary(GetParam().dictionary);
   const TagFamily family(GetParam().name);
   ASSERT_EQ(family.id_count(), dictionary.bytesList.rows);
@@ -172,7 +172,7 @@ TEST(TagFamilyTest, EveryFamilyHasItsBorders) {
   }
 }
 
-TEST(TagFamilyTest, NamesTheNearestFamilyAndTheIdsThatThereAre) {
+TEST(TagFamilyTest, ErrorsNameNearestFamilyAndValidIds) {
   EXPECT_THAT(
       [] { TagFamily("tag36h1"); },
       ThrowsMessage<InputError>("unknown family of tags 'tag36h1', did you mean 'tag36h11'?"));

@@ -34,7 +34,7 @@ TagBoard BoardOf(const std::string& family, bool inverted = false) {
   return {{tag}};
 }
 
-TEST(TagPrint, TheAreaIsThatOfTheBlackCells) {
+TEST(TagPrint, AreaEqualsBlackCells) {
   for (const std::string& family : TagFamily::Names()) {
     for (const bool inverted : {false, true}) {
       const TagBoard board = BoardOf(family, inverted);
@@ -55,7 +55,7 @@ TEST(TagPrint, TheAreaIsThatOfTheBlackCells) {
   }
 }
 
-TEST(TagPrint, NoCornerLiesOnALine) {
+TEST(TagPrint, OutlineHasNoCollinearCorners) {
   const TargetPrint print = PrintOf(BoardOf("tag36h11"));
   for (const auto& loop : std::get<PrintPolygon>(print.shapes[1].area).loops) {
     for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -66,13 +66,13 @@ TEST(TagPrint, NoCornerLiesOnALine) {
   }
 }
 
-TEST(TagPrint, TheBoardHoldsTheTagWithItsMargin) {
+TEST(TagPrint, BoardHoldsTagWithMargin) {
   const TagBoard board = BoardOf("tag36h11");
   // 0.5 m are 8 cells of the 10 with the margin.
   EXPECT_NEAR(PrintOf(board).board_size_m, 2 * (0.3 + 5 * 0.5 / 8), 1e-12);
 }
 
-TEST(TagPrint, AFewTagsAreListedAndManyAreCounted) {
+TEST(TagPrint, ListsFewTagsAndCountsMany) {
   TagBoard board = BoardOf("tag36h11");
   EXPECT_EQ(PrintOf(board).dimensions.at(0), "tag36h11 id 7: 500 mm from edge to edge");
   for (int i = 0; i < 5; ++i) {

@@ -9,7 +9,7 @@
 namespace kestrel {
 namespace {
 
-TEST(DetectionMethod, EachHasAWordOfItsOwn) {
+TEST(DetectionMethod, EachMethodHasItsOwnWord) {
   EXPECT_STREQ(ToString(DetectionMethod::kRing), "ring");
   EXPECT_STREQ(ToString(DetectionMethod::kPartial), "partial");
   std::set<std::string> words;
@@ -18,13 +18,13 @@ TEST(DetectionMethod, EachHasAWordOfItsOwn) {
   EXPECT_EQ(words.count(""), 0u);
 }
 
-TEST(LandingStage, TheWordsAreThoseOfTheTables) {
+TEST(LandingStage, WordsMatchTables) {
   EXPECT_STREQ(ToString(LandingStage::kBinarize), "binarize");
   EXPECT_STREQ(ToString(LandingStage::kLocate), "locate");
   EXPECT_STREQ(ToString(LandingStage::kFound), "found");
 }
 
-TEST(SeenParts, KeepsAsManyAsThereIsRoomFor) {
+TEST(SeenParts, KeepsPartsUpToCapacity) {
   SeenParts parts;
   EXPECT_TRUE(parts.all().empty());
   for (std::size_t tag = 0; tag < 2 * SeenParts::kMost; ++tag) parts.Add({"tag", tag, 10});
@@ -33,7 +33,7 @@ TEST(SeenParts, KeepsAsManyAsThereIsRoomFor) {
   EXPECT_EQ(parts.all().back().tag, SeenParts::kMost - 1);
 }
 
-TEST(MissInWords, OnlyWhatLooksLikeThePadIsInView) {
+TEST(MissInWords, ReportsInViewOnlyForPadLikeFindings) {
   LandingReport report;
   report.reason = "its own reason";
   for (const LandingStage stage :

@@ -31,7 +31,7 @@ PlaneWarp::Coefficients RandomDisplacement(Random* random) {
   return displacement;
 }
 
-TEST(PlaneWarp, WithoutDisplacementIsTheLens) {
+TEST(PlaneWarp, EqualsLensWithoutDisplacement) {
   const CameraModel camera(EurocCamera());
   const RigidTransform pose = PrintPose({0.2, -0.1, 1.5}, 0.4, 1, 0.3);
   const PlaneWarp warp(camera, pose, kRadius);
@@ -43,7 +43,7 @@ TEST(PlaneWarp, WithoutDisplacementIsTheLens) {
   }
 }
 
-TEST(PlaneWarp, DerivativeIsThatOfTheProjection) {
+TEST(PlaneWarp, DerivativeMatchesProjection) {
   Random random(1);
   for (const CameraIntrinsics& intrinsics : {PaperCamera(), EurocCamera()}) {
     const CameraModel camera(intrinsics);
@@ -119,7 +119,7 @@ double LeftByFit(const CameraModel& camera, const RigidTransform& pose, const Sh
 
 // Boards that are not flat and calibrations that are wrong, for a ring of 220 px. The warp explains
 // them to a fraction of a pixel where they move the print by several pixels.
-TEST(PlaneWarp, HoldsWhatBoardsAndLensesDo) {
+TEST(PlaneWarp, ExplainsUnevenBoardsAndWrongLenses) {
   const CameraModel camera = TestPrintCamera();
   const RigidTransform pose = PrintPose({0.1, -0.05, 1}, 0.35, 0.8, 0.3);
   const auto see = [](const CameraModel& lens, const RigidTransform& at, double x, double y,
@@ -158,7 +158,7 @@ TEST(PlaneWarp, HoldsWhatBoardsAndLensesDo) {
       0.5);
 }
 
-TEST(PlaneWarp, ShowsNothingBehindTheCamera) {
+TEST(PlaneWarp, ProjectsNothingBehindCamera) {
   const CameraModel camera = TestPrintCamera();
   Eigen::Vector2d pixel;
   EXPECT_FALSE(PlaneWarp(camera, PrintPose({0, 0, -2}, 0, 0, 0), kRadius).Project({0, 0}, &pixel));

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-TEST(TargetPrint, ARectangleGoesClockwiseFromTheUpperRight) {
+TEST(TargetPrint, RectangleRunsClockwiseFromUpperRight) {
   const auto loop = Rectangle({1, 2}, {0.4, 0.2}).loops.at(0);
   ASSERT_EQ(loop.size(), 4u);
   EXPECT_LT((loop[0] - Vector2d(1.2, 2.1)).norm(), 1e-12);
@@ -20,7 +20,7 @@ TEST(TargetPrint, ARectangleGoesClockwiseFromTheUpperRight) {
   EXPECT_LT((loop[3] - Vector2d(0.8, 2.1)).norm(), 1e-12);
 }
 
-TEST(TargetPrint, AShapeIsTurnedAndThenMoved) {
+TEST(TargetPrint, ShapeIsTurnedThenMoved) {
   const PrintShape ring = Moved({PrintRing{{1, 0}, 0.3, 0.1}, 0.5}, std::numbers::pi / 2, {0, 2});
   EXPECT_LT((std::get<PrintRing>(ring.area).center - Vector2d(0, 3)).norm(), 1e-12);
   EXPECT_EQ(std::get<PrintRing>(ring.area).outer_radius_m, 0.3);
@@ -29,7 +29,7 @@ TEST(TargetPrint, AShapeIsTurnedAndThenMoved) {
   EXPECT_LT((std::get<PrintPolygon>(bar.area).loops[0][0] - Vector2d(2.5, 1)).norm(), 1e-12);
 }
 
-TEST(TargetPrint, TheExtentHoldsAllShapes) {
+TEST(TargetPrint, ExtentContainsAllShapes) {
   TargetPrint print;
   EXPECT_EQ(HalfExtent(print), 0);
   print.shapes = {{PrintRing{{0.2, -0.3}, 0.1, 0}}, {Rectangle({0, 0}, {0.9, 0.2})}};
@@ -38,7 +38,7 @@ TEST(TargetPrint, TheExtentHoldsAllShapes) {
   EXPECT_DOUBLE_EQ(HalfExtent(print), 0.5);
 }
 
-TEST(TargetPrint, ATurnedBoardReachesFartherToItsCorners) {
+TEST(TargetPrint, TurnedBoardReachesFartherToItsCorners) {
   TargetPrint print{.board_size_m = 2, .board_heading = std::numbers::pi / 4};
   EXPECT_NEAR(ReachOnBoard(print, {1.2, 0}), 1.2 / std::numbers::sqrt2, 1e-12);
   EXPECT_NEAR(ReachOnBoard(print, {0.9, 0.9}), 0.9 * std::numbers::sqrt2, 1e-12);
@@ -46,7 +46,7 @@ TEST(TargetPrint, ATurnedBoardReachesFartherToItsCorners) {
   EXPECT_NEAR(ReachOnBoard(print, {1.2, 0}), 1.2, 1e-12);
 }
 
-TEST(TargetPrint, ABoardGrowsForWhatIsPrintedOverIt) {
+TEST(TargetPrint, BoardGrowsForOverprintedShapes) {
   TargetPrint print{.board_size_m = 1, .board_heading = std::numbers::pi / 4, .dimensions = {"a"}};
   print.shapes.push_back({PrintRing{{0, 0}, 0.5, 0.4}});
   const TargetPrint small{

@@ -17,7 +17,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using MakeTargetDetectorTest = LandingPatternDetectorTest;
 
-TEST_F(MakeTargetDetectorTest, TheRingIsTheDefault) {
+TEST_F(MakeTargetDetectorTest, RingIsDefault) {
   const auto detector = MakeTargetDetector(camera_, TargetOptions(), {});
   const auto workspace = detector->MakeWorkspace();
   const LandingReport report = detector->Detect(image_, {}, *workspace);
@@ -28,7 +28,7 @@ TEST_F(MakeTargetDetectorTest, TheRingIsTheDefault) {
   EXPECT_EQ(detector->shape().diameter_m, pattern_.outer_diameter_m);
 }
 
-TEST_F(MakeTargetDetectorTest, TheOptionsOfTheRingAreUsed) {
+TEST_F(MakeTargetDetectorTest, UsesOptionsOfRing) {
   LandingPatternDetectorOptions ring;
   ring.pattern.outer_diameter_m = 0.8;
   ring.pattern.arm_half_length_m = 0.3;
@@ -38,7 +38,7 @@ TEST_F(MakeTargetDetectorTest, TheOptionsOfTheRingAreUsed) {
   EXPECT_THROW(MakeTargetDetector(camera_, {}, ring), InputError);
 }
 
-TEST_F(MakeTargetDetectorTest, ASizeScalesPadsOfAllKinds) {
+TEST_F(MakeTargetDetectorTest, SizeScalesPadsOfAllKinds) {
   for (const char* kind : {"ring-cross", "apriltag", "aruco", "helipad"}) {
     TargetOptions target;
     target.kind = kind;
@@ -59,7 +59,7 @@ TEST_F(MakeTargetDetectorTest, ASizeScalesPadsOfAllKinds) {
   }
 }
 
-TEST_F(MakeTargetDetectorTest, AnUnknownKindIsAnErrorThatNamesTheKinds) {
+TEST_F(MakeTargetDetectorTest, UnknownKindErrorListsKinds) {
   TargetOptions target;
   SetOption("kind=ring-cros", &target);
   try {
@@ -71,7 +71,7 @@ TEST_F(MakeTargetDetectorTest, AnUnknownKindIsAnErrorThatNamesTheKinds) {
   }
 }
 
-TEST_F(MakeTargetDetectorTest, BoardsOfTagsAreKinds) {
+TEST_F(MakeTargetDetectorTest, AcceptsBoardsOfTagsAsKinds) {
   TargetOptions target;
   SetOption("kind=apriltag", &target);
   SetOption("apriltag.size_m=0.3", &target);
@@ -88,7 +88,7 @@ TEST_F(MakeTargetDetectorTest, BoardsOfTagsAreKinds) {
   EXPECT_TRUE(ViolationsOf(target).empty());
 }
 
-TEST(TargetOptions, AnIdThatIsAsPlainAsAWindowIsWarnedOf) {
+TEST(TargetOptions, WarnsOfIdAsPlainAsWindow) {
   TargetOptions target;
   EXPECT_TRUE(target.Warnings().empty());
   SetOption("kind=aruco", &target);
@@ -97,7 +97,7 @@ TEST(TargetOptions, AnIdThatIsAsPlainAsAWindowIsWarnedOf) {
   EXPECT_THAT(target.Warnings(), ElementsAre(HasSubstr("aruco_4x4_50 id 17 is as plain")));
 }
 
-TEST(TargetOptions, AnIdIsOfTheKindsThatAreOneTag) {
+TEST(TargetOptions, AcceptsIdForSingleTagKindsOnly) {
   TargetOptions target;
   SetOption("id=9", &target);
   EXPECT_THAT(ViolationsOf(target), ElementsAre("id is 9, but a ring-cross has no id"));

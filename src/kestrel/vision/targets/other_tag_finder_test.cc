@@ -42,28 +42,26 @@ std::optional<int> Read(const std::string& family, const std::string& printed, i
   return Read(TagBoardDetector(CameraModel(PaperCamera()), board, {}), board, ImageOf(printed, id));
 }
 
-TEST(OtherTagFinder, ReadsTheIdOfAnotherTagOfTheFamily) {
+TEST(OtherTagFinder, ReadsIdOfAnotherTagOfFamily) {
   for (const char* family : {"tag36h11", "tagStandard41h12", "aruco_4x4_50", "aruco_6x6_250"}) {
     EXPECT_EQ(Read(family, family, 7), 7) << family;
     EXPECT_EQ(Read(family, family, 31), 31) << family;
   }
 }
 
-TEST(OtherTagFinder, TheTagThatIsLookedForIsNoOther) {
-  EXPECT_EQ(Read("tag36h11", "tag36h11", 8), std::nullopt);
-}
+TEST(OtherTagFinder, IgnoresWantedTag) { EXPECT_EQ(Read("tag36h11", "tag36h11", 8), std::nullopt); }
 
-TEST(OtherTagFinder, ReadsItWhereARingWithTagsIsLookedFor) {
+TEST(OtherTagFinder, ReadsOtherTagForRingWithTags) {
   const TagBoard board = BoardOf("tag36h11", 8);
   const RingWithTagsDetector detector(CameraModel(PaperCamera()), {}, board, {});
   EXPECT_EQ(Read(detector, board, ImageOf("tag36h11", 7)), 7);
 }
 
-TEST(OtherTagFinder, AnotherFamilyIsNotRead) {
+TEST(OtherTagFinder, DoesNotReadAnotherFamily) {
   EXPECT_EQ(Read("tag36h11", "aruco_5x5_250", 7), std::nullopt);
 }
 
-TEST(OtherTagFinder, GroundsAndWallsAreNoTag) {
+TEST(OtherTagFinder, FindsNoTagInGroundsAndWalls) {
   const CameraModel camera(PaperCamera());
   const TagBoard board = BoardOf("tag36h11", 8);
   const TagBoardDetector detector(camera, board, {});

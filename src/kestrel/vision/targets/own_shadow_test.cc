@@ -80,7 +80,7 @@ TEST_P(OwnShadowTest, FollowedPadStaysFollowed) { EXPECT_EQ(Found(target_), kSha
 
 class TagShadowTest : public OwnShadowTest {};
 
-TEST_P(TagShadowTest, AnotherIdInTheShadowIsNotTaken) {
+TEST_P(TagShadowTest, RejectsAnotherIdInShadow) {
   for (const int id : {1, 2}) {
     TargetOptions shown = target_;
     shown.id = id;

@@ -78,7 +78,7 @@ class RingWithTagsDetectorTest : public testing::Test {
   const std::unique_ptr<TargetWorkspace> workspace_ = detector_.MakeWorkspace();
 };
 
-TEST_F(RingWithTagsDetectorTest, TheTagTellsIdAndHeadingInAllTurns) {
+TEST_F(RingWithTagsDetectorTest, TagGivesIdAndHeadingInAllTurns) {
   Random random(3);
   for (const double height : {1.5, 2.5, 3.5, 4.5, 6.0}) {
     for (int quarter = 0; quarter < 4; ++quarter) {
@@ -99,7 +99,7 @@ TEST_F(RingWithTagsDetectorTest, TheTagTellsIdAndHeadingInAllTurns) {
   }
 }
 
-TEST_F(RingWithTagsDetectorTest, ThePoseIsThatOfTheRing) {
+TEST_F(RingWithTagsDetectorTest, PoseComesFromRing) {
   Random random(4);
   const RigidTransform pose = PoseAt(2.5, 0.3 + kPi / 2, &random);
   const cv::Mat image = Image(PadOf(Board(kPadId)), pose, &random);
@@ -115,7 +115,7 @@ TEST_F(RingWithTagsDetectorTest, ThePoseIsThatOfTheRing) {
 }
 
 // A tag that is not quite in view is not read, and a ring without a readable tag has no id.
-TEST_F(RingWithTagsDetectorTest, ARingWithAnotherTagIsNeverTakenForThePad) {
+TEST_F(RingWithTagsDetectorTest, NeverAcceptsRingWithAnotherTag) {
   Random random(5);
   int refused = 0;
   for (int i = 0; i < 20; ++i) {
@@ -131,7 +131,7 @@ TEST_F(RingWithTagsDetectorTest, ARingWithAnotherTagIsNeverTakenForThePad) {
   EXPECT_GE(refused, 19);
 }
 
-TEST_F(RingWithTagsDetectorTest, WithoutReadableTagItIsTheRingsDetection) {
+TEST_F(RingWithTagsDetectorTest, EqualsRingDetectionWithoutReadableTag) {
   Random random(6);
   for (const double height : {2.0, 4.0, 8.0}) {
     const RigidTransform pose = PoseAt(height, 0.4, &random);
@@ -144,7 +144,7 @@ TEST_F(RingWithTagsDetectorTest, WithoutReadableTagItIsTheRingsDetection) {
   }
 }
 
-TEST_F(RingWithTagsDetectorTest, NearTheTagCarriesOnWithoutTheRing) {
+TEST_F(RingWithTagsDetectorTest, FollowsTagWithoutRingWhenNear) {
   Random random(7);
   // The camera is over the tag.
   const RigidTransform pose = PrintPose({-0.6, 0.6, 0.35}, 0, 0, 0);
@@ -157,7 +157,7 @@ TEST_F(RingWithTagsDetectorTest, NearTheTagCarriesOnWithoutTheRing) {
   EXPECT_LT((report.detection->camera_from_pattern.translation - pose.translation).norm(), 0.02);
 }
 
-TEST_F(RingWithTagsDetectorTest, TheShapeIsTheRingAndTheTags) {
+TEST_F(RingWithTagsDetectorTest, ShapeHasRingAndTags) {
   const TargetShape& shape = detector_.shape();
   EXPECT_EQ(shape.diameter_m, pattern_.outer_diameter_m);
   EXPECT_EQ(shape.outlines.size(), ring_.shape().outlines.size());
@@ -165,7 +165,7 @@ TEST_F(RingWithTagsDetectorTest, TheShapeIsTheRingAndTheTags) {
   EXPECT_EQ(shape.tags[0].id, kPadId);
 }
 
-TEST_F(RingWithTagsDetectorTest, BadInputIsAnError) {
+TEST_F(RingWithTagsDetectorTest, RefusesInvalidInput) {
   EXPECT_THROW(RingWithTagsDetector(camera_, {}, TagBoard(), {}), InputError);
   EXPECT_THROW(RingWithTagsDetector(camera_, {}, Board(kPadId), {.min_quality = 2}), InputError);
   const LandingReport report = Detect(cv::Mat(100, 100, CV_8UC1, cv::Scalar(0)));

@@ -41,7 +41,7 @@ class SightRangeTest : public testing::TestWithParam<std::string> {
   TargetPrint print_;
 };
 
-TEST_P(SightRangeTest, NearlyAllImagesShowThePadFromThereAndFewFromTwiceAsFar) {
+TEST_P(SightRangeTest, PadIsFoundAtRangeButRarelyAtTwiceTheRange) {
   EXPECT_GE(FoundFrom(Range()), 0.9 * kFrames) << Range();
   EXPECT_LE(FoundFrom(2 * Range()), 0.5 * kFrames) << Range();
 }

@@ -186,7 +186,7 @@ void TargetTracker::UpdateYaw(Entry* entry) {
   constexpr double kYawGate = 16;  // four standard deviations; beyond, the yaw was mistaken
   const TargetMeasurement& measurement = entry->measurement;
   if (!measurement.yaw) return;
-  // A pad that looks the same less often says which of the turns so far was the right one.
+  // A pad with less symmetry determines which of the turns so far was the right one.
   if (entry->yaw_period > 0 && measurement.yaw_period > entry->yaw_period) {
     double& yaw = entry->filtered.mean(TurnState::kYaw);
     yaw = *measurement.yaw - std::remainder(*measurement.yaw - yaw, entry->yaw_period);

@@ -20,7 +20,7 @@ inline constexpr double kFullTurn = 2 * std::numbers::pi;  // rad
 struct TargetMeasurement {
   Time time;
   Eigen::Vector3d position_in_world;
-  Eigen::Matrix3d covariance;  // of the error of this position alone, m^2
+  Eigen::Matrix3d covariance;  // covariance of this position's own error, m^2
   // Covariance of the error that all measurements share, like the navigation's bias, m^2. It is not
   // filtered, but included in the covariance of every estimate.
   Eigen::Matrix3d shared_covariance = Eigen::Matrix3d::Zero();
@@ -60,7 +60,7 @@ struct TargetEstimate {
   // True when motion.yaw() is the target's heading in the world, without such a turn.
   bool has_yaw() const { return yaw_period == kFullTurn; }
 
-  double heading() const;  // of the velocity, rad from x (east) to y
+  double heading() const;  // direction of the velocity, rad from x (east) to y
   double speed() const;    // horizontal, m/s
   // Standard deviations per axis: root of the mean of the three variances.
   double position_sigma_m() const;
@@ -98,7 +98,7 @@ struct TargetTrackerOptions {
                 "restart_count", "confirm_count", "predict_after_s", "lost_sigma_m", "history"});
   }
 
-  TurnNoise Noise() const;  // of the motion
+  TurnNoise Noise() const;  // noise of the motion
 };
 
 // Tracks one ground vehicle from measured positions and, where known, the yaw of its load (title

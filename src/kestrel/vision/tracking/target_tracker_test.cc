@@ -129,7 +129,7 @@ TargetTrackerOptions ConstantVelocity() {
   return options;
 }
 
-TEST(TargetTracker, FollowsWhatStandsAndWhatMoves) {
+TEST(TargetTracker, FollowsStandingAndMovingTargets) {
   for (const auto& path : {Standing, Straight, Circle, FigureOfEight}) {
     const Errors errors = Follow(path, {});
     EXPECT_LE(errors.rejected, 3);
@@ -140,7 +140,7 @@ TEST(TargetTracker, FollowsWhatStandsAndWhatMoves) {
   }
 }
 
-TEST(TargetTracker, OnCurvesItPredictsTwiceAsWellAsConstantVelocity) {
+TEST(TargetTracker, PredictsCurvesTwiceAsWellAsConstantVelocity) {
   for (const auto& path : {Circle, FigureOfEight}) {
     const Errors turn = Follow(path, {});
     const Errors straight = Follow(path, ConstantVelocity());
@@ -149,13 +149,13 @@ TEST(TargetTracker, OnCurvesItPredictsTwiceAsWellAsConstantVelocity) {
   }
 }
 
-TEST(TargetTracker, ItsCovarianceIsNotTooSmall) {
+TEST(TargetTracker, CovarianceIsNotTooSmall) {
   for (const auto& path : {Standing, Straight, Circle, FigureOfEight, Swaying}) {
     EXPECT_LT(Rms(Follow(path, {}).nees), 6);  // 3.9 for a chi-square of 3 degrees of freedom
   }
 }
 
-TEST(TargetTracker, TheSwayOfTheBoardIsNotTheVehiclesSpeed) {
+TEST(TargetTracker, SeparatesSwayOfBoardFromVehicleSpeed) {
   TargetTrackerOptions rigid;
   rigid.sway_sigma_m = 0;
   constexpr double kNear_m = 0.005;
@@ -179,12 +179,12 @@ double ErrorAtTheStart(bool with_yaw) {
   return Rms(errors);
 }
 
-TEST(TargetTracker, ByTheYawItKnowsTheCurveEarly) {
+TEST(TargetTracker, YawRevealsCurveEarly) {
   EXPECT_LT(ErrorAtTheStart(/*with_yaw=*/true), 0.2);
   EXPECT_GT(ErrorAtTheStart(/*with_yaw=*/false), 2 * ErrorAtTheStart(/*with_yaw=*/true));
 }
 
-TEST(TargetTracker, AWrongYawDoesNotTurnIt) {
+TEST(TargetTracker, WrongYawDoesNotTurnTrack) {
   TargetTracker tracker({});
   Sensor sensor(Circle);
   Random random(7);
@@ -199,7 +199,7 @@ TEST(TargetTracker, AWrongYawDoesNotTurnIt) {
 }
 
 // A pad of which first only the part is seen that looks the same after quarter turns.
-TEST(TargetTracker, TheHeadingIsKnownOnceItWasSeen) {
+TEST(TargetTracker, HeadingStaysKnownOnceSeen) {
   for (const double true_yaw : {-3.0, -1.2, 0.4, 1.7, 3.1}) {
     TargetTracker tracker({});
     Sensor sensor(Standing);
@@ -221,7 +221,7 @@ TEST(TargetTracker, TheHeadingIsKnownOnceItWasSeen) {
   }
 }
 
-TEST(TargetTracker, WhatAllMeasurementsShareStaysUncertain) {
+TEST(TargetTracker, KeepsUncertaintySharedByAllMeasurements) {
   TargetTracker tracker({});
   Sensor sensor(Standing);
   for (int i = 0; i < 300; ++i) {
@@ -232,7 +232,7 @@ TEST(TargetTracker, WhatAllMeasurementsShareStaysUncertain) {
   EXPECT_NEAR(tracker.Predict(At(10))->position_sigma_m(), 0.5, 0.01);
 }
 
-TEST(TargetTracker, BridgesADropout) {
+TEST(TargetTracker, BridgesDropout) {
   TargetTracker tracker({});
   Sensor sensor(Circle);
   for (double t = 0; t < 5; t += 0.033) tracker.Add(sensor.Measure(t));
@@ -243,7 +243,7 @@ TEST(TargetTracker, BridgesADropout) {
   EXPECT_EQ(tracker.StateAt(At(6)), TrackState::kTracking);
 }
 
-TEST(TargetTracker, LifeFromSearchingToLost) {
+TEST(TargetTracker, PassesStatesFromSearchingToLost) {
   TargetTracker tracker({});
   Sensor sensor(Straight);
   EXPECT_EQ(tracker.StateAt(At(0)), TrackState::kSearching);
@@ -258,7 +258,7 @@ TEST(TargetTracker, LifeFromSearchingToLost) {
   EXPECT_EQ(tracker.Add(sensor.Measure(9)), MeasurementFate::kStarted);
 }
 
-TEST(TargetTracker, LateMeasurementsGiveTheSameTrack) {
+TEST(TargetTracker, LateMeasurementsGiveSameTrack) {
   TargetTracker in_order({});
   TargetTracker late({});
   std::vector<TargetMeasurement> measurements;
@@ -275,7 +275,7 @@ TEST(TargetTracker, LateMeasurementsGiveTheSameTrack) {
   EXPECT_LT((a.covariance - b.covariance).norm(), 1e-9);
 }
 
-TEST(TargetTracker, TooLateIsRefusedAndMemoryIsBounded) {
+TEST(TargetTracker, RefusesTooLateMeasurementsAndLimitsMemory) {
   TargetTrackerOptions options;
   options.history = 10;
   TargetTracker tracker(options);
@@ -286,7 +286,7 @@ TEST(TargetTracker, TooLateIsRefusedAndMemoryIsBounded) {
   EXPECT_FALSE(tracker.Predict(At(89.0 / 30)));
 }
 
-TEST(TargetTracker, JumpsAndFalseDetectionsDoNotMoveIt) {
+TEST(TargetTracker, JumpsAndFalseDetectionsDoNotMoveTrack) {
   TargetTracker tracker({});
   Sensor sensor(Circle);
   Random random(5);
@@ -307,7 +307,7 @@ TEST(TargetTracker, JumpsAndFalseDetectionsDoNotMoveIt) {
   EXPECT_GT(rejected, 100);
 }
 
-TEST(TargetTracker, StartsAgainWhereTheTargetHasGone) {
+TEST(TargetTracker, RestartsAtNewPlaceOfTarget) {
   TargetTracker tracker({});
   Sensor sensor(Circle);
   for (double t = 0; t < 3; t += 0.033) tracker.Add(sensor.Measure(t));
@@ -323,7 +323,7 @@ TEST(TargetTracker, StartsAgainWhereTheTargetHasGone) {
                                      kStarted, kAccepted, kAccepted, kAccepted));
 }
 
-TEST(TargetTracker, AClockThatJumpedAheadDoesNotStopIt) {
+TEST(TargetTracker, ClockJumpAheadDoesNotStopTracking) {
   TargetTracker tracker({});
   Sensor sensor(Standing);
   tracker.Add(sensor.Measure(0));
@@ -334,7 +334,7 @@ TEST(TargetTracker, AClockThatJumpedAheadDoesNotStopIt) {
   EXPECT_EQ(tracker.Add(sensor.Measure(0.2)), MeasurementFate::kAccepted);
 }
 
-TEST(TargetTracker, WhatIsNotFiniteIsRefused) {
+TEST(TargetTracker, RefusesNonFiniteMeasurements) {
   TargetTracker tracker({});
   Sensor sensor(Standing);
   for (const double bad :
@@ -361,7 +361,7 @@ TEST(TargetTracker, WhatIsNotFiniteIsRefused) {
   EXPECT_FALSE(tracker.Predict(At(0)));
 }
 
-TEST(TargetTracker, NeverReturnsWhatIsNotFinite) {
+TEST(TargetTracker, NeverReturnsNonFiniteValues) {
   Random random(11);
   TargetTracker tracker({});
   for (int i = 0; i < 3000; ++i) {
@@ -383,7 +383,7 @@ TEST(TargetTracker, NeverReturnsWhatIsNotFinite) {
   }
 }
 
-TEST(TargetTracker, OptionsAreChecked) {
+TEST(TargetTracker, ChecksOptions) {
   TargetTrackerOptions options;
   options.max_speed_mps = 0;
   options.lost_after_s = 0.1;

@@ -139,7 +139,7 @@ TurnState StartState(const Eigen::Vector3d& position, const Eigen::Matrix3d& cov
   state.covariance.diagonal().segment<3>(kVelocity) = velocity_sigmas.cwiseAbs2();
   state.covariance.diagonal().segment<2>(kTurnRate).setConstant(turn_sigma * turn_sigma);
   state.covariance(kYaw, kYaw) = std::numbers::pi * std::numbers::pi / 4;
-  // The measurement includes the sway, so it says nothing about the sway's size. The velocity is
+  // The measurement includes the sway, so it does not determine the sway's size. The velocity is
   // that of the vehicle plus that of the sway.
   const Eigen::Matrix2d sway = SwayCovariance(noise.sway);
   state.covariance.diagonal().segment<2>(kSway).setConstant(sway(0, 0));

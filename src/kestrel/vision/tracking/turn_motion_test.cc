@@ -20,7 +20,7 @@ TurnState State(const Eigen::Vector3d& velocity, double turn_rate) {
   return state;
 }
 
-TEST(Propagate, FollowsACircle) {
+TEST(Propagate, FollowsCircle) {
   const double turn_rate = 0.5;
   const double radius = 8;
   const TurnState later = Propagate(State({0, radius * turn_rate, 0.1}, turn_rate), 2, kNoNoise);
@@ -32,7 +32,7 @@ TEST(Propagate, FollowsACircle) {
   EXPECT_NEAR(later.mean(4), radius * turn_rate * std::cos(angle), 1e-9);
 }
 
-TEST(Propagate, AChangeOfTheTurnRateGoesOnAndEnds) {
+TEST(Propagate, ChangeOfTurnRateDecays) {
   TurnState state = State({4, 0, 0}, 0);
   state.mean(7) = 0.5;
   const TurnState later = Propagate(state, 1, {0, 0, 0, 1, kNoSway});
@@ -42,7 +42,7 @@ TEST(Propagate, AChangeOfTheTurnRateGoesOnAndEnds) {
   EXPECT_GT(later.mean(1), 0.2);  // to the left
 }
 
-TEST(Propagate, CovarianceIsThatOfTheDifferences) {
+TEST(Propagate, CovarianceMatchesNumericalJacobian) {
   constexpr double kDelta = 1e-5;
   TurnState state = State({3, 2, 0}, 0.6);
   state.mean.tail<6>() << 0.3, 0.02, -0.01, 0.1, 0.2, 1.2;
@@ -57,7 +57,7 @@ TEST(Propagate, CovarianceIsThatOfTheDifferences) {
   EXPECT_LT((later.covariance - jacobian * jacobian.transpose()).cwiseAbs().maxCoeff(), 1e-3);
 }
 
-TEST(Propagate, SwayGoesToAndFroOnTheVehicle) {
+TEST(Propagate, SwayOscillatesOnVehicle) {
   TurnState state = State({4, 0, 0}, 0);
   state.mean(1) = 0.05;  // y, all of it sway
   state.mean(9) = 0.05;
@@ -70,7 +70,7 @@ TEST(Propagate, SwayGoesToAndFroOnTheVehicle) {
   EXPECT_NEAR(half_a_period.velocity().y(), 0, 0.05);
 }
 
-TEST(Propagate, SwayIsKeptUp) {
+TEST(Propagate, SwayVarianceIsStationary) {
   TurnNoise noise = kNoNoise;
   noise.sway = {0.02, 1.4, 0.3};
   const TurnState start =
@@ -82,13 +82,13 @@ TEST(Propagate, SwayIsKeptUp) {
   EXPECT_NEAR(later.covariance(3, 3), start.covariance(3, 3), 1e-9);
 }
 
-TEST(Propagate, TheLoadTurnsWithTheVehicle) {
+TEST(Propagate, LoadTurnsWithVehicle) {
   TurnState state = State({4, 0, 0}, 0.5);
   state.mean(12) = 0.2;
   EXPECT_NEAR(Propagate(state, 2, kNoNoise).mean(12), 1.2, 1e-9);
 }
 
-TEST(Propagate, NoTimeChangesNothing) {
+TEST(Propagate, ZeroTimeChangesNothing) {
   const TurnState state = State({3, 2, 0}, 0.6);
   EXPECT_EQ(Propagate(state, 0, {1, 1, 1, 1, kNoSway}).mean, state.mean);
 }
@@ -100,7 +100,7 @@ TEST(Propagate, UncertaintyGrows) {
   EXPECT_GT(later.covariance(6, 6), state.covariance(6, 6));
 }
 
-TEST(UpdateByPosition, WeighsBothByTheirCovariance) {
+TEST(UpdateByPosition, WeightsBothByCovariance) {
   TurnState state = State({0, 0, 0}, 0);
   state.covariance.setIdentity();
   const TurnState updated = UpdateByPosition(state, {1, 2, 3}, 3 * Eigen::Matrix3d::Identity());
@@ -109,7 +109,7 @@ TEST(UpdateByPosition, WeighsBothByTheirCovariance) {
   EXPECT_NEAR(updated.covariance(6, 6), 1, 1e-12);
 }
 
-TEST(UpdateByYaw, IsUpToTheTurnsOfThePad) {
+TEST(UpdateByYaw, AcceptsYawUpToSymmetryOfPad) {
   TurnState state = State({0, 0, 0}, 0);
   state.covariance *= 0.01;
   const double quarter = std::numbers::pi / 2;
@@ -119,13 +119,13 @@ TEST(UpdateByYaw, IsUpToTheTurnsOfThePad) {
   EXPECT_NEAR(UpdateByYaw(state, 4 * quarter - 0.1, 0.01, 4 * quarter, 16).mean(12), -0.05, 1e-12);
 }
 
-TEST(UpdateByYaw, BeyondTheGateItChangesNothing) {
+TEST(UpdateByYaw, ChangesNothingBeyondGate) {
   TurnState state = State({0, 0, 0}, 0);
   state.covariance *= 1e-4;
   EXPECT_EQ(UpdateByYaw(state, 0.5, 1e-4, std::numbers::pi / 2, 16).mean, state.mean);
 }
 
-TEST(SquaredDistance, IsThatOfBothCovariances) {
+TEST(SquaredDistance, UsesBothCovariances) {
   const TurnState state = State({0, 0, 0}, 0);
   EXPECT_NEAR(SquaredDistance(state, {2, 0, 0}, 3 * Eigen::Matrix3d::Identity()), 1, 1e-12);
 }

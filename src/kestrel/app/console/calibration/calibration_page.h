@@ -25,7 +25,7 @@ class CalibrationPage {
  public:
   using Run = BackgroundRun<CalibrationResult>;
   struct Tools {
-    // Called by a thread of its own. Returns nothing if it was told to end. Throws InputError when
+    // Called by a thread of its own. Returns nothing if it was cancelled. Throws InputError when
     // the calibration is refused.
     std::function<std::optional<CalibrationResult>(const CalibrationRequest& request,
                                                    const Run::GoOn& go_on)>

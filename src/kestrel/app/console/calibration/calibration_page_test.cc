@@ -113,7 +113,7 @@ TEST_F(CalibrationPageTest, CalibratesShowsAndSaves) {
   EXPECT_EQ(Next(&socket, "done")["save_error"], "calibrated: cannot be written");
 }
 
-TEST_F(CalibrationPageTest, WhyItIsRefusedIsSaid) {
+TEST_F(CalibrationPageTest, ReportsReasonOfRefusal) {
   TestSocket socket(port());
   socket.Send(R"({"command": "calibrate", "settings": ["lens"]})");
   EXPECT_EQ(Next(&socket, "refused")["error"], "the views cannot tell the lens: tilt the camera");
@@ -129,7 +129,7 @@ TEST_F(CalibrationPageTest, WhyItIsRefusedIsSaid) {
   EXPECT_EQ(saved_, 0);
 }
 
-TEST_F(CalibrationPageTest, ItIsCancelledWhileThePagePlaysOn) {
+TEST_F(CalibrationPageTest, CancelsCalibrationWhilePagePlaysOn) {
   TestSocket socket(port());
   socket.Send(R"({"command": "calibrate", "settings": ["mount", "moving"]})");
   nlohmann::json running;

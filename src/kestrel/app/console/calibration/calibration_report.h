@@ -15,7 +15,7 @@
 
 namespace kestrel {
 
-// The calibration that the page asks for: either the lens, or mount, clock or both.
+// The calibration that the page requests: either the lens, or mount, clock or both.
 struct CalibrationRequest {
   bool mount = false;
   bool clock = false;
@@ -30,7 +30,8 @@ struct CalibrationRequest {
 // InputError for anything else.
 CalibrationRequest ParseCalibrationRequest(const std::vector<std::string>& words);
 
-// Returns the part of the report that says what a flight covers. 'images': in the whole flight.
+// Returns the part of the report that describes what a flight covers. 'images': in the whole
+// flight.
 ConsoleCalibration FlightCoverage(const std::vector<PatternPlace>& places, std::size_t images,
                                   const cv::Size& image);
 

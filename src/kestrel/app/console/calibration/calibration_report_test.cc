@@ -16,7 +16,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-TEST(CalibrationRequestTest, HasTheNameOfWhatIsSaved) {
+TEST(CalibrationRequestTest, NamesWhatIsSaved) {
   const auto name = [](const std::vector<std::string>& words) {
     return ParseCalibrationRequest(words).Name();
   };
@@ -26,7 +26,7 @@ TEST(CalibrationRequestTest, HasTheNameOfWhatIsSaved) {
   EXPECT_EQ(name({"mount", "clock"}), "mount_clock");
 }
 
-TEST(CalibrationRequestTest, RefusesAllElse) {
+TEST(CalibrationRequestTest, RefusesOtherWords) {
   for (const std::vector<std::string>& words :
        std::vector<std::vector<std::string>>{{},
                                              {"moving"},
@@ -40,7 +40,7 @@ TEST(CalibrationRequestTest, RefusesAllElse) {
   }
 }
 
-TEST(CalibrationReportTest, SaysWhatAFlightCovers) {
+TEST(CalibrationReportTest, DescribesCoverageOfFlight) {
   const std::vector<PatternPlace> places = {{{1, 1}, 2.5}, {{2, 2}, 1.25}, {{799, 599}, 9}};
   const ConsoleCalibration report = FlightCoverage(places, 40, {800, 600});
   EXPECT_EQ(report.coverage,
@@ -52,7 +52,7 @@ TEST(CalibrationReportTest, SaysWhatAFlightCovers) {
   EXPECT_LE(FlightCoverage(std::vector<PatternPlace>(9001), 9001, {8, 6}).places.size(), 2000u);
 }
 
-TEST(CalibrationReportTest, HasTheNumbersOfAFlightWithTheirUncertainty) {
+TEST(CalibrationReportTest, HasNumbersOfFlightWithUncertainty) {
   FlightCalibration result;
   result.angles = {0.01, 0, -0.02};
   result.angle_sigmas = {0.001, 0.001, 0.002};
@@ -76,7 +76,7 @@ TEST(CalibrationReportTest, HasTheNumbersOfAFlightWithTheirUncertainty) {
   EXPECT_EQ(clock_only.numbers.size(), 1u);
 }
 
-TEST(CalibrationReportTest, KeepsNothingThatAFlightDoesNotTell) {
+TEST(CalibrationReportTest, OmitsWhatFlightCannotDetermine) {
   const auto no_use = [](double angle_sigma, double clock_sigma_s, double rms_after_m) {
     FlightCalibration result;
     result.angle_sigmas.setConstant(angle_sigma);
@@ -94,7 +94,7 @@ TEST(CalibrationReportTest, KeepsNothingThatAFlightDoesNotTell) {
   EXPECT_EQ(no_use(0.01, 0.01, 0.6), "the positions agree less than before");
 }
 
-TEST(CalibrationReportTest, ComparesALensWithTheGivenOneOnTheSameViews) {
+TEST(CalibrationReportTest, ComparesLensWithGivenOneOnSameViews) {
   const CameraIntrinsics truth{640, 480, 400, 400, 325, 236, DistortionModel::kNone, {}};
   CameraIntrinsics given = truth;
   given.fx_px = given.fy_px = 440;

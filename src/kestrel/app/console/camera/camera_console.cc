@@ -60,8 +60,8 @@ void CameraConsole::Play(const std::function<bool()>& is_stopped) {
       Watch();
     }
     lens_.Follow();
-    TellState();
-    TellAge();
+    ReportState();
+    ReportAge();
   }
 }
 
@@ -132,7 +132,7 @@ void CameraConsole::AddSample(const cv::Mat& gray) {
 }
 
 // The page shows nothing old as what is now.
-void CameraConsole::TellAge() {
+void CameraConsole::ReportAge() {
   const Time now = Now();
   if (now - aged_ < kAgeInterval) return;
   aged_ = now;
@@ -147,7 +147,7 @@ void CameraConsole::SetFault(const std::string& fault) {
   if (!fault.empty()) camera_.tell("trying again: " + fault);
 }
 
-void CameraConsole::TellState() {
+void CameraConsole::ReportState() {
   if (fault_.empty() && frame_.image.empty()) return;  // not open yet
   const ViewStatus status{.state = fault_.empty() ? "live" : "no picture",
                           .reason = fault_.empty() ? "" : "trying again: " + fault_,

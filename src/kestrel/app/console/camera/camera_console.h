@@ -24,13 +24,14 @@ class CameraConsole {
   struct Camera {
     std::string name;              // as the user gave it
     LiveSource* source = nullptr;  // it, where it is open already
-    // Opens it; valid until it is opened again. Throws InputError that says why it cannot be.
+    // Opens it; valid until it is opened again. Throws InputError with the reason if it cannot be
+    // opened.
     std::function<LiveSource*()> open;
-    // Returns the exposure, s, where the camera tells it.
+    // Returns the exposure, s, if the camera reports it.
     std::function<std::optional<double>()> exposure_s;
-    // Keeps a picture; returns a sentence that says where. Throws InputError.
+    // Keeps a picture; returns a sentence that names its place. Throws InputError.
     std::function<std::string(const cv::Mat& image, Time captured)> keep_snapshot;
-    // Switches recording on or off; returns a sentence that says what was done. Throws InputError.
+    // Switches recording on or off; returns a sentence for the user about it. Throws InputError.
     std::function<std::string(bool is_on)> record;
     std::function<bool()> is_recording;
     // Called with each new fault of the camera.
@@ -62,8 +63,8 @@ class CameraConsole {
   void Take(const Frame& frame);
   void AddSample(const cv::Mat& gray);
   void SetFault(const std::string& fault);
-  void TellState();
-  void TellAge();
+  void ReportState();
+  void ReportAge();
 
   Camera camera_;
   ConsoleFeed feed_;
@@ -71,7 +72,7 @@ class CameraConsole {
   LensPage lens_;
   LiveSource* source_;  // null: to be opened
   Time next_attempt_{};
-  std::string fault_;   // of the camera; empty: none
+  std::string fault_;   // fault of the camera; empty: none
   ViewStatus told_;     // the last status that the page got
   ConsoleFrame frame_;  // the newest
   Time measured_{}, aged_{};

@@ -93,7 +93,7 @@ class CameraConsoleTest : public ::testing::Test {
   std::thread thread_;
 };
 
-TEST_F(CameraConsoleTest, ShowsThePictureAndWhatItIsLike) {
+TEST_F(CameraConsoleTest, ShowsPictureAndItsQuality) {
   TestSocket socket(port());
   AwaitState(&socket, "live");
   const nlohmann::json sample = socket.Await("sample");
@@ -106,7 +106,7 @@ TEST_F(CameraConsoleTest, ShowsThePictureAndWhatItIsLike) {
   EXPECT_EQ(socket.Await("event")["text"], "kept 320");
 }
 
-TEST_F(CameraConsoleTest, IsRecordedWhenThePageAsks) {
+TEST_F(CameraConsoleTest, RecordsOnRequestOfPage) {
   TestSocket socket(port());
   EXPECT_FALSE(AwaitState(&socket, "live")["recording"]);
   socket.Send(R"({"command": "record", "value": 1})");
@@ -116,7 +116,7 @@ TEST_F(CameraConsoleTest, IsRecordedWhenThePageAsks) {
   EXPECT_FALSE(socket.Await("status")["recording"]);
 }
 
-TEST_F(CameraConsoleTest, MissingCameraIsReportedAndOpenedAgain) {
+TEST_F(CameraConsoleTest, ReportsMissingCameraAndReopensIt) {
   TestSocket socket(port());
   AwaitState(&socket, "live");
   camera_.is_gone = true;
@@ -126,7 +126,7 @@ TEST_F(CameraConsoleTest, MissingCameraIsReportedAndOpenedAgain) {
   AwaitState(&socket, "live");
 }
 
-TEST_F(CameraConsoleTest, AWrongBoardIsRefused) {
+TEST_F(CameraConsoleTest, RefusesWrongBoard) {
   TestSocket socket(port());
   socket.Await("lens");
   socket.Send(R"({"command": "lens", "settings": ["chessboard:9", ""]})");
@@ -135,7 +135,7 @@ TEST_F(CameraConsoleTest, AWrongBoardIsRefused) {
   EXPECT_THAT(lens["error"].get<std::string>(), HasSubstr("chessboard:COLUMNSxROWS:SQUARE"));
 }
 
-TEST_F(CameraConsoleTest, ALensIsCalibratedAndSavedWhereNothingIs) {
+TEST_F(CameraConsoleTest, CalibratesLensAndReplacesFileOnRequestOnly) {
   TestSocket socket(port());
   socket.Await("lens");
   socket.Send(R"({"command": "lens", "settings": [")" + std::string(kBoard) + R"(", ""]})");

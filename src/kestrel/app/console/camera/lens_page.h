@@ -18,14 +18,14 @@
 namespace kestrel {
 
 // The part of the page that calibrates the lens of a live camera: it takes views of the board by
-// itself, says what to show next, and saves the result. All functions are called by one thread,
+// itself, advises what to show next, and saves the result. All functions are called by one thread,
 // which never waits for the search of the board or the estimation.
 class LensPage {
  public:
   struct Options {
     std::string camera;                      // as the user named it, for the next command
     std::string folder;                      // where a calibration is saved
-    LandingPatternDetectorOptions detector;  // of Kestrel's own print
+    LandingPatternDetectorOptions detector;  // detector options for Kestrel's own print
   };
 
   // 'feed' outlives the page.
@@ -53,10 +53,10 @@ class LensPage {
   ConsoleFeed* feed_;
   std::optional<LensBoard> board_;
   std::optional<DistortionModel> model_;
-  std::optional<LensGuide> guide_;  // of the images' size
+  std::optional<LensGuide> guide_;  // guide for the images' size
   cv::Size size_;
   CameraIntrinsics camera_;    // the best guess so far
-  std::size_t guess_ = 0;      // of LensGuesses, as long as Kestrel's own print is not found
+  std::size_t guess_ = 0;      // index in LensGuesses while Kestrel's own print is not found
   std::size_t estimated_ = 0;  // views of the last estimation
   std::optional<LensCalibration> result_;
   std::vector<OverlayShape> shapes_;

@@ -22,7 +22,7 @@ PictureQuality MeasurePicture(const cv::Mat& gray) {
   cv::Laplacian(smooth, edges, CV_16S);
   cv::Scalar ignored, of_edges;
   cv::meanStdDev(edges, ignored, of_edges);
-  constexpr double kMost = 4;  // of a Laplacian of such an image, in deviations of its gray values
+  constexpr double kMost = 4;  // largest spread of its Laplacian, in deviations of the gray values
   quality.sharpness = 100 * of_edges[0] / (kMost * std::max(deviation[0], kLeastDeviation));
   return quality;
 }

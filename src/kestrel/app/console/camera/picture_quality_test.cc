@@ -24,7 +24,7 @@ cv::Mat Blurred(const cv::Mat& image, double sigma_px) {
   return blurred;
 }
 
-TEST(PictureQualityTest, SharpnessFallsWithTheBlur) {
+TEST(PictureQualityTest, SharpnessDecreasesWithBlur) {
   const cv::Mat sharp = Squares(60, 190);
   double before = MeasurePicture(sharp).sharpness;
   EXPECT_LE(before, 100);
@@ -35,12 +35,12 @@ TEST(PictureQualityTest, SharpnessFallsWithTheBlur) {
   }
 }
 
-TEST(PictureQualityTest, SharpnessDoesNotDependOnTheExposure) {
+TEST(PictureQualityTest, SharpnessDoesNotDependOnExposure) {
   EXPECT_NEAR(MeasurePicture(Squares(30, 95)).sharpness, MeasurePicture(Squares(60, 190)).sharpness,
               1);
 }
 
-TEST(PictureQualityTest, BrightnessAndClippedPixelsAreOfTheWholePicture) {
+TEST(PictureQualityTest, MeasuresBrightnessAndClippingOfWholePicture) {
   const PictureQuality half = MeasurePicture(Squares(51, 255));
   EXPECT_NEAR(half.brightness, 60, 0.5);
   EXPECT_NEAR(half.clipped, 50, 0.5);

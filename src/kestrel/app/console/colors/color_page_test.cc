@@ -92,7 +92,7 @@ constexpr char kMarkPurple[] =
 constexpr char kMarkGround[] =
     R"({"colors": "mark", "frame": 0, "color": "", "tool": "rectangle", "size": 0, "points": [0, 0, 20, 20]})";
 
-TEST_F(ColorPageTest, AColourIsMarkedTaughtSeenAndSaved) {
+TEST_F(ColorPageTest, MarksTeachesShowsAndSavesColour) {
   TestSocket socket(server_.port());
   nlohmann::json state = socket.Next("colors").value_or(nlohmann::json());
   EXPECT_EQ(state["names"][3], "green");
@@ -125,7 +125,7 @@ TEST_F(ColorPageTest, AColourIsMarkedTaughtSeenAndSaved) {
   EXPECT_EQ(saved.colors.Classify(HsvFromBgr(kPurple[0], kPurple[1], kPurple[2])), 3U);
 }
 
-TEST_F(ColorPageTest, TheDraftIsThereAgainAndUndoneStrokesAreNot) {
+TEST_F(ColorPageTest, RestoresDraftWithoutUndoneStrokes) {
   {
     TestSocket socket(server_.port());
     ASSERT_TRUE(socket.Next("colors"));
@@ -147,7 +147,7 @@ TEST_F(ColorPageTest, TheDraftIsThereAgainAndUndoneStrokesAreNot) {
   EXPECT_THROW(ColorSession{Source()}, InputError);
 }
 
-TEST_F(ColorPageTest, WhatIsRefusedIsSaidAndChangesNothing) {
+TEST_F(ColorPageTest, RefusedRequestIsReportedAndChangesNothing) {
   TestSocket socket(server_.port());
   ASSERT_TRUE(socket.Next("colors"));
   nlohmann::json state = Ask(&socket, R"({"colors": "teach", "color": "green"})");
@@ -168,7 +168,7 @@ TEST_F(ColorPageTest, WhatIsRefusedIsSaidAndChangesNothing) {
   EXPECT_FALSE(std::filesystem::exists(folder_)) << "nothing is to be kept";
 }
 
-TEST_F(ColorPageTest, RevertingAndSavingAgainKeepVersions) {
+TEST_F(ColorPageTest, KeepsVersionsWhenRevertedAndSavedAgain) {
   TestSocket socket(server_.port());
   ASSERT_TRUE(socket.Next("colors"));
   Ask(&socket, R"({"colors": "save"})");
@@ -183,7 +183,7 @@ TEST_F(ColorPageTest, RevertingAndSavingAgainKeepVersions) {
   EXPECT_EQ(ReadFile(folder_ + "/objects.yaml.1"), PrintObjectModel(DefaultObjectModel()));
 }
 
-TEST_F(ColorPageTest, PicturesAreOfTheFrameInColour) {
+TEST_F(ColorPageTest, SendsPicturesOfFrameInColour) {
   TestBrowser browser(server_.port());
   const std::string jpeg = browser.Send(browser.Get("/export/picture-1.jpg")).body();
   const cv::Mat picture = DecodeImage(jpeg, "picture");
@@ -193,7 +193,7 @@ TEST_F(ColorPageTest, PicturesAreOfTheFrameInColour) {
   EXPECT_EQ(another.Send(another.Get("/export/labels-3.bin")).result_int(), 404u);
 }
 
-TEST_F(ColorPageTest, OfARecordingNoFrameIsKept) {
+TEST_F(ColorPageTest, KeepsNoFrameOfRecording) {
   TestSocket socket(server_.port());
   EXPECT_EQ((*socket.Next("colors"))["most_kept"], 0);
   const nlohmann::json state = Ask(&socket, R"({"colors": "keep"})");
@@ -201,7 +201,7 @@ TEST_F(ColorPageTest, OfARecordingNoFrameIsKept) {
   EXPECT_EQ(state["frames"], kPictures);
 }
 
-TEST_F(ColorPageTest, OfACameraFramesAreKeptAndMarked) {
+TEST_F(ColorPageTest, KeepsAndMarksFramesOfCamera) {
   page_.reset();
   ColorSource camera = Source();
   camera.frame_count = 0;

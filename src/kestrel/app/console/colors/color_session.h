@@ -19,7 +19,7 @@ namespace kestrel {
 
 // The frames and the model that a session of teaching works on.
 struct ColorSource {
-  std::string recording;    // name that tells it from others
+  std::string recording;    // name that identifies it
   std::size_t frame_count;  // at least 1; 0 for a live camera
   // Returns the frame's image as it was taken, CV_8UC3. Throws InputError when it cannot.
   MarkedPixels::ReadFrame read;
@@ -27,7 +27,7 @@ struct ColorSource {
   // Folder for the model, its versions and the draft; created when something is saved.
   std::string folder;
   // For a live camera only: keeps its newest image as an additional frame for 'read' and returns a
-  // sentence that says so; throws InputError when it cannot.
+  // sentence that confirms it; throws InputError when it cannot.
   std::function<std::string()> keep = {};
   // For a live camera only: returns what the camera adjusts by itself, one sentence each.
   std::function<std::vector<std::string>()> warn = {};
@@ -41,7 +41,7 @@ class ColorSession {
   // a valid draft.
   explicit ColorSession(ColorSource source);
 
-  // Executes a request. A refused request changes nothing; state() says why it was refused.
+  // Executes a request. A refused request changes nothing; state() has the reason.
   void Obey(const ColorRequest& request);
   const ConsoleColors& state() const { return state_; }
   bool is_live() const { return source_.keep != nullptr; }

@@ -23,8 +23,8 @@ class KeptFrames {
   explicit KeptFrames(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
   // Saves the image (CV_8UC3) unchanged, with the time of its capture in its file name. Returns a
-  // sentence that says what was done. Throws InputError when it cannot be saved, or when there are
-  // kMost frames already: frames are never replaced.
+  // sentence that names the frame and its file. Throws InputError when it cannot be saved, or when
+  // there are kMost frames already: frames are never replaced.
   std::string Keep(const cv::Mat& image, Time captured);
 
   // Reads a frame by its index, from 0. Throws InputError when it cannot be read.

@@ -30,7 +30,7 @@ class KeptFramesTest : public testing::Test {
   KeptFrames kept_{folder_};
 };
 
-TEST_F(KeptFramesTest, FramesAreKeptPixelByPixelInTheirOrder) {
+TEST_F(KeptFramesTest, KeepsFramesLosslesslyInOrder) {
   EXPECT_FALSE(fs::exists(folder_)) << "nothing is kept yet";
   const std::string said = kept_.Keep(Image(3), TimeFromNanoseconds(77));
   EXPECT_THAT(said, HasSubstr("frame 1 is kept as "));
@@ -42,7 +42,7 @@ TEST_F(KeptFramesTest, FramesAreKeptPixelByPixelInTheirOrder) {
   EXPECT_THROW(kept_.Read(0), InputError);
 }
 
-TEST_F(KeptFramesTest, OfTooManyTheLastIsRefusedAndNoneReplaced) {
+TEST_F(KeptFramesTest, RefusesFrameBeyondLimitAndReplacesNone) {
   for (std::size_t i = 0; i < KeptFrames::kMost; ++i) {
     kept_.Keep(Image(static_cast<int>(i)), TimeFromNanoseconds(5));
   }
@@ -51,7 +51,7 @@ TEST_F(KeptFramesTest, OfTooManyTheLastIsRefusedAndNoneReplaced) {
   EXPECT_EQ(cv::norm(kept_.Read(31), Image(31), cv::NORM_INF), 0);
 }
 
-TEST_F(KeptFramesTest, WhatCannotBeMarkedIsRefused) {
+TEST_F(KeptFramesTest, RefusesEmptyAndGrayImages) {
   EXPECT_THAT(Refusal({}), HasSubstr("there is no image yet"));
   EXPECT_THAT(Refusal(cv::Mat(4, 4, CV_8UC1, cv::Scalar(1))), HasSubstr("has no colour"));
   EXPECT_FALSE(fs::exists(folder_));

@@ -49,7 +49,7 @@ class FlightConsoleTest : public testing::Test {
                          FlightExamination(PaperCalibration(), ".", 0)};
 };
 
-TEST_F(FlightConsoleTest, ShowsWhatTheVisionSees) {
+TEST_F(FlightConsoleTest, ShowsVisionResults) {
   TestSocket socket(PortOf(console_));
   const auto hello = socket.Next("hello");
   ASSERT_TRUE(hello);
@@ -91,7 +91,7 @@ TEST_F(FlightConsoleTest, ShowsWhatTheVisionSees) {
 }
 
 // A page that is opened later shows it as well.
-TEST(FlightConsoleOfAHunt, ShowsWhatTheTeamKnows) {
+TEST(FlightConsoleOfAHunt, ShowsMapOfTeam) {
   FlightConsole console(FreePort(), "a hunt", HuntView{DefaultObjectModel()},
                         FlightExamination(PaperCalibration(), ".", 0));
   TeamObject known;
@@ -113,7 +113,7 @@ TEST(FlightConsoleOfAHunt, ShowsWhatTheTeamKnows) {
   EXPECT_EQ(object["holder"], "two");
 }
 
-TEST_F(FlightConsoleTest, ShowsTheDoctorsChecks) {
+TEST_F(FlightConsoleTest, ShowsChecksOfDoctor) {
   TestSocket socket(PortOf(console_));
   ASSERT_TRUE(socket.Next("hello"));
   const auto doctor = socket.Next("doctor");
@@ -122,7 +122,7 @@ TEST_F(FlightConsoleTest, ShowsTheDoctorsChecks) {
   EXPECT_EQ((*doctor)["checks"][0]["verdict"], "not checked");
 }
 
-TEST_F(FlightConsoleTest, ObeysWhatThePageAsks) {
+TEST_F(FlightConsoleTest, ExecutesRequestsOfPage) {
   TestSocket socket(PortOf(console_));
   ASSERT_TRUE(socket.Next("hello"));
   // Requests wait until somebody answers them.
@@ -172,7 +172,7 @@ TEST_F(FlightConsoleTest, ObeysWhatThePageAsks) {
   EXPECT_EQ((*saved)["saved"], "landing.target.id=3");
 }
 
-TEST_F(FlightConsoleTest, KeepsNoImageWhenNobodyLooks) {
+TEST_F(FlightConsoleTest, KeepsNoImageWithoutViewer) {
   const Frame frame = GrayFrame();
   console_.Take(ObservationOf(frame, LandingObservation()));
   EXPECT_EQ(frame.image.u->refcount, 1);
@@ -185,7 +185,7 @@ Frame ColorFrame() {
   return {"", Now(), image};
 }
 
-TEST(HuntConsoleTest, FramesOfTheCameraAreKeptAndTaught) {
+TEST(HuntConsoleTest, KeepsFramesAndTeachesColours) {
   namespace fs = std::filesystem;
   const TestFolder test_folder;
   const fs::path folder = test_folder.path();
@@ -231,7 +231,7 @@ TEST(HuntConsoleTest, FramesOfTheCameraAreKeptAndTaught) {
   EXPECT_TRUE(fs::exists(folder / "taught" / "objects.yaml"));
 }
 
-TEST(FlightHealthTest, EarlyChecksAreNotFailedAndLaterWaitingIsReported) {
+TEST(FlightHealthTest, ReportsWaitingOnlyAfterStartUp) {
   FlightHealth health;
   FlightReport state;
   state.autopilot.emplace();
@@ -281,7 +281,7 @@ TEST(FlightHealthTest, ComparesSeconds) {
   EXPECT_EQ(verdict("autopilot"), "wrong");
 }
 
-TEST(SourceWatchTest, TellsTheAgesOfWhatTheyGaveLast) {
+TEST(SourceWatchTest, ReportsAgeOfLastDataOfEachSource) {
   const Time start = Now();
   SourceWatch watch;
   FlightReport report;
@@ -303,7 +303,7 @@ TEST(SourceWatchTest, TellsTheAgesOfWhatTheyGaveLast) {
   EXPECT_EQ(watch.Update(report, start + 3s).ages[1].age, Duration(2990ms)) << "those of others";
 }
 
-TEST(FlightStatusTest, SaysWhatMattersMost) {
+TEST(FlightStatusTest, ShowsMostImportantState) {
   const ViewStatus vision{"tracking", "", false};
   FlightReport state;
   EXPECT_EQ(FlightStatus(state, vision), vision);
@@ -319,7 +319,7 @@ TEST(FlightStatusTest, SaysWhatMattersMost) {
   EXPECT_EQ(FlightStatus(state, vision), (ViewStatus{"blind", "the camera is gone", true}));
 }
 
-TEST(FlightStatusTest, AnEndIsTheLastWord) {
+TEST(FlightStatusTest, KeepsEndOfFlight) {
   FlightReport report;
   report.trouble = "the camera is gone";
   report.recording = "flight";
@@ -330,7 +330,7 @@ TEST(FlightStatusTest, AnEndIsTheLastWord) {
   EXPECT_EQ(status.replay, "flight");
 }
 
-TEST(VehicleTest, ShowsWhatItsAutopilotReports) {
+TEST(VehicleTest, ShowsReportsOfAutopilot) {
   FlightReport report;
   EXPECT_FALSE(VehicleOf(report));
   AutopilotState& autopilot = report.autopilot.emplace();

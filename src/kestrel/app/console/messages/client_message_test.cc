@@ -8,7 +8,7 @@
 namespace kestrel {
 namespace {
 
-TEST(ClientMessageTest, ReadsWhatThePageSends) {
+TEST(ClientMessageTest, ReadsMessagesOfPage) {
   EXPECT_EQ(std::get<ImageAck>(*ParseClientMessage(R"({"ack": 7})")).sequence, 7u);
   EXPECT_TRUE(std::get<ImageWish>(*ParseClientMessage(R"({"images": true})")).is_wanted);
   EXPECT_FALSE(std::get<ImageWish>(*ParseClientMessage(R"({"images": false})")).is_wanted);
@@ -39,7 +39,7 @@ TEST(ClientMessageTest, ReadsWhatThePageSends) {
   EXPECT_FALSE(ParseClientMessage(R"({"command": "settings"})"));
 }
 
-TEST(ClientMessageTest, SettingsAreBounded) {
+TEST(ClientMessageTest, LimitsSettings) {
   const auto detect = [](int count, int size) {
     std::string list;
     for (int i = 0; i < count; ++i) list += ",\"" + std::string(size, 'x') + "\"";
@@ -58,7 +58,7 @@ std::string Mark(const std::string& frame, const std::string& tool, const std::s
          R"(", "size": )" + size + R"(, "points": )" + points + "}";
 }
 
-TEST(ClientMessageTest, ReadsWhatThePageOfColoursSends) {
+TEST(ClientMessageTest, ReadsMessagesOfColourPage) {
   const auto mark =
       std::get<ColorRequest>(*ParseClientMessage(Mark("3", "brush", "4.5", "[1, 2, 3, 4]")));
   EXPECT_EQ(mark.action, ColorAction::kMark);
@@ -73,7 +73,7 @@ TEST(ClientMessageTest, ReadsWhatThePageOfColoursSends) {
             ColorAction::kUndo);
 }
 
-TEST(ClientMessageTest, StrokesAreBounded) {
+TEST(ClientMessageTest, LimitsStrokes) {
   const auto points = [](int count) {
     std::string list = "[1";
     for (int i = 1; i < count; ++i) list += ",1";
@@ -95,7 +95,7 @@ TEST(ClientMessageTest, StrokesAreBounded) {
   }
 }
 
-TEST(ClientMessageTest, RefusesAllElse) {
+TEST(ClientMessageTest, RefusesMalformedMessages) {
   for (const char* text : {"",
                            "{",
                            "[]",
@@ -128,7 +128,7 @@ TEST(ClientMessageTest, RefusesAllElse) {
   }
 }
 
-TEST(ClientMessageTest, DeepNestingCostsNoStack) {
+TEST(ClientMessageTest, RefusesDeepNestingWithoutStackOverflow) {
   EXPECT_FALSE(ParseClientMessage(std::string(1 << 20, '[')));
   std::string text = "{\"ack\":";
   text.append(10000, '[').append(10000, ']').append("}");

@@ -28,7 +28,7 @@ struct ConsoleColors {
   std::vector<ColorComponent> components;
   double max_distance = 3;  // limit of a component, standard deviations
   std::vector<std::string> warnings;
-  std::vector<std::string> difference;  // of the model from the file's, in lines
+  std::vector<std::string> difference;  // lines in which the model differs from the file
   std::string file;                     // file that the model is saved to
   std::vector<std::string> versions;    // kept versions of the model, the newest last
   std::string answer;                   // answer to the last request, in words

@@ -41,13 +41,13 @@ struct ConsoleSources {
     ValueSource source = ValueSource::kFrames;
     std::optional<Duration> age;
   };
-  Time time;  // of these ages
+  Time time;  // time at which the ages were measured
   std::vector<Age> ages;
 };
 
 // All samples of a recording: its plots at once.
 struct ConsoleSeries {
-  std::vector<Duration> times;              // of the frames, since the first
+  std::vector<Duration> times;              // frame times since the first frame
   std::vector<std::vector<double>> values;  // for each series its values; NaN where unknown
 };
 

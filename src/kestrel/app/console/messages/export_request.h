@@ -27,7 +27,7 @@ struct ExportRequest {
   std::size_t last = 0;    // last frame of a clip; not before 'number'
 };
 
-// True when it asks for a video, which takes long.
+// True when it requests a video, which takes long.
 bool IsClip(const ExportRequest& request);
 
 // True when the page of colours answers it.

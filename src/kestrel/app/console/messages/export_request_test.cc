@@ -19,7 +19,7 @@ TEST(ExportRequestTest, ReadsNumbersOfFramesAndRuns) {
   EXPECT_EQ(calibration->number, 3u);
 }
 
-TEST(ExportRequestTest, ReadsTheTwoNumbersOfAClip) {
+TEST(ExportRequestTest, ReadsBothNumbersOfClip) {
   const auto clip = ParseExportPath("/export/clip-12-80.mp4");
   ASSERT_TRUE(clip);
   EXPECT_EQ(clip->kind, ExportRequest::Kind::kClip);
@@ -32,7 +32,7 @@ TEST(ExportRequestTest, ReadsTheTwoNumbersOfAClip) {
   EXPECT_FALSE(IsClip(*ParseExportPath("/export/overlays-7.png")));
 }
 
-TEST(ExportRequestTest, RefusesAllElse) {
+TEST(ExportRequestTest, RefusesOtherPaths) {
   for (const char* path : {"",
                            "/",
                            "/export/",

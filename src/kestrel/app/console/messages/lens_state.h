@@ -13,13 +13,13 @@ namespace kestrel {
 
 // The guided calibration of a live camera's lens.
 struct ConsoleLens {
-  // The lens as the views so far tell it.
+  // The lens as estimated from the views so far.
   struct Estimate {
     double focal_px = 0;
     double focal_sigma_px = 0;  // standard deviation
-    double rms_px = 0;          // of the residuals
+    double rms_px = 0;          // root mean square of the residuals
     std::size_t views = 0;      // that it is made of
-    std::string model;          // of the distortion
+    std::string model;          // distortion model
     std::vector<std::string> warnings;
   };
 
@@ -37,7 +37,7 @@ struct ConsoleLens {
   std::string saved;     // path of the saved file
   std::string next;      // command that uses it
   std::string save_error;
-  bool exists = false;  // the file to be saved exists: a save that replaces it was not asked for
+  bool exists = false;  // the file exists, and replacing it was not requested
 };
 
 }  // namespace kestrel

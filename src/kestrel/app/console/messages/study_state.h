@@ -11,10 +11,10 @@ namespace kestrel {
 
 // The result of a variant for a recording. Nothing is known when its unit is not done, or failed.
 struct StudyOutcome {
-  std::string key = {};                    // of the unit; empty: not done
+  std::string key = {};                    // key of the unit; empty: not done
   std::string failure = {};                // why it failed; empty: it did not
   std::int64_t frames = 0;                 // images of the recording
-  std::int64_t found_count = 0;            // of what should be found
+  std::int64_t found_count = 0;            // number of found targets
   std::optional<double> found = {};        // share of what should be found, 0 to 1
   std::optional<double> false_found = {};  // false detections for each image with something to find
   std::optional<std::int64_t> false_count = {};

@@ -67,7 +67,7 @@ class ClipMakerTest : public testing::Test {
   ClipMaker maker_{&feed_};
 };
 
-TEST_F(ClipMakerTest, AClipHasItsFramesAndIsRemovedWithTheLastWhoHoldsIt) {
+TEST_F(ClipMakerTest, ClipHasFramesAndIsRemovedWithItsLastOwner) {
   Asked asked;
   maker_.Make(Ask(&asked), Grays(9));
   ASSERT_TRUE(Told());
@@ -86,7 +86,7 @@ TEST_F(ClipMakerTest, AClipHasItsFramesAndIsRemovedWithTheLastWhoHoldsIt) {
   EXPECT_FALSE(std::filesystem::exists(std::filesystem::path(path).parent_path()));
 }
 
-TEST_F(ClipMakerTest, OneAtATime) {
+TEST_F(ClipMakerTest, RefusesSecondClipAtATime) {
   Asked first, second;
   maker_.Make(Ask(&first), Held());
   maker_.Make(Ask(&second), Grays(1));
@@ -97,7 +97,7 @@ TEST_F(ClipMakerTest, OneAtATime) {
   EXPECT_TRUE(first.answer->file);
 }
 
-TEST_F(ClipMakerTest, WhatNobodyWaitsForIsEnded) {
+TEST_F(ClipMakerTest, CancelsClipNobodyWaitsFor) {
   Asked gone, next;
   maker_.Make(Ask(&gone), Held());
   ASSERT_TRUE(Eventually([&] { return is_begun_.load(); }));
@@ -116,7 +116,7 @@ TEST_F(ClipMakerTest, WhatNobodyWaitsForIsEnded) {
   EXPECT_FALSE(gone.answer);
 }
 
-TEST_F(ClipMakerTest, WhyThereIsNoneIsSaid) {
+TEST_F(ClipMakerTest, ReportsWhyClipFails) {
   Asked asked;
   const auto open = []() -> Clip::Picture {
     return [](std::size_t) -> cv::Mat { throw InputError("frame7.png: no such file"); };

@@ -23,7 +23,7 @@ class ForwardSource : public FrameSource {
   int count_ = 0;
 };
 
-TEST(FrameWinderTest, GoesToAndFroInWhatOnlyGoesForward) {
+TEST(FrameWinderTest, SeeksBothWaysInForwardOnlySource) {
   int opened = 0;
   FrameWinder winder([&] {
     ++opened;

@@ -6,7 +6,7 @@
 namespace kestrel {
 namespace {
 
-TEST(StandingObjectsTest, TheMapHasWhatStands) {
+TEST(StandingObjectsTest, MapHasStandingObjectsOnly) {
   const std::string map =
       "id,class,score,p_x_m,p_y_m,p_z_m,v_x_mps,v_y_mps,v_z_mps,sigma_m,detections,first_seen_ns,"
       "last_seen_ns,moving,shape,digit,digit_probability\n"

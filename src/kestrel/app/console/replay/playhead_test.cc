@@ -11,7 +11,7 @@ using namespace std::chrono_literals;
 // Two frames 100 ms apart, and one a second later.
 Playhead ThreeFrames() { return Playhead({0ms, 100ms, 1100ms}); }
 
-TEST(PlayheadTest, SeeksTheNearestFrame) {
+TEST(PlayheadTest, SeeksNearestFrame) {
   Playhead head = ThreeFrames();
   for (const auto& [seconds, frame] :
        {std::pair{-1e300, 0U}, {0.04, 0U}, {0.06, 1U}, {0.59, 1U}, {0.61, 2U}, {1e300, 2U}}) {
@@ -20,7 +20,7 @@ TEST(PlayheadTest, SeeksTheNearestFrame) {
   }
 }
 
-TEST(PlayheadTest, StepsNoFurtherThanToTheEndsAndHolds) {
+TEST(PlayheadTest, StepsWithinEndsAndHolds) {
   Playhead head = ThreeFrames();
   head.Play(2);
   head.Step(1);
@@ -32,7 +32,7 @@ TEST(PlayheadTest, StepsNoFurtherThanToTheEndsAndHolds) {
   EXPECT_EQ(head.frame(), 0u);
 }
 
-TEST(PlayheadTest, PlaysByTimeAndHoldsAtTheEnds) {
+TEST(PlayheadTest, PlaysByTimeAndHoldsAtEnds) {
   Playhead head = ThreeFrames();
   EXPECT_FALSE(head.Advance(10s)) << "it is held";
   head.Play(0.5);

@@ -120,7 +120,7 @@ TEST_F(RecordedAutopilotTest, ListsTextsAndChangesAtTheirTimes) {
                           is(9s, EventLevel::kInfo, "mode LAND, disarmed")));
 }
 
-TEST_F(RecordedAutopilotTest, ShowsThatHeartbeatsAreMissing) {
+TEST_F(RecordedAutopilotTest, ShowsMissingHeartbeats) {
   AskForTime(0);
   SayHeartbeat(1, kLoiter, true);
   SayBattery(1.5, 12.5, 80);
@@ -134,7 +134,7 @@ TEST_F(RecordedAutopilotTest, ShowsThatHeartbeatsAreMissing) {
   EXPECT_EQ(FactOf(autopilot.At(kBegin + 9s), "mode"), "LAND");
 }
 
-TEST_F(RecordedAutopilotTest, ShowsWhatIsLeftOfADamagedLog) {
+TEST_F(RecordedAutopilotTest, ShowsReadablePartOfDamagedLog) {
   Fly();
   std::string& bytes = log_.bytes();
   bytes.resize(bytes.size() - 5);
@@ -150,14 +150,14 @@ TEST_F(RecordedAutopilotTest, ShowsWhatIsLeftOfADamagedLog) {
   EXPECT_EQ(autopilot.events.front().level, EventLevel::kWarning);
 }
 
-TEST_F(RecordedAutopilotTest, SaysWhyALogIsNotShown) {
+TEST_F(RecordedAutopilotTest, ReportsWhyLogIsNotShown) {
   SayHeartbeat(1, kLand, true);
   const RecordedAutopilot autopilot = Read();
   EXPECT_THAT(autopilot.states, IsEmpty());
   EXPECT_THAT(autopilot.fault, HasSubstr("has no TIMESYNC of Kestrel"));
 }
 
-TEST_F(RecordedAutopilotTest, KnowsNothingWithoutALog) {
+TEST_F(RecordedAutopilotTest, IsEmptyWithoutLog) {
   const RecordedAutopilot autopilot = ReadRecordedAutopilot({folder_.path()}, kBegin, kEnd);
   EXPECT_THAT(autopilot.states, IsEmpty());
   EXPECT_THAT(autopilot.events, IsEmpty());

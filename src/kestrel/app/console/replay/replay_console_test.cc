@@ -146,7 +146,7 @@ TEST_F(ReplayConsoleTest, SeeksStepsAndPlays) {
   EXPECT_TRUE(IsTold(&socket, 0, 0));
 }
 
-TEST_F(ReplayConsoleTest, PlotsOfTheWholeRecordingAreThereAtOnce) {
+TEST_F(ReplayConsoleTest, SendsPlotsOfWholeRecordingAtOnce) {
   TestSocket socket(port());
   const auto series = socket.Next("series");
   ASSERT_TRUE(series);
@@ -154,7 +154,7 @@ TEST_F(ReplayConsoleTest, PlotsOfTheWholeRecordingAreThereAtOnce) {
   for (const auto& values : (*series)["values"]) EXPECT_EQ(values.size(), kFrames);
 }
 
-TEST_F(ReplayConsoleTest, ShowsTheVehicleOfTheFrame) {
+TEST_F(ReplayConsoleTest, ShowsVehicleStateAtFrame) {
   TestSocket socket(port());
   const auto is_at = [&socket](double seconds, const std::string& mode) {
     socket.Send(fmt::format(R"({{"command": "seek", "value": {}}})", seconds));
@@ -197,7 +197,7 @@ TEST_F(ReplayConsoleTest, DetectsAgainWithOtherOptions) {
   EXPECT_EQ(shapes[0]["label"], "ring 0.93");
 }
 
-TEST_F(ReplayConsoleTest, SaysWhatEachRunFoundInTheFrame) {
+TEST_F(ReplayConsoleTest, SendsFindingsOfEachRunForFrame) {
   TestSocket socket(port());
   const auto next = [&socket](std::size_t runs) {
     while (const auto findings = socket.Next("findings")) {
@@ -213,7 +213,7 @@ TEST_F(ReplayConsoleTest, SaysWhatEachRunFoundInTheFrame) {
   EXPECT_EQ(both["runs"][1][0]["value"], "yes");
 }
 
-TEST_F(ReplayConsoleTest, TheMapHasWhatWasSeenByThen) {
+TEST_F(ReplayConsoleTest, MapHasObjectsSeenUntilFrame) {
   TestSocket socket(port());
   const auto mapped = [&socket](int frames) {
     socket.Send(fmt::format(R"({{"command": "step", "value": {}}})", frames));
@@ -226,7 +226,7 @@ TEST_F(ReplayConsoleTest, TheMapHasWhatWasSeenByThen) {
   EXPECT_EQ(map["mapped"][0]["label"], "red");
 }
 
-TEST_F(ReplayConsoleTest, GivesAClipAway) {
+TEST_F(ReplayConsoleTest, ExportsClip) {
   TestSocket socket(port());
   ASSERT_TRUE(socket.Next("timeline"));
   TestBrowser browser(port());
@@ -249,7 +249,7 @@ TEST_F(ReplayConsoleTest, GivesAClipAway) {
   EXPECT_EQ(browser.Send(browser.Get("/export/clip-3-20.mp4")).result_int(), 404u);
 }
 
-TEST_F(ReplayConsoleTest, AClipWhoseFrameIsGoneIsRefused) {
+TEST_F(ReplayConsoleTest, RefusesClipWithMissingFrame) {
   missing_ = 7;
   TestSocket socket(port());
   ASSERT_TRUE(socket.Next("timeline"));
@@ -259,7 +259,7 @@ TEST_F(ReplayConsoleTest, AClipWhoseFrameIsGoneIsRefused) {
   EXPECT_EQ(refused.body(), "frame7.png: no such file\n");
 }
 
-TEST_F(ReplayConsoleTest, GivesFramesAndTablesAway) {
+TEST_F(ReplayConsoleTest, ExportsFramesAndTables) {
   TestSocket socket(port());
   socket.Send(R"({"command": "detect", "settings": []})");
   ASSERT_TRUE(NextSecond(&socket, "done").is_object());
@@ -281,7 +281,7 @@ TEST_F(ReplayConsoleTest, GivesFramesAndTablesAway) {
   EXPECT_EQ(get("/export/frame-20.png").result_int(), 404u) << "the last is 19";
 }
 
-TEST_F(ReplayConsoleTest, ExportsAreForThisPageOnly) {
+TEST_F(ReplayConsoleTest, RefusesExportToOtherPages) {
   TestSocket socket(port());
   ASSERT_TRUE(socket.Next("timeline"));
   for (const char* path : {"/export/../frame-1.png", "/export/frame-x.png", "/export/"}) {
@@ -300,7 +300,7 @@ TEST_F(ReplayConsoleTest, ExportsAreForThisPageOnly) {
   EXPECT_EQ(rebound.Send(foreign).result_int(), 421u);
 }
 
-TEST_F(ReplayConsoleTest, ASecondRunIsCancelledWhileThePagePlaysOn) {
+TEST_F(ReplayConsoleTest, CancelsSecondRunWhilePagePlaysOn) {
   TestSocket socket(port());
   socket.Send(R"({"command": "detect", "settings": ["landing.hint_age_s=8"]})");
   for (;;) {
@@ -319,7 +319,7 @@ TEST_F(ReplayConsoleTest, ASecondRunIsCancelledWhileThePagePlaysOn) {
   EXPECT_TRUE(NextSecond(&socket, "done").is_object());
 }
 
-TEST_F(ReplayConsoleTest, WhyASecondRunFailsIsSaid) {
+TEST_F(ReplayConsoleTest, ReportsWhySecondRunFails) {
   TestSocket socket(port());
   socket.Send(R"({"command": "detect", "settings": ["landing.hint_age_s=7"]})");
   EXPECT_EQ(NextSecond(&socket, "failed")["error"], "frame3.png: no such file");
@@ -328,7 +328,7 @@ TEST_F(ReplayConsoleTest, WhyASecondRunFailsIsSaid) {
             "fly.keep_folder: no option that the page may change");
 }
 
-TEST_F(ReplayConsoleTest, AFrameWhoseFileIsGoneIsSaid) {
+TEST_F(ReplayConsoleTest, ReportsFrameWithMissingFile) {
   missing_ = 7;
   TestSocket socket(port());
   socket.Send(R"({"command": "seek", "value": 0.7})");

@@ -20,7 +20,7 @@ std::string Marks(const std::vector<ReplayFrame>& frames) {
   return marks;
 }
 
-TEST(MarkLostTest, LostIsBetweenFoundAndFalseWhatTheTrackDoesNotTake) {
+TEST(MarkLostTest, MarksGapsAsLostAndRejectedDetectionsAsFalse) {
   std::vector<ReplayFrame> frames;
   for (int i = 0; i < 12; ++i) {
     LandingObservation observation;
@@ -38,7 +38,7 @@ TEST(MarkLostTest, LostIsBetweenFoundAndFalseWhatTheTrackDoesNotTake) {
   EXPECT_EQ(Marks(nothing), "---");
 }
 
-TEST(FirstFoundTest, IsTheFirstFrameWithSomethingToSee) {
+TEST(FirstFoundTest, ReturnsFirstFrameWithDetection) {
   std::vector<ReplayFrame> frames(4);
   EXPECT_EQ(FirstFound(frames), 0u);
   frames[1].mark = FrameMark::kLost;
@@ -46,7 +46,7 @@ TEST(FirstFoundTest, IsTheFirstFrameWithSomethingToSee) {
   EXPECT_EQ(FirstFound(frames), 2u);
 }
 
-TEST(ReplayFrameTest, AHuntShowsItsObjects) {
+TEST(ReplayFrameTest, ShowsObjectsOfHunt) {
   HuntView view;
   view.model.classes.resize(2);
   view.model.classes[1].name = "blue";
@@ -71,7 +71,7 @@ TEST(ReplayFrameTest, AHuntShowsItsObjects) {
   EXPECT_EQ(frame.sample.values[0], 1);
 }
 
-TEST(ReplayFrameTest, ShapesSayWhichRunTheyAreOf) {
+TEST(ReplayFrameTest, ShapesNameTheirRun) {
   ReplayResult first, second;
   first.frames.resize(2);
   second.frames.resize(2);

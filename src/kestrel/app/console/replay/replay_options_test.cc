@@ -9,7 +9,7 @@
 namespace kestrel {
 namespace {
 
-TEST(ReplayOptionsTest, EveryOptionThatIsOfferedCanBeSet) {
+TEST(ReplayOptionsTest, AcceptsEveryOfferedOption) {
   LandingPipelineOptions options;
   options.detector.min_quality = 0.75;
   const ConsoleOptionList list = ReplayOptions(options);
@@ -23,7 +23,7 @@ TEST(ReplayOptionsTest, EveryOptionThatIsOfferedCanBeSet) {
   EXPECT_EQ(same.tracker.max_speed_mps, options.tracker.max_speed_mps);
 }
 
-TEST(ReplayOptionsTest, AHuntHasOptionsOfItsOwn) {
+TEST(ReplayOptionsTest, OffersOptionsOfHunt) {
   HuntPipelineOptions options;
   options.detector.min_pixels = 40;
   const ConsoleOptionList list = ReplayOptions(options);
@@ -40,7 +40,7 @@ TEST(ReplayOptionsTest, AHuntHasOptionsOfItsOwn) {
   }
 }
 
-TEST(ReplayOptionsTest, AllElseIsRefused) {
+TEST(ReplayOptionsTest, RefusesOtherSettings) {
   for (const char* setting :
        {"", "=", "landing.", "landing.pose_gap_s=1000000000", "still=true", "landing.still",
         "landing.still=perhaps", "landing.detector.min_quality=2", "landing.detector.min_ring_px=x",

@@ -54,7 +54,7 @@ StudyConsole::StudyConsole(const ConsoleOptions& options, const std::string& tit
 
 void StudyConsole::Play(const std::function<bool()>& is_stopped) {
   ReadTable(0, std::min<std::size_t>(1, variants_.size() - 1));
-  TellReplay(StudyReplayState::kNone);
+  ReportReplay(StudyReplayState::kNone);
   while (!is_stopped()) {
     while (const auto command = feed_.TakeCommand()) Obey(*command);
     FollowFirstRun();
@@ -72,7 +72,7 @@ void StudyConsole::Obey(const ConsoleCommand& command) {
   if (command.kind == ConsoleCommandKind::kOpen) return OpenRow(command.value);
   if (player_) return player_->Obey(command);
   if (command.kind == ConsoleCommandKind::kCancel && first_run_.Cancel()) {
-    TellReplay(StudyReplayState::kCancelled);
+    ReportReplay(StudyReplayState::kCancelled);
   }
 }
 
@@ -117,7 +117,7 @@ void StudyConsole::OpenRow(double number) {
   try {
     StartFirstRun(row);
   } catch (const InputError& error) {
-    TellReplay(StudyReplayState::kFailed, error.what());
+    ReportReplay(StudyReplayState::kFailed, error.what());
   }
 }
 
@@ -130,19 +130,19 @@ void StudyConsole::StartFirstRun(const StudyRow& row) {
   before_ = OpenFor(row, study_.before);
   after_ = OpenFor(row, study_.after);
   first_run_.Start("first run", RecordingOf(before_.choice, *before_.search).detect({}));
-  TellReplay(StudyReplayState::kRunning);
+  ReportReplay(StudyReplayState::kRunning);
 }
 
 void StudyConsole::FollowFirstRun() {
   if (auto outcome = first_run_.TakeOutcome()) {
-    if (!outcome->result) return TellReplay(StudyReplayState::kFailed, outcome->error);
+    if (!outcome->result) return ReportReplay(StudyReplayState::kFailed, outcome->error);
     if (outcome->result->frames.empty()) {
-      return TellReplay(StudyReplayState::kFailed, "the recording has no images to show");
+      return ReportReplay(StudyReplayState::kFailed, "the recording has no images to show");
     }
     return StartReplay(*std::move(outcome->result));
   }
   if (first_run_.is_running() && Now() - told_ > kProgressInterval) {
-    TellReplay(StudyReplayState::kRunning);
+    ReportReplay(StudyReplayState::kRunning);
   }
 }
 
@@ -156,12 +156,12 @@ void StudyConsole::StartReplay(ReplayResult first) {
     player_->StartSecondRun({replay_.after}, RecordingOf(after_.choice, *after_.search).detect({}));
   } catch (const InputError& error) {  // the recording is gone
     player_.reset();
-    return TellReplay(StudyReplayState::kFailed, error.what());
+    return ReportReplay(StudyReplayState::kFailed, error.what());
   }
-  TellReplay(StudyReplayState::kOpen);
+  ReportReplay(StudyReplayState::kOpen);
 }
 
-void StudyConsole::TellReplay(StudyReplayState state, const std::string& error) {
+void StudyConsole::ReportReplay(StudyReplayState state, const std::string& error) {
   told_ = Now();
   replay_.state = state;
   replay_.done = first_run_.done();

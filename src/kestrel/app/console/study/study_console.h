@@ -40,7 +40,7 @@ class StudyConsole {
   // As WebServer::urls.
   std::vector<std::string> urls() const { return server_.urls(); }
 
-  // Shows what the users ask for, until 'is_stopped' returns true; it is called often.
+  // Shows what the users request, until 'is_stopped' returns true; it is called often.
   void Play(const std::function<bool()>& is_stopped);
 
  private:
@@ -52,7 +52,7 @@ class StudyConsole {
   void StartFirstRun(const StudyRow& row);
   void FollowFirstRun();
   void StartReplay(ReplayResult first);
-  void TellReplay(StudyReplayState state, const std::string& error = "");
+  void ReportReplay(StudyReplayState state, const std::string& error = "");
 
   StudyResults results_;
   std::vector<StudyVariant> variants_;

@@ -15,7 +15,8 @@
 namespace kestrel {
 namespace {
 
-// The page of a study of three flights of which none can be opened; opening tells which was asked.
+// The page of a study of three flights of which none can be opened; the error names the requested
+// one.
 class StudyConsoleTest : public testing::Test {
  protected:
   StudyConsoleTest() {
@@ -51,7 +52,7 @@ class StudyConsoleTest : public testing::Test {
   std::thread thread_;
 };
 
-TEST_F(StudyConsoleTest, SendsTheTableWithTheWorstFirst) {
+TEST_F(StudyConsoleTest, SendsTableWithWorstFirst) {
   TestSocket socket(port());
   const nlohmann::json study = socket.Await("study");
   EXPECT_EQ(study["variants"], (nlohmann::json{"usual", "strict"}));
@@ -67,7 +68,7 @@ TEST_F(StudyConsoleTest, SendsTheTableWithTheWorstFirst) {
   EXPECT_EQ(rows[2]["recording"], "calm");
 }
 
-TEST_F(StudyConsoleTest, ComparesTheOtherWayRound) {
+TEST_F(StudyConsoleTest, ComparesInReverse) {
   TestSocket socket(port());
   ASSERT_EQ(socket.Await("study")["before"], 0);
   socket.Send(R"({"command": "compare", "settings": ["9", "0"]})");  // there is no such variant
@@ -78,7 +79,7 @@ TEST_F(StudyConsoleTest, ComparesTheOtherWayRound) {
   EXPECT_EQ(study["rows"][0]["recording"], "calm");
 }
 
-TEST_F(StudyConsoleTest, SaysWhyARecordingCannotBeOpened) {
+TEST_F(StudyConsoleTest, ReportsWhyRecordingCannotBeOpened) {
   TestSocket socket(port());
   socket.Await("study");
   socket.Send(R"({"command": "open", "value": 99})");  // there is no such row
@@ -93,7 +94,7 @@ TEST_F(StudyConsoleTest, SaysWhyARecordingCannotBeOpened) {
   EXPECT_EQ(browser.Send(browser.Get("/export/frame-1.png")).result_int(), 404u);
 }
 
-TEST_F(StudyConsoleTest, SaysWhenTheResultsAreGone) {
+TEST_F(StudyConsoleTest, ReportsMissingResults) {
   TestSocket socket(port());
   socket.Await("study");
   study_.Run("DROP TABLE bin");

@@ -23,12 +23,12 @@ TEST(StudyJudgement, FewRecordingsProveNothing) {
             "No difference, too few to prove (2 recordings, 8 are the least)");
 }
 
-TEST(StudyJudgement, OfManyRecordingsTheReportJudges) {
+TEST(StudyJudgement, RefersToReportForManyRecordings) {
   EXPECT_EQ(StudyJudgement({-1, -1, -1, -1, -1, -1, -1, 0}),
             "Worse in 7 of 8; kestrel study report judges whether that is chance");
 }
 
-TEST(StudyJudgement, NoRecordingsGiveAnEmptyText) { EXPECT_EQ(StudyJudgement({}), ""); }
+TEST(StudyJudgement, NoRecordingsGiveEmptyText) { EXPECT_EQ(StudyJudgement({}), ""); }
 
 }  // namespace
 }  // namespace kestrel

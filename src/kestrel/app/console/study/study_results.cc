@@ -81,7 +81,7 @@ bool IsWorse(const StudyRow& a, const StudyRow& b) {
 }
 
 std::string JudgementOf(const std::vector<StudyRow>& rows) {
-  std::map<std::string, std::int64_t> changes;  // of a recording all its pieces
+  std::map<std::string, std::int64_t> changes;  // by recording, summed over its pieces
   for (const StudyRow& row : rows) {
     if (!row.before.IsDone() || !row.after.IsDone()) continue;
     changes[row.recording] += row.after.found_count - row.before.found_count;

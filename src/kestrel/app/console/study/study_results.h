@@ -24,7 +24,7 @@ struct StudyVariant {
 
 // The options with which a variant was run.
 struct StudyOptions {
-  std::vector<std::string> arguments;  // of the command, as {"--altitude", "3"}
+  std::vector<std::string> arguments;  // arguments of the command, as {"--altitude", "3"}
   std::string text;                    // every option, as YAML
 };
 

@@ -23,7 +23,7 @@ std::vector<std::string> Names(const StudyComparison& comparison) {
   return names;
 }
 
-TEST(StudyResults, PutsFirstWhatGotWorst) {
+TEST(StudyResults, SortsWorstRowFirst) {
   const TestFolder folder;
   const TestStudy study(folder);
   study.AddDone("same", "usual", 8);
@@ -56,7 +56,7 @@ TEST(StudyResults, PutsFirstWhatGotWorst) {
   EXPECT_TRUE(comparison.rows[5].after.key.empty());
 }
 
-TEST(StudyResults, FindsTheFirstFrameThatGotWorst) {
+TEST(StudyResults, FindsFirstFrameOfWorstChange) {
   const TestFolder folder;
   const TestStudy study(folder);
   constexpr std::int64_t kBegin = 1'700'000'000'000'000'000;
@@ -72,7 +72,7 @@ TEST(StudyResults, FindsTheFirstFrameThatGotWorst) {
   EXPECT_EQ(ToNanoseconds(*results.WorstFrame(comparison.rows[0])), kBegin + 700'000'000);
 }
 
-TEST(StudyResults, FindsTheLargestErrorWhereNothingElseDiffers) {
+TEST(StudyResults, FindsLargestErrorIfNothingElseDiffers) {
   const TestFolder folder;
   const TestStudy study(folder);
   study.AddDone("flight", "usual", 9, 0, "", 100'000'000);
@@ -86,7 +86,7 @@ TEST(StudyResults, FindsTheLargestErrorWhereNothingElseDiffers) {
   EXPECT_EQ(ToNanoseconds(*results.WorstFrame(row)), 700'000'000);
 }
 
-TEST(StudyResults, LeavesOutWhatAnEarlierPlanHasDone) {
+TEST(StudyResults, IgnoresUnitsOfEarlierPlan) {
   const TestFolder folder;
   const TestStudy study(folder);
   study.AddDone("flight", "usual", 9);
@@ -95,7 +95,7 @@ TEST(StudyResults, LeavesOutWhatAnEarlierPlanHasDone) {
   EXPECT_THAT(StudyResults(study.path()).Variants(), ElementsAre(kUsual));
 }
 
-TEST(StudyResults, HasTheVariantsInTheOrderOfThePlanWithTheirOptions) {
+TEST(StudyResults, ListsVariantsInOrderOfPlanWithOptions) {
   const TestFolder folder;
   const TestStudy study(folder);
   for (const char* name : {"no plan has it", "strict", "usual"}) study.AddDone("flight", name, 9);
@@ -111,7 +111,7 @@ TEST(StudyResults, HasTheVariantsInTheOrderOfThePlanWithTheirOptions) {
               EndsWith("the arguments of 'usual' are not a list of words"));
 }
 
-TEST(StudyResults, ReadsWhatAStudyIsWriting) {
+TEST(StudyResults, ReadsResultsWhileStudyWrites) {
   const TestFolder folder;
   const TestStudy study(folder);
   study.Run("PRAGMA journal_mode = WAL");
@@ -124,7 +124,7 @@ TEST(StudyResults, ReadsWhatAStudyIsWriting) {
   EXPECT_EQ(results.Compare(kUsual, kUsual).total, 2u);
 }
 
-TEST(StudyResults, KeepsTheWorstOfVeryMany) {
+TEST(StudyResults, KeepsWorstOfManyRows) {
   const TestFolder folder;
   const TestStudy study(folder);
   study.Run("BEGIN");
@@ -140,7 +140,7 @@ TEST(StudyResults, KeepsTheWorstOfVeryMany) {
   EXPECT_EQ(comparison.rows.size(), StudyResults::kMaxRows);
 }
 
-TEST(StudyResults, SaysWhyAFileIsNotAStudy) {
+TEST(StudyResults, ReportsWhyFileIsNoStudy) {
   const TestFolder folder;
   const auto error = [&] {
     return InputErrorOf([&] {
@@ -168,7 +168,7 @@ TEST(StudyResults, SaysWhyAFileIsNotAStudy) {
   EXPECT_THAT(error(), EndsWith("has no table 'bin'"));
 }
 
-TEST(StudyResults, ACutFileIsRefused) {
+TEST(StudyResults, RefusesTruncatedFile) {
   const TestFolder folder;
   {
     const TestStudy study(folder);

@@ -27,7 +27,7 @@ TEST(ParseImageRows, ReadsRows) {
   EXPECT_EQ(rows[1].filename, "7.png");
 }
 
-TEST(ParseImageRows, TimesOutOfOrderNameTheLine) {
+TEST(ParseImageRows, ReportsLineOfTimesOutOfOrder) {
   for (const char* second : {"4", "5"}) {
     const std::string text =
         std::string("#timestamp [ns],filename\n5,5.png\n") + second + ",4.png\n";
@@ -36,12 +36,12 @@ TEST(ParseImageRows, TimesOutOfOrderNameTheLine) {
   }
 }
 
-TEST(ParseImageRows, TimeThatIsNoWholeNumberIsRefused) {
+TEST(ParseImageRows, RefusesNonIntegerTime) {
   EXPECT_THAT(InputErrorOf([] { ParseImageRows("timestamp [ns],filename\n1.5,a\n", "c.csv"); }),
               HasSubstr("line 2"));
 }
 
-TEST(ParseImageRows, TimeThatIsOutOfRangeIsRefused) {
+TEST(ParseImageRows, RefusesTimeOutOfRange) {
   for (const char* time : {"-1", "9223372036854775807"}) {
     const std::string text = std::string("timestamp [ns],filename\n") + time + ",a\n";
     EXPECT_THAT(InputErrorOf([&] { ParseImageRows(text, "c.csv"); }),
@@ -49,7 +49,7 @@ TEST(ParseImageRows, TimeThatIsOutOfRangeIsRefused) {
   }
 }
 
-TEST(ParsePoseRows, ReadsPosesWhateverTheOrderOfTheColumns) {
+TEST(ParsePoseRows, ReadsPosesInAnyOrderOfColumns) {
   const auto poses = ParsePoseRows(
       "q_WB_z[],q_WB_y[],q_WB_x[],q_WB_w[],p_WB_W_z[m],p_WB_W_y[m],p_WB_W_x[m],timestamp[ns]\n"
       "0.6,0,0,0.8,3,2,1,42\n",
@@ -61,7 +61,7 @@ TEST(ParsePoseRows, ReadsPosesWhateverTheOrderOfTheColumns) {
   EXPECT_NEAR(poses[0].world_from_body.rotation.z(), 0.6, 1e-12);
 }
 
-TEST(ParsePoseRows, RefusesWhatIsNoPose) {
+TEST(ParsePoseRows, RefusesInvalidPose) {
   EXPECT_EQ(PoseError("1,0,0,0,1,0,0,0\n"), "");
   EXPECT_THAT(PoseError("1,0,0,nan,1,0,0,0\n"), HasSubstr("line 2: p_WB_W_z [m] is 'nan'"));
   EXPECT_THAT(PoseError("1,0,0,0,1,0,0,0\n2,0,0,0,0.5,0,0,0\n"),
@@ -82,7 +82,7 @@ class EurocRecordingTest : public ::testing::Test {
   TestFolder folder_;
 };
 
-TEST_F(EurocRecordingTest, NamesLieBelowWhatWasGiven) {
+TEST_F(EurocRecordingTest, NamesAreRelativeToGivenFolder) {
   Frame frame;
   ImageSequence whole = OpenEurocRecording(folder_.path());
   ASSERT_TRUE(whole.Next(&frame));
@@ -99,7 +99,7 @@ TEST_F(EurocRecordingTest, CalibrationAndPosesMayBeAbsent) {
   EXPECT_THAT(source.poses(), IsEmpty());
 }
 
-TEST_F(EurocRecordingTest, CalibrationAndPosesAreFound) {
+TEST_F(EurocRecordingTest, FindsCalibrationAndPoses) {
   const std::string calibration = folder_.Write("mav0/cam0/sensor.yaml", "sensor_type: camera\n");
   folder_.Write("mav0/nav0/data.csv", std::string(kPoseHeader) + "100,1,2,3,1,0,0,0\n");
   const ImageSequence source = OpenEurocRecording(folder_.path());
@@ -107,7 +107,7 @@ TEST_F(EurocRecordingTest, CalibrationAndPosesAreFound) {
   EXPECT_EQ(source.poses().size(), 1u);
 }
 
-TEST_F(EurocRecordingTest, MissingImageIsLeftOutAndNamed) {
+TEST_F(EurocRecordingTest, SkipsAndReportsMissingImage) {
   std::filesystem::remove(folder_ / "mav0/cam0/data/200.png");
   ImageSequence source = OpenEurocRecording(folder_.path());
   Frame frame;
@@ -118,7 +118,7 @@ TEST_F(EurocRecordingTest, MissingImageIsLeftOutAndNamed) {
   EXPECT_THAT(fault, HasSubstr("200.png: no such file"));
 }
 
-TEST_F(EurocRecordingTest, RecordingWithoutRowsOrListIsRefused) {
+TEST_F(EurocRecordingTest, RefusesRecordingWithoutRowsOrList) {
   folder_.Write("mav0/cam0/data.csv", "#timestamp [ns],filename\n");
   EXPECT_THAT(InputErrorOf([&] { OpenEurocRecording(folder_.path()); }), HasSubstr("no rows"));
   std::filesystem::remove(folder_ / "mav0/cam0/data.csv");

@@ -10,7 +10,7 @@
 namespace kestrel {
 namespace {
 
-TEST(EurocTextTest, CalibrationIsReadBackAsItWasWritten) {
+TEST(EurocTextTest, CalibrationRoundTrips) {
   CameraCalibration written;
   written.intrinsics = {.width_px = 752,
                         .height_px = 480,
@@ -35,7 +35,7 @@ TEST(EurocTextTest, CalibrationIsReadBackAsItWasWritten) {
   EXPECT_EQ(read.body_from_camera->translation, written.body_from_camera->translation);
 }
 
-TEST(EurocTextTest, PosesAreReadBack) {
+TEST(EurocTextTest, PosesRoundTrip) {
   const std::vector<PoseSample> written = {
       {TimeFromNanoseconds(5), {Eigen::Quaterniond(0.6, 0, 0.8, 0), {1, -2, 3.5}}},
       {TimeFromNanoseconds(9), {Eigen::Quaterniond(0, 0, 0, 1), {0, 0, -1}}}};

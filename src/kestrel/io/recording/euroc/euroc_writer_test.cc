@@ -30,7 +30,7 @@ void WriteNoise(int ms, EurocWriter* writer) {
 }
 
 // A program that dies leaves what it has committed.
-TEST(EurocWriter, WhatIsCommittedIsARecordingAtAnyTime) {
+TEST(EurocWriter, CommittedFilesAreValidRecordingAtAnyTime) {
   const TestFolder folder;
   EurocWriter writer(folder.path(), std::array{EurocTable::kImages, EurocTable::kPoses});
   for (int i = 1; i <= 3; ++i) {
@@ -45,7 +45,7 @@ TEST(EurocWriter, WhatIsCommittedIsARecordingAtAnyTime) {
   }
 }
 
-TEST(EurocWriter, MakesTheFilesThatItHasRowsFor) {
+TEST(EurocWriter, CreatesOnlyFilesWithRows) {
   const TestFolder folder;
   {
     EurocWriter writer(folder.path(), std::array{EurocTable::kImages, EurocTable::kDroppedImages});
@@ -57,7 +57,7 @@ TEST(EurocWriter, MakesTheFilesThatItHasRowsFor) {
   EXPECT_FALSE(std::filesystem::exists(folder / "mav0/nav0"));
 }
 
-TEST(EurocWriter, KeepsManyRowsOnTheWay) {
+TEST(EurocWriter, BuffersManyRows) {
   const TestFolder folder;
   EurocWriter writer(folder.path(), std::array{EurocTable::kPoses});
   const std::string file = folder / "mav0/nav0/data.csv";
@@ -71,7 +71,7 @@ TEST(EurocWriter, KeepsManyRowsOnTheWay) {
   EXPECT_GE(ParsePoseRows(ReadFile(file), file).size(), 300u);
 }
 
-TEST(EurocWriter, WhatCannotBeWrittenIsSaid) {
+TEST(EurocWriter, ReportsWriteFailure) {
   const TestFolder folder;
   const std::string file = folder.Write("file", "");
   EXPECT_THAT(InputErrorOf([&] { EurocWriter(file, std::array{EurocTable::kImages}); }),

@@ -16,7 +16,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-TEST(RecordedFiles, RowsAreThereWhenTheyAreCommitted) {
+TEST(RecordedFiles, WritesRowsOnCommit) {
   const TestFolder folder;
   RecordedFiles files(folder.path(), {{folder / "a.csv", "#a\n"}, {folder / "b.csv", "#b\n"}});
   files.Add(0, "1\n");
@@ -29,7 +29,7 @@ TEST(RecordedFiles, RowsAreThereWhenTheyAreCommitted) {
   EXPECT_FALSE(std::filesystem::exists(folder / "b.csv")) << "no row, no file";
 }
 
-TEST(RecordedFiles, AFileThatCannotBeWrittenIsToldAndHoldsUpNoOther) {
+TEST(RecordedFiles, ReportsUnwritableFileAndWritesOthers) {
   const TestFolder folder;
   RecordedFiles files(folder.path(), {{folder / "no/a.csv", ""}, {folder / "b.csv", "#b\n"}});
   files.Add(0, "1\n");
@@ -39,7 +39,7 @@ TEST(RecordedFiles, AFileThatCannotBeWrittenIsToldAndHoldsUpNoOther) {
 }
 
 // A limit on the size of files simulates a full disk.
-TEST(RecordedFiles, WhatDoesNotFitLeavesNoPartOfIt) {
+TEST(RecordedFiles, LeavesNoPartOfRowOnFullDisk) {
   const TestFolder folder;
   RecordedFiles files(folder.path(), {{folder / "a.csv", "#a\n"}, {folder / "b.csv", "#b\n"}});
   files.Add(0, "1\n");
@@ -62,7 +62,7 @@ TEST(RecordedFiles, WhatDoesNotFitLeavesNoPartOfIt) {
   EXPECT_EQ(ReadFile(folder / "b.csv"), "#b\n33333333\n");
 }
 
-TEST(RecordedFiles, RowsWaitUntilThereIsRoom) {
+TEST(RecordedFiles, RowsWaitForRoomOnDisk) {
   const TestFolder folder;
   const std::string path = folder / "later/a.csv";
   RecordedFiles files(folder.path(), {{path, "#a\n"}});

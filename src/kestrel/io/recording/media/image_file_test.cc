@@ -12,14 +12,14 @@ namespace {
 
 using ::testing::HasSubstr;
 
-TEST(ReadGrayImage, GrayIsReadAsItIs) {
+TEST(ReadGrayImage, ReadsGrayUnchanged) {
   const TestFolder folder;
   const cv::Mat image = NoiseImage(31, 17, CV_8UC1);
   const cv::Mat read = ReadGrayImage(WriteTestImage(folder, "a.png", image));
   EXPECT_EQ(cv::norm(image, read, cv::NORM_INF), 0);
 }
 
-TEST(ReadGrayImage, ColourBecomesLuminance) {
+TEST(ReadGrayImage, ConvertsColourToLuminance) {
   const TestFolder folder;
   const cv::Mat bgr(4, 4, CV_8UC3, cv::Scalar(10, 200, 90));
   const cv::Mat bgra(4, 4, CV_8UC4, cv::Scalar(10, 200, 90, 128));
@@ -30,14 +30,14 @@ TEST(ReadGrayImage, ColourBecomesLuminance) {
   }
 }
 
-TEST(ReadGrayImage, SixteenBitsAreRefusedInWords) {
+TEST(ReadGrayImage, RefusesSixteenBits) {
   const TestFolder folder;
   const std::string file = WriteTestImage(folder, "deep.png", cv::Mat(4, 4, CV_16UC1, 1000));
   EXPECT_EQ(InputErrorOf([&] { ReadGrayImage(file); }),
             file + ": is a 16-bit image, expected 8 bits a channel");
 }
 
-TEST(ReadGrayImage, CutOffFilesAreRefusedWhereverTheyEnd) {
+TEST(ReadGrayImage, RefusesFilesTruncatedAnywhere) {
   const TestFolder folder;
   for (const char* name : {"a.png", "a.jpg"}) {
     for (const double part : {0.01, 0.3, 0.6, 0.9, 0.99, 0.9999}) {
@@ -48,7 +48,7 @@ TEST(ReadGrayImage, CutOffFilesAreRefusedWhereverTheyEnd) {
   }
 }
 
-TEST(ReadGrayImage, CutOffJpegIsNotTakenForWholeByItsThumbnail) {
+TEST(ReadGrayImage, RefusesTruncatedJpegWithThumbnail) {
   const TestFolder folder;
   const std::string jpeg = ReadFile(WriteTestImage(folder, "a.jpg", NoiseImage(64, 48, CV_8UC1)));
   const std::string thumbnail =
@@ -62,7 +62,7 @@ TEST(ReadGrayImage, CutOffJpegIsNotTakenForWholeByItsThumbnail) {
   EXPECT_NE(InputErrorOf([&] { ReadGrayImage(folder.Write("c.jpg", cut)); }), "");
 }
 
-TEST(ReadGrayImage, BytesBehindTheEndAreNoFault) {
+TEST(ReadGrayImage, AcceptsTrailingBytes) {
   const TestFolder folder;
   for (const char* name : {"a.png", "a.jpg"}) {
     const std::string bytes = ReadFile(WriteTestImage(folder, name, NoiseImage(20, 20, CV_8UC1)));
@@ -71,7 +71,7 @@ TEST(ReadGrayImage, BytesBehindTheEndAreNoFault) {
   }
 }
 
-TEST(ReadGrayImage, WhatIsNoImageIsRefused) {
+TEST(ReadGrayImage, RefusesNonImages) {
   const TestFolder folder;
   EXPECT_THAT(InputErrorOf([&] { ReadGrayImage(folder / "none.png"); }), HasSubstr("no such file"));
   EXPECT_THAT(InputErrorOf([&] { ReadGrayImage(folder.path()); }), HasSubstr("is a folder"));
@@ -81,7 +81,7 @@ TEST(ReadGrayImage, WhatIsNoImageIsRefused) {
   }
 }
 
-TEST(ReadGrayImage, OnePixelAndVeryWideImagesAreRead) {
+TEST(ReadGrayImage, ReadsOnePixelAndVeryWideImages) {
   const TestFolder folder;
   EXPECT_EQ(ReadGrayImage(WriteTestImage(folder, "1.png", cv::Mat(1, 1, CV_8UC1, 7))).size(),
             cv::Size(1, 1));

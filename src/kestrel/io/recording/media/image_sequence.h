@@ -15,7 +15,7 @@ class ImageSequence : public FrameSource {
     std::string name;  // as in Frame
     std::string path;
     Time time;
-    std::size_t page = 0;  // of a TIFF
+    std::size_t page = 0;  // page in a TIFF
   };
 
   // 'items' are in order of time, at least one. The other two are as FrameSource returns them.

@@ -26,7 +26,7 @@ std::vector<std::string> NamesOf(FrameSource* source) {
   return names;
 }
 
-TEST(ImageSequence, FolderIsInNaturalOrderWithNamesBelowIt) {
+TEST(ImageSequence, SortsFolderNaturallyWithRelativeNames) {
   const TestFolder folder;
   for (const char* name : {"f10.png", "f9.png", "f010.jpg", "b/2.png", "b/10.png", "F1.PNG"}) {
     WriteTestImage(folder, name, kSmall);
@@ -46,7 +46,7 @@ TEST(ImageSequence, FilesKeepOrderAndNamesAsGiven) {
   EXPECT_THAT(NamesOf(&source), ElementsAre(b, a));
 }
 
-TEST(ImageSequence, TimesAreAtTheNominalRate) {
+TEST(ImageSequence, TimesFollowNominalRate) {
   const TestFolder folder;
   const std::string a = WriteTestImage(folder, "a.png", kSmall);
   ImageSequence source = OpenImageFiles({a, a, a, a});
@@ -56,13 +56,13 @@ TEST(ImageSequence, TimesAreAtTheNominalRate) {
   EXPECT_NEAR(source.rate_hz(), kNominalRateHz, 1e-6);
 }
 
-TEST(ImageSequence, EmptyFolderIsRefused) {
+TEST(ImageSequence, RefusesEmptyFolder) {
   const TestFolder folder;
   EXPECT_THAT(InputErrorOf([&] { OpenImageFolder(folder.path()); }),
               HasSubstr(folder.path() + ": no image"));
 }
 
-TEST(ImageSequence, BrokenImagesAreLeftOutWhereverTheyAre) {
+TEST(ImageSequence, SkipsBrokenImagesAnywhere) {
   const TestFolder folder;
   for (const char* name : {"1.png", "2.png", "3.png", "4.png"}) {
     WriteTestImage(folder, name, kSmall);
@@ -79,7 +79,7 @@ TEST(ImageSequence, BrokenImagesAreLeftOutWhereverTheyAre) {
   EXPECT_EQ(images.left_out(), 2u);
 }
 
-TEST(ImageSequence, SourceWithoutOneGoodImageIsAnError) {
+TEST(ImageSequence, RefusesSourceWithoutGoodImage) {
   const TestFolder folder;
   folder.Write("1.png", "none");
   folder.Write("2.png", "none");
@@ -90,7 +90,7 @@ TEST(ImageSequence, SourceWithoutOneGoodImageIsAnError) {
               StartsWith(folder / "2.png"));
 }
 
-TEST(ImageSequence, HiddenFilesAndFoldersAreNoImages) {
+TEST(ImageSequence, IgnoresHiddenFilesAndFolders) {
   const TestFolder folder;
   for (const char* name :
        {"a.png", "._a.png", ".thumbnails/b.png", "__MACOSX/c.png", "sub/d.png"}) {
@@ -136,7 +136,7 @@ std::string TwoPageTiff(int width, int height, const std::array<char, 2>& grays)
   return bytes;
 }
 
-TEST(ImageSequence, PagesOfATiffAreImages) {
+TEST(ImageSequence, ReadsPagesOfTiffAsImages) {
   const TestFolder folder;
   folder.Write("scan.tif", TwoPageTiff(8, 6, {10, 100}));
   folder.Write("single.TIFF", TwoPageTiff(8, 6, {50, 50}));

@@ -9,7 +9,7 @@
 namespace kestrel {
 namespace {
 
-constexpr std::size_t kHeadBytes = 16;  // of a box: its size and its type
+constexpr std::size_t kHeadBytes = 16;  // head of a box: its size and its type
 
 class BoxedFile {
  public:
@@ -64,7 +64,7 @@ std::uint64_t EndOfRiffChunk(std::string_view head, std::uint64_t offset) {
 }
 
 // An element of EBML (RFC 8794): its id and its size, both of 1 to 8 bytes, whose leading zero bits
-// tell how many. A size of only ones is not known.
+// encode their length. A size of only ones is not known.
 std::uint64_t EndOfEbmlElement(std::string_view head, std::uint64_t offset) {
   if (head.size() < 2) return offset;
   const std::size_t id_bytes = std::countl_zero(static_cast<unsigned char>(head[0])) + 1;

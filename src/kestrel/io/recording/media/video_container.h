@@ -13,7 +13,7 @@ struct VideoContainer {
   std::string demuxer;
   std::uint64_t file_bytes = 0;
   // Bytes that a whole file has at least; more than file_bytes when the file is cut off. Zero where
-  // the container does not say it (MPEG streams, recordings that were not closed).
+  // the container does not have it (MPEG streams, recordings that were not closed).
   std::uint64_t expected_bytes = 0;
 
   bool is_cut_off() const { return file_bytes < expected_bytes; }

@@ -43,7 +43,7 @@ VideoDecoder::VideoDecoder(GstElementPointer pipeline)
     throw InputError(fault_.empty() ? "there is no image" : fault_);
   }
   if (info->fps_d > 0) rate_hz_ = static_cast<double>(info->fps_n) / info->fps_d;
-  frame_count_ = AskForCount();
+  frame_count_ = RequestCount();
 }
 
 VideoDecoder::~VideoDecoder() { gst_element_set_state(pipeline_.get(), GST_STATE_NULL); }
@@ -75,7 +75,7 @@ GstSamplePointer VideoDecoder::Pull() {
   return nullptr;
 }
 
-std::size_t VideoDecoder::AskForCount() const {
+std::size_t VideoDecoder::RequestCount() const {
   gint64 frames = 0;
   if (gst_element_query_duration(pipeline_.get(), GST_FORMAT_DEFAULT, &frames) != FALSE &&
       frames > 0) {

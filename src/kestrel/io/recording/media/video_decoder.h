@@ -15,14 +15,14 @@ namespace kestrel {
 // Gives the images of a GStreamer pipeline with an appsink, one after the other.
 class VideoDecoder {
  public:
-  // Waits for the first image. Throws InputError that says what went wrong when none comes.
+  // Waits for the first image. Throws InputError with the cause when none comes.
   explicit VideoDecoder(GstElementPointer pipeline);
   ~VideoDecoder();
   VideoDecoder(const VideoDecoder&) = delete;
   VideoDecoder& operator=(const VideoDecoder&) = delete;
 
   // Gives the next image (CV_8UC3) and its time in the stream, if it has one. Returns false at the
-  // end; then fault() says why, if the stream should not have ended.
+  // end; then fault() has the cause, if the stream should not have ended.
   bool Next(cv::Mat* image, std::optional<Time>* time);
   const std::string& fault() const { return fault_; }
 
@@ -33,7 +33,7 @@ class VideoDecoder {
 
  private:
   GstSamplePointer Pull();
-  std::size_t AskForCount() const;
+  std::size_t RequestCount() const;
 
   GstElementPointer pipeline_;
   GstElementPointer sink_;

@@ -9,7 +9,7 @@ namespace {
 
 using ::testing::StartsWith;
 
-TEST(VideoDeviceTest, ExplainsTheDeviceThatACameraOrAPipelineNames) {
+TEST(VideoDeviceTest, ExplainsFaultOfDeviceInCameraOrPipeline) {
   for (const char* const camera : {"/dev/video987", "v4l2src device=/dev/video987 ! videoconvert",
                                    "v4l2src device=\"/dev/video987\" io-mode=2 ! video/x-raw",
                                    "v4l2src device=/dev/video987"}) {
@@ -18,7 +18,7 @@ TEST(VideoDeviceTest, ExplainsTheDeviceThatACameraOrAPipelineNames) {
   EXPECT_EQ(CameraFault("/dev/null"), "/dev/null: is no video device");
 }
 
-TEST(VideoDeviceTest, ACameraWithoutSuchADeviceIsNotExplained) {
+TEST(VideoDeviceTest, ExplainsNothingWithoutDevice) {
   for (const char* const camera :
        {"videotestsrc ! videoconvert", "rtsp://10.0.0.2/stream", "udpsrc port=5600 ! decodebin"}) {
     EXPECT_EQ(CameraFault(camera), "") << camera;

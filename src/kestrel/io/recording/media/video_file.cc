@@ -17,8 +17,8 @@ namespace {
 
 constexpr int kRateParts = 100;  // the rate is in 1/100 Hz
 
-// vp9enc would lose the images in its look-ahead at the end. mp4mux needs to know things about VP9
-// that vp9enc does not say, and crashes without the chroma site.
+// vp9enc would lose the images in its look-ahead at the end. mp4mux needs properties of VP9
+// that vp9enc does not set, and crashes without the chroma site.
 constexpr const char* kVp9InMp4 =
     "video/x-raw,format=I420,colorimetry=bt601 ! "
     "vp9enc deadline=1 cpu-used=9 lag-in-frames=0 end-usage=cq cq-level=24 "

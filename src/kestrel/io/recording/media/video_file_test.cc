@@ -22,7 +22,7 @@ void ExpectVideo(const std::string& path, std::size_t count, double rate_hz) {
   EXPECT_EQ(frames, count);
 }
 
-TEST(VideoFileTest, HasItsImagesAtItsRate) {
+TEST(VideoFileTest, HasImagesAtItsRate) {
   const TestFolder folder;
   VideoFile file(folder / "clip", 12.5);
   EXPECT_EQ(file.path(), "");
@@ -32,7 +32,7 @@ TEST(VideoFileTest, HasItsImagesAtItsRate) {
   ExpectVideo(file.path(), 5, 12.5);
 }
 
-TEST(VideoFileTest, IsAnAviWhereThatIsAskedFor) {
+TEST(VideoFileTest, WritesAviOnRequest) {
   const TestFolder folder;
   const std::string path =
       WriteTestVideo(folder / "clip", VideoFormat::kAvi, 5, {64, 48}, /*rate_hz=*/12.5);
@@ -40,7 +40,7 @@ TEST(VideoFileTest, IsAnAviWhereThatIsAskedFor) {
   ExpectVideo(path, 5, 12.5);
 }
 
-TEST(VideoFileTest, WithoutCloseItIsWholeAsWell) {
+TEST(VideoFileTest, IsCompleteWithoutClose) {
   const TestFolder folder;
   {
     VideoFile file(folder / "clip", 10);
@@ -49,7 +49,7 @@ TEST(VideoFileTest, WithoutCloseItIsWholeAsWell) {
   ExpectVideo(folder / "clip.mp4", 3, 10);
 }
 
-TEST(VideoFileTest, ImagesHaveOneSize) {
+TEST(VideoFileTest, RefusesImagesOfDifferentSizes) {
   const TestFolder folder;
   VideoFile file(folder / "clip", 10);
   file.Write(NoiseImage(64, 48, CV_8UC3));
@@ -57,7 +57,7 @@ TEST(VideoFileTest, ImagesHaveOneSize) {
               HasSubstr("images of one size"));
 }
 
-TEST(VideoFileTest, WhereItCannotBeIsSaid) {
+TEST(VideoFileTest, ReportsUnwritablePath) {
   const TestFolder folder;
   VideoFile file(folder / "missing/clip", 10);
   EXPECT_THAT(InputErrorOf([&] { file.Write(NoiseImage(64, 48, CV_8UC3)); }),

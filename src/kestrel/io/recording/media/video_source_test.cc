@@ -20,7 +20,7 @@ std::string WriteVideo(const TestFolder& folder, VideoFormat format) {
   return WriteTestVideo(folder / "flight", format, kFrames, {64, 48}, kRateHz);
 }
 
-TEST(VideoSource, GivesEveryFrameInGrayWithItsTime) {
+TEST(VideoSource, ReadsEveryFrameInGrayWithTime) {
   const TestFolder folder;
   for (const VideoFormat format : {VideoFormat::kAvi, VideoFormat::kMp4}) {
     const std::string file = WriteVideo(folder, format);
@@ -38,7 +38,7 @@ TEST(VideoSource, GivesEveryFrameInGrayWithItsTime) {
   }
 }
 
-TEST(VideoSource, GivesColorsAsTheyWere) {
+TEST(VideoSource, ReadsColorsUnchanged) {
   const TestFolder folder;
   const cv::Scalar colors[] = {{20, 30, 200}, {200, 40, 20}, {0, 0, 0}, {255, 255, 255}};
   for (const VideoFormat format : {VideoFormat::kAvi, VideoFormat::kMp4}) {
@@ -57,7 +57,7 @@ TEST(VideoSource, GivesColorsAsTheyWere) {
   }
 }
 
-TEST(VideoSource, KeepsTheColorsBesideTheGray) {
+TEST(VideoSource, KeepsColorsAlongWithGray) {
   const TestFolder folder;
   const auto source = OpenVideoFile(WriteVideo(folder, VideoFormat::kAvi));
   source->set_keeps_color(true);
@@ -67,7 +67,7 @@ TEST(VideoSource, KeepsTheColorsBesideTheGray) {
   EXPECT_EQ(cv::norm(ToFormat(frame.color, PixelFormat::kGray, ""), frame.image, cv::NORM_INF), 0);
 }
 
-TEST(VideoSource, VideoThatEndsEarlyGivesItsFramesAndThenSaysSo) {
+TEST(VideoSource, ReportsTruncatedVideoAfterItsFrames) {
   const TestFolder folder;
   const std::string file = WriteVideo(folder, VideoFormat::kAvi);
   TestFolder::CutOff(file, 0.5);
@@ -81,7 +81,7 @@ TEST(VideoSource, VideoThatEndsEarlyGivesItsFramesAndThenSaysSo) {
   EXPECT_LT(frames, kFrames);
 }
 
-TEST(VideoSource, FileWithoutVideoIsRefused) {
+TEST(VideoSource, RefusesFileWithoutVideo) {
   const TestFolder folder;
   const std::string cut = WriteVideo(folder, VideoFormat::kMp4);
   TestFolder::CutOff(cut, 0.5);
@@ -92,7 +92,7 @@ TEST(VideoSource, FileWithoutVideoIsRefused) {
   }
 }
 
-TEST(VideoSource, APipelineIsACamera) {
+TEST(VideoSource, OpensPipelineAsCamera) {
   const auto source = OpenCamera(
       "videotestsrc num-buffers=5 pattern=white ! video/x-raw,width=64,height=48,framerate=25/1");
   EXPECT_FALSE(source->frame_count());
@@ -107,7 +107,7 @@ TEST(VideoSource, APipelineIsACamera) {
   EXPECT_FALSE(source->Next(&frame));
 }
 
-TEST(VideoSource, ACameraThatIsNotThereIsNamed) {
+TEST(VideoSource, ReportsMissingCamera) {
   EXPECT_THAT(InputErrorOf([] { OpenCamera("/dev/video77"); }),
               HasSubstr("there is no /dev/video77, "));
   EXPECT_THAT(InputErrorOf([] { OpenCamera("nothing ! fakesink"); }),
@@ -133,7 +133,7 @@ std::size_t FramesOf(const std::string& file) {
 }
 
 // As a phone in the dusk, and as a segment of a longer recording.
-TEST(VideoSource, RateThatChangesAndTimesThatStartLateAreWhole) {
+TEST(VideoSource, ReadsVariableRateAndLateStartCompletely) {
   const TestFolder folder;
   const std::string picture = "videotestsrc num-buffers=24 ! video/x-raw,width=64,height=48,";
   const std::string late = " ! identity ts-offset=60000000000 ! jpegenc ! ";
@@ -147,14 +147,14 @@ TEST(VideoSource, RateThatChangesAndTimesThatStartLateAreWhole) {
     TestFolder::CutOff(file, 0.98);
     EXPECT_THAT(InputErrorOf([&] { FramesOf(file); }), HasSubstr(file)) << muxer << ", cut";
   }
-  // The container tells of 30 frames a second; a third of them is not there.
+  // The container declares 30 frames a second; a third of them is missing.
   const std::string file = folder / "changes.mkv";
   MakeFile(picture + "framerate=30/1 ! jpegenc ! identity drop-probability=0.3 ! matroskamux ! " +
            "filesink location=" + file);
   EXPECT_GT(FramesOf(file), 0u);
 }
 
-TEST(VideoSource, FileWithSoundOnlySaysSo) {
+TEST(VideoSource, ReportsFileWithSoundOnly) {
   const TestFolder folder;
   for (const std::string muxer : {"matroskamux", "qtmux", "avimux"}) {
     const std::string file = folder / muxer;

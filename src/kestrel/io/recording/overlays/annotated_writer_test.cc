@@ -12,7 +12,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-TEST(AnnotatedWriter, ImagesHaveTheFramesNames) {
+TEST(AnnotatedWriter, ImagesHaveNamesOfFrames) {
   const TestFolder folder;
   const OutputFolder output(folder.path(), false);
   const auto writer = MakeImageWriter(output);

@@ -101,7 +101,7 @@ class Canvas {
   int Thickness() const { return std::max(1, static_cast<int>(scale_)); }
 
   cv::Mat image_;
-  double scale_;  // of lines and letters, by the width of the image
+  double scale_;  // scale of lines and letters, by the width of the image
 };
 
 void DrawOutlines(const TargetShape& shape, const Projection& project, const cv::Scalar& color,

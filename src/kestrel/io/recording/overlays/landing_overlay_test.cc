@@ -34,7 +34,7 @@ bool IsYellow(const cv::Mat& image, int x, int y) {
   return pixel[2] > 150 && pixel[1] > 150 && pixel[0] < 90;
 }
 
-TEST(LandingOverlay, DrawsTheRingWhereThePoseSaysIt) {
+TEST(LandingOverlay, DrawsRingAtPose) {
   const cv::Mat drawn = DrawLandingOverlay(kGray, kCamera, kShape, FoundAt({0.0, 0.0, 2.0}));
   ASSERT_EQ(drawn.type(), CV_8UC3);
   ASSERT_EQ(drawn.size(), kGray.size());
@@ -50,7 +50,7 @@ bool IsMagenta(const cv::Mat& image, int x, int y) {
 }
 
 // The pattern is seen 40 px to the right of its projection by pose and lens.
-TEST(LandingOverlay, OfAMisfitBothOutlinesAreDrawn) {
+TEST(LandingOverlay, DrawsBothOutlinesOfMisfit) {
   LandingObservation observation = FoundAt({0.0, 0.0, 2.0});
   LandingDetection& detection = *observation.report.detection;
   detection.seen = SeenPrint{detection.camera_from_pattern, PlaneWarp::Coefficients::Zero(), 0.5};
@@ -71,7 +71,7 @@ TEST(LandingOverlay, OfAMisfitBothOutlinesAreDrawn) {
 }
 
 // The camera looks down from 2 m; the pad drives 0.5 m to the east, which is to the right.
-TEST(LandingOverlay, DrawsThePathOfTheTrack) {
+TEST(LandingOverlay, DrawsPathOfTrack) {
   LandingObservation observation;
   observation.world_from_camera.emplace();
   observation.world_from_camera->rotation =
@@ -90,14 +90,14 @@ TEST(LandingOverlay, DrawsThePathOfTheTrack) {
   EXPECT_FALSE(is_cyan_at(path, 319 + 50)) << "no pose";
 }
 
-TEST(LandingOverlay, SurvivesAPatternNextToOrBehindTheCamera) {
+TEST(LandingOverlay, HandlesPatternBesideOrBehindCamera) {
   for (const double z : {1e-9, 0.01, -1.0}) {
     EXPECT_EQ(DrawLandingOverlay(kGray, kCamera, kShape, FoundAt({0.2, 0.1, z})).size(),
               kGray.size());
   }
 }
 
-TEST(LandingOverlay, SaysWhyNothingWasFound) {
+TEST(LandingOverlay, PrintsReasonOfMiss) {
   LandingObservation observation;
   observation.report.reached = LandingStage::kCross;
   observation.report.reason = "no arms";

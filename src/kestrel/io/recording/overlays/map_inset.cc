@@ -92,7 +92,7 @@ void DrawScale(const Plan& plan, const cv::Rect& frame, cv::Mat* image) {
 
 // Returns the frame of the inset, in the corner where it covers least of 'seen'.
 cv::Rect InsetFrame(const cv::Size& image, const std::vector<cv::Rect>& seen) {
-  constexpr double kShare = 0.28;  // of the image's width
+  constexpr double kShare = 0.28;  // share of the image's width
   constexpr double kAspect = 0.7;
   const auto width = static_cast<int>(kShare * image.width);
   const int height = std::min(static_cast<int>(kAspect * width), image.height);

@@ -47,14 +47,14 @@ TEST(DrawMapInset, NorthIsUpAndEastIsRight) {
   EXPECT_GT(east.x(), north.x() + 20);
 }
 
-TEST(DrawMapInset, LeavesTheRestOfTheImageAlone) {
+TEST(DrawMapInset, KeepsRestOfImage) {
   const cv::Mat image = Draw({RedDiscAt(3, 4)}, std::nullopt);
   EXPECT_EQ(image.at<cv::Vec3b>(10, 10), cv::Vec3b::all(100));
   EXPECT_EQ(image.at<cv::Vec3b>(470, 10), cv::Vec3b::all(100));
   EXPECT_NE(image.at<cv::Vec3b>(470, 600), cv::Vec3b::all(100));
 }
 
-TEST(DrawMapInset, LiesWhereItCoversLeastOfWhatIsSeen) {
+TEST(DrawMapInset, LiesInLeastOccupiedCorner) {
   const cv::Rect lower_right(560, 420, 40, 40), lower_left(30, 400, 20, 20);
   const cv::Mat image = Draw({RedDiscAt(3, 4)}, std::nullopt, {lower_right, lower_left});
   EXPECT_EQ(image.at<cv::Vec3b>(470, 600), cv::Vec3b::all(100));
@@ -62,7 +62,7 @@ TEST(DrawMapInset, LiesWhereItCoversLeastOfWhatIsSeen) {
   EXPECT_NE(image.at<cv::Vec3b>(10, 600), cv::Vec3b::all(100));
 }
 
-TEST(DrawMapInset, EmptyMapIsNotDrawn) {
+TEST(DrawMapInset, DrawsNoEmptyMap) {
   EXPECT_EQ(Draw({}, Eigen::Vector2d(0, 0)).at<cv::Vec3b>(470, 600), cv::Vec3b::all(100));
 }
 

@@ -27,7 +27,7 @@ int BrightestOutside(const cv::Mat& image, int u, int v) {
   return brightest;
 }
 
-TEST(ObjectOverlay, DrawsAroundTheObjectAndNotOnTheOriginal) {
+TEST(ObjectOverlay, DrawsAroundObjectOnCopy) {
   const cv::Mat drawn =
       DrawObjectOverlay(kImage, DefaultObjectModel(), DiscAt({100, 90}, Completeness::kWhole));
   ASSERT_EQ(drawn.size(), kImage.size());
@@ -36,14 +36,14 @@ TEST(ObjectOverlay, DrawsAroundTheObjectAndNotOnTheOriginal) {
   EXPECT_EQ(cv::countNonZero(kImage.reshape(1) == 255), 0);
 }
 
-TEST(ObjectOverlay, PartsAreGray) {
+TEST(ObjectOverlay, DrawsPartsInGray) {
   const cv::Mat drawn =
       DrawObjectOverlay(kImage, DefaultObjectModel(), DiscAt({100, 90}, Completeness::kMerged));
   EXPECT_GT(BrightestOutside(drawn, 100, 90), 100);
   EXPECT_LT(BrightestOutside(drawn, 100, 90), 180);
 }
 
-TEST(ObjectOverlay, DecoysAreGrayAndSayWhy) {
+TEST(ObjectOverlay, DrawsDecoysInGrayWithReason) {
   HuntObservation observation = DiscAt({100, 90}, Completeness::kWhole);
   std::swap(observation.report.detections, observation.report.elsewhere);
   const cv::Mat drawn = DrawObjectOverlay(kImage, DefaultObjectModel(), observation);
@@ -53,7 +53,7 @@ TEST(ObjectOverlay, DecoysAreGrayAndSayWhy) {
       << "the reason";
 }
 
-TEST(ObjectOverlay, NothingFoundIsTheImageItself) {
+TEST(ObjectOverlay, KeepsImageWithoutObjects) {
   const cv::Mat drawn = DrawObjectOverlay(kImage, DefaultObjectModel(), HuntObservation());
   EXPECT_EQ(cv::norm(drawn, kImage, cv::NORM_INF), 0);
 }

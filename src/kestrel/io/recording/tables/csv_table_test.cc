@@ -21,20 +21,20 @@ TEST(CsvTable, ReadsCellsByHeaderName) {
   EXPECT_EQ(table.Text(1, table.Column("name")), "b.png");
 }
 
-TEST(CsvTable, UnitIsPartOfTheName) {
+TEST(CsvTable, MatchesNameWithUnit) {
   const CsvTable table("timestamp [s]\n1\n", "t.csv");
   EXPECT_THAT(InputErrorOf([&] { table.Column("timestamp [ns]"); }),
               HasSubstr("t.csv: no column 'timestamp [ns]'"));
 }
 
-TEST(CsvTable, WrongWidthNamesTheLine) {
+TEST(CsvTable, ReportsLineOfWrongWidth) {
   EXPECT_EQ(InputErrorOf([] { CsvTable("a,b\n1,2\n\n3\n", "t.csv"); }),
             "t.csv: line 4: 1 columns, expected 2 as in the header");
   EXPECT_THAT(InputErrorOf([] { CsvTable("a,b\n1,2,\n", "t.csv"); }),
               HasSubstr("line 2: 3 columns"));
 }
 
-TEST(CsvTable, CellThatIsNoNumberNamesLineAndColumn) {
+TEST(CsvTable, ReportsLineAndColumnOfNonNumber) {
   const CsvTable table("a [m],b\n1,2\nnan,2.5\n1x,\n", "t.csv");
   EXPECT_EQ(InputErrorOf([&] { table.Number(1, 0); }),
             "t.csv: line 3: a [m] is 'nan', expected a finite number");
@@ -44,17 +44,17 @@ TEST(CsvTable, CellThatIsNoNumberNamesLineAndColumn) {
   EXPECT_THAT(InputErrorOf([&] { table.Text(2, 1); }), HasSubstr("line 4"));
 }
 
-TEST(CsvTable, IntegerThatDoesNotFitIsRefused) {
+TEST(CsvTable, RefusesIntegerOutOfRange) {
   const CsvTable table("a\n9223372036854775808\n9223372036854775807\n", "t.csv");
   EXPECT_NE(InputErrorOf([&] { table.Integer(0, 0); }), "");
   EXPECT_EQ(table.Integer(1, 0), 9223372036854775807);
 }
 
-TEST(CsvTable, EmptyTextIsRefused) {
+TEST(CsvTable, RefusesEmptyText) {
   EXPECT_THAT(InputErrorOf([] { CsvTable("\n \n", "t.csv"); }), HasSubstr("t.csv: is empty"));
 }
 
-TEST(CsvTable, ByteOrderMarkAndLineEndsOfWindowsDoNotMatter) {
+TEST(CsvTable, AcceptsByteOrderMarkAndWindowsLineEnds) {
   const CsvTable table("\xef\xbb\xbf#timestamp [ns],filename\r\n1,a.png\r\n", "t.csv");
   EXPECT_EQ(table.Integer(0, table.Column("timestamp [ns]")), 1);
   EXPECT_EQ(table.Text(0, table.Column("filename")), "a.png");

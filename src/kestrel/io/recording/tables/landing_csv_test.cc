@@ -27,13 +27,13 @@ LandingObservation Found() {
 
 auto Commas(const std::string& line) { return std::count(line.begin(), line.end(), ','); }
 
-TEST(LandingCsv, RowOfADetectionWithoutPose) {
+TEST(LandingCsv, WritesDetectionWithoutPose) {
   EXPECT_EQ(LandingCsvRow("a/b.png", Found()),
             "a/b.png,1234567890123456789,1,320.250,239.500,ring,0.8750,0.100000,-0.200000,3.000000"
             ",,,,,0.010000,0.020000,0.030000,,1.2500,0.125,\n");
 }
 
-TEST(LandingCsv, RowOfADetectionInTheWorld) {
+TEST(LandingCsv, WritesDetectionInWorld) {
   LandingObservation observation = Found();
   observation.center_in_world = Eigen::Vector3d(10, 20, 0.5);
   observation.yaw_in_world = -0.25;
@@ -42,13 +42,13 @@ TEST(LandingCsv, RowOfADetectionInTheWorld) {
             "10.000000,20.000000,0.500000,-0.250000,0.010000,0.020000,0.030000,,1.2500,0.125,\n");
 }
 
-TEST(LandingCsv, OfAPrintWithoutEdgesTheMisfitIsNotKnown) {
+TEST(LandingCsv, LeavesMisfitEmptyWithoutEdges) {
   LandingObservation observation = Found();
   observation.report.detection->misfit_px = 0;
   EXPECT_TRUE(LandingCsvRow("b", observation).ends_with(",1.2500,,\n"));
 }
 
-TEST(LandingCsv, SaysWhichPadItIs) {
+TEST(LandingCsv, WritesMethodAndIdOfPad) {
   LandingObservation observation = Found();
   observation.report.detection->method = DetectionMethod::kTags;
   observation.report.detection->id = 17;
@@ -57,20 +57,20 @@ TEST(LandingCsv, SaysWhichPadItIs) {
   EXPECT_NE(row.find(",tags,"), std::string::npos) << row;
 }
 
-TEST(LandingCsv, RowOfAMissSaysWhereItFell) {
+TEST(LandingCsv, WritesStageOfMiss) {
   LandingObservation observation;
   observation.time = TimeFromNanoseconds(5);
   observation.report.reached = LandingStage::kCross;
   EXPECT_EQ(LandingCsvRow("b", observation), "b,5,0,,,,,,,,,,,,,,,cross,0.0000,,\n");
 }
 
-TEST(LandingCsv, EveryRowIsAsWideAsTheHeader) {
+TEST(LandingCsv, EveryRowIsAsWideAsHeader) {
   EXPECT_EQ(Commas(LandingCsvHeader()), 20);
   EXPECT_EQ(Commas(LandingCsvRow("b", Found())), 20);
   EXPECT_EQ(Commas(LandingCsvRow("b", LandingObservation())), 20);
 }
 
-TEST(LandingCsv, NameWithACommaIsQuoted) {
+TEST(LandingCsv, QuotesNameWithComma) {
   EXPECT_TRUE(LandingCsvRow("a,\"b\".png", Found()).starts_with("\"a,\"\"b\"\".png\",1234"));
 }
 

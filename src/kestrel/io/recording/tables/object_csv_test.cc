@@ -36,7 +36,7 @@ std::string Cell(const CsvTable& table, std::size_t row, const char* column) {
   return table.IsEmpty(row, index) ? "" : std::string(table.Text(row, index));
 }
 
-TEST(ObjectCsv, EveryObjectHasARow) {
+TEST(ObjectCsv, EveryObjectHasRow) {
   HuntObservation observation = Observation({RedDisc(), RedDisc()});
   observation.in_world[1] = ObjectLocation{{10, 20, 0.5}, Eigen::Matrix3d::Identity()};
   const std::string text =
@@ -79,7 +79,7 @@ TEST(ObjectCsv, FrameWithoutObjectsHasNameAndTimes) {
   EXPECT_EQ(Cell(table, 0, "detect_ms"), "0.2500");
 }
 
-TEST(ObjectMapCsv, ColumnsAreThoseOfTheObject) {
+TEST(ObjectMapCsv, ColumnsMatchObject) {
   MappedObject object;
   object.id = 7;
   object.state.head<6>() << 1, 2, 3, 0.5, 0, 0;

@@ -15,7 +15,7 @@ TargetEstimate Target() {
   return target;
 }
 
-TEST(TrackCsv, RowOfATarget) {
+TEST(TrackCsv, WritesTarget) {
   LandingObservation observation;
   observation.time = TimeFromNanoseconds(1'500'000'000);
   observation.track_state = TrackState::kPredicting;
@@ -25,7 +25,7 @@ TEST(TrackCsv, RowOfATarget) {
             "0.250000,0.100000,0.200000\n");
 }
 
-TEST(TrackCsv, EveryRowIsAsWideAsTheHeader) {
+TEST(TrackCsv, EveryRowIsAsWideAsHeader) {
   const auto commas = [](const std::string& line) {
     return std::count(line.begin(), line.end(), ',');
   };
@@ -36,7 +36,7 @@ TEST(TrackCsv, EveryRowIsAsWideAsTheHeader) {
   EXPECT_EQ(commas(TrackCsvRow(observation)), commas(TrackCsvHeader()));
 }
 
-TEST(TrackCsv, RowOfAPrediction) {
+TEST(TrackCsv, WritesPrediction) {
   EXPECT_EQ(PredictionCsvRow(TimeFromNanoseconds(1'000'000'000), Target()),
             "1000000000,0.5,1.000000,2.000000,3.000000\n");
   EXPECT_EQ(PredictionCsvHeader(), "timestamp_ns,horizon_s,p_x_m,p_y_m,p_z_m\n");

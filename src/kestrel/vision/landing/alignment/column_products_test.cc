@@ -12,7 +12,7 @@
 namespace kestrel {
 namespace {
 
-TEST(SumProducts, AreThoseOfAllPairs) {
+TEST(SumProducts, MatchesProductsOfAllPairs) {
   ForEveryTarget([&] {
     Random random(1);
     constexpr std::size_t kColumns = 5;

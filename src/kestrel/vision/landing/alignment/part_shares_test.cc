@@ -6,7 +6,7 @@
 namespace kestrel {
 namespace {
 
-TEST(PartShares, PartsOutOfViewAreIgnored) {
+TEST(PartShares, IgnoresPartsOutOfView) {
   PartShares shares;
   shares.arm = {0.8, -1, 0.4, -1};
   shares.ring = {0.9, 0.2, -1, 0.7};

@@ -26,7 +26,7 @@ TEST(SolvePositive, SolvesForEverySide) {
   }
 }
 
-TEST(SolvePositive, ReadsOnlyWhatLiesBelowTheDiagonal) {
+TEST(SolvePositive, ReadsLowerTriangleOnly) {
   Eigen::Matrix2d h;
   h << 4, 99, 2, 3;
   const Eigen::Vector2d x = SolvePositive<2, 1>(h, {10, 9});

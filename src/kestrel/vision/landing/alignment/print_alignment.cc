@@ -108,10 +108,10 @@ class Columns {
   using Column = std::array<float, PrintOutline::kMaxPlaces>;
 
   std::size_t count_;
-  Column x_, y_;      // of the place, in radii
+  Column x_, y_;      // coordinates of the place, in radii
   Column cos_, sin_;  // normal of the outline in the image
   Column offset_;     // px
-  Column root_;       // of the weight
+  Column root_;       // root of the weight
 };
 
 // Result of a least-squares step.

@@ -86,11 +86,11 @@ class PrintAlignmentTest : public ::testing::Test {
   const CameraModel camera_ = TestPrintCamera();
 };
 
-TEST_F(PrintAlignmentTest, AFlatPrintLiesWhereTheLensShowsIt) {
+TEST_F(PrintAlignmentTest, LocatesFlatPrintWithRightLens) {
   ExpectAligned("flat", camera_, camera_);
 }
 
-TEST_F(PrintAlignmentTest, AWrongFocalLengthMovesNothing) {
+TEST_F(PrintAlignmentTest, WrongFocalLengthDoesNotMovePrint) {
   for (const double zoom : {0.7, 0.8, 0.9, 1.1, 1.2, 1.3}) {
     CameraIntrinsics wrong = camera_.intrinsics();
     wrong.fx_px *= zoom;
@@ -99,14 +99,14 @@ TEST_F(PrintAlignmentTest, AWrongFocalLengthMovesNothing) {
   }
 }
 
-TEST_F(PrintAlignmentTest, DistortionThatIsLeftOutMovesNothing) {
+TEST_F(PrintAlignmentTest, OmittedDistortionDoesNotMovePrint) {
   CameraIntrinsics barrel = camera_.intrinsics();
   barrel.distortion_model = DistortionModel::kRadialTangential;
   barrel.distortion = {-0.28, 0.07, 0, 0};
   ExpectAligned("barrel", CameraModel(barrel), camera_);
 }
 
-TEST_F(PrintAlignmentTest, SheetsThatAreNotFlatAreFollowed) {
+TEST_F(PrintAlignmentTest, FollowsUnevenSheets) {
   for (const double height_m : {0.045, -0.045}) {  // 3 % of the board
     ExpectAligned("bulge", camera_, camera_, [=](double x, double y) {
       return height_m * (1 - (x * x + y * y) / (0.75 * 0.75));
@@ -116,7 +116,7 @@ TEST_F(PrintAlignmentTest, SheetsThatAreNotFlatAreFollowed) {
                 [](double x, double /*y*/) { return 0.03 * (1 - std::abs(x) / 0.75); });
 }
 
-TEST_F(PrintAlignmentTest, TheCenterIsAsSureAsItSays) {
+TEST_F(PrintAlignmentTest, CenterErrorsMatchCovariance) {
   Random random(3);
   const RigidTransform truth = PrintPose({0.1, -0.05, 2}, 0.3, 1, 0.3);
   const cv::Mat image = DrawPrint(camera_, pattern_, SpokedPrint(pattern_, 4), truth);
@@ -137,7 +137,7 @@ TEST_F(PrintAlignmentTest, TheCenterIsAsSureAsItSays) {
 }
 
 // Other figures are not bent until they match the print.
-TEST_F(PrintAlignmentTest, OtherFiguresAreNotBentToThePrint) {
+TEST_F(PrintAlignmentTest, DoesNotDistortOtherFiguresIntoPrint) {
   const RigidTransform pose = PrintPose({0.1, -0.05, 1.6}, 0.3, 1, 0.3);
   const Print rings = [this](double x, double y) {
     const double radius = std::hypot(x, y);
@@ -162,7 +162,7 @@ TEST_F(PrintAlignmentTest, OtherFiguresAreNotBentToThePrint) {
   }
 }
 
-TEST_F(PrintAlignmentTest, AQuarterOutOfViewSaysNothing) {
+TEST_F(PrintAlignmentTest, IgnoresQuarterOutOfView) {
   const RigidTransform pose = PrintPose({1.05, 0, 1.6}, 0, 0, 0);
   PrintAlignment alignment = AlignmentAt(camera_, pose);
   ASSERT_TRUE(Align(DrawPrint(camera_, pattern_, SpokedPrint(pattern_, 4), pose), &alignment));
@@ -173,7 +173,7 @@ TEST_F(PrintAlignmentTest, AQuarterOutOfViewSaysNothing) {
 }
 
 // From a start that is far off, the print is found on an image of half the resolution.
-TEST_F(PrintAlignmentTest, ASmallerImageBringsItNear) {
+TEST_F(PrintAlignmentTest, SmallerImageBringsAlignmentNear) {
   const RigidTransform truth = PrintPose({0.02, -0.02, 0.9}, 0.2, 1, 0.3);
   RigidTransform start = truth;
   start.translation.x() += 0.05;  // 12 px
@@ -188,7 +188,7 @@ TEST_F(PrintAlignmentTest, ASmallerImageBringsItNear) {
   EXPECT_LT(error.edges_px, 0.5);
 }
 
-TEST_F(PrintAlignmentTest, WithoutEdgesThereIsNone) {
+TEST_F(PrintAlignmentTest, FailsWithoutEdges) {
   PrintAlignment alignment = AlignmentAt(camera_, PrintPose({0, 0, 2}, 0, 0, 0));
   EXPECT_FALSE(Align(cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)), &alignment));
   PrintAlignment behind = AlignmentAt(camera_, PrintPose({0, 0, -2}, 0, 0, 0));

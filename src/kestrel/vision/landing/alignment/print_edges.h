@@ -17,7 +17,7 @@ namespace kestrel {
 // For fits to the edges of a print.
 struct EdgeFit {
   static constexpr std::size_t kLeastEdges = 12;  // two for each unknown of a pose
-  static constexpr double kLeastScalePx = 0.25;   // of robust weights; edges are that exact at best
+  static constexpr double kLeastScalePx = 0.25;  // for robust weights; edges are that exact at best
   // The first steps use every kCoarseStride-th edge or place, when these have at least kFewEdges
   // edges. The stride is odd so that both sides of the arms are used.
   static constexpr std::size_t kCoarseStride = 3;

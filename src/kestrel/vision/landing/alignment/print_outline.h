@@ -20,7 +20,7 @@ class PrintOutline {
   static constexpr std::size_t kMaxPlaces = 160;
 
   struct Place {
-    Eigen::Vector2d point;   // of the plane, m
+    Eigen::Vector2d point;   // point on the plane, m
     Eigen::Vector2d normal;  // unit vector, from black to white
     int part;                // 0 to 3: arm, 4 to 7: quarter of the ring
     int side;                // 0 or 1: side of the arm, or inside and outside of the ring

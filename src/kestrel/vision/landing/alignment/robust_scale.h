@@ -14,7 +14,7 @@ namespace kestrel {
 // none. Does not sort but bisects the bits of the median, because positive floats have the order of
 // their bits.
 inline double RobustScale(std::span<const float> offsets) {
-  constexpr std::uint32_t kLeastBit = 1u << 15;  // of seven bits of the mantissa
+  constexpr std::uint32_t kLeastBit = 1u << 15;  // eighth bit of the mantissa
   std::uint32_t median = 0;
   for (std::uint32_t bit = 1u << 30; bit >= kLeastBit; bit >>= 1) {
     const auto limit = std::bit_cast<float>(median | bit);

@@ -12,7 +12,7 @@
 namespace kestrel {
 namespace {
 
-TEST(RobustScale, IsThatOfTheMedian) {
+TEST(RobustScale, MatchesMedianMagnitude) {
   Random random(1);
   for (const double sigma : {1e-3, 0.3, 1.0, 70.0}) {
     std::vector<float> offsets;
@@ -24,7 +24,7 @@ TEST(RobustScale, IsThatOfTheMedian) {
   }
 }
 
-TEST(RobustScale, OfFewIsThatOfTheMiddleOne) {
+TEST(RobustScale, UsesMiddleOneOfFewValues) {
   const std::vector<float> offsets{-5, 0.1f, -2, 100, 0.2f};
   EXPECT_NEAR(RobustScale(offsets) / kSigmaPerMedianMagnitude, 2, 0.01);
   EXPECT_EQ(RobustScale({}), 0);

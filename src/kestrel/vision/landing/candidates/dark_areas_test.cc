@@ -43,7 +43,7 @@ std::vector<DarkArea> Areas(const Print& is_dark, double min_minor_px = 8,
   return areas;
 }
 
-TEST(TestDarkArea, ARingHasTwoEdges) {
+TEST(TestDarkArea, RingHasTwoEdges) {
   const auto areas = Areas([](double x, double y) {
     const double r = std::hypot(x / 1.5, y);
     return r > 16 && r < 20;
@@ -58,7 +58,7 @@ TEST(TestDarkArea, ARingHasTwoEdges) {
   EXPECT_NEAR(areas[1].outline.semi_minor, 16, 0.3);
 }
 
-TEST(TestDarkArea, RefusesWhatIsNotConvex) {
+TEST(TestDarkArea, RefusesNonConvexFigures) {
   EXPECT_TRUE(Areas([](double x, double y) {  // an L
                 return std::abs(x) < 30 && std::abs(y) < 30 && (x < -20 || y > 20);
               })
@@ -66,7 +66,7 @@ TEST(TestDarkArea, RefusesWhatIsNotConvex) {
   EXPECT_TRUE(Areas([](double x, double y) { return IsSpoke(x, y, 4, 4, 30); }).empty());
 }
 
-TEST(TestDarkArea, RefusesBarsAndWhatIsTooSmall) {
+TEST(TestDarkArea, RefusesBarsAndSmallFigures) {
   EXPECT_TRUE(
       Areas([](double x, double y) { return std::abs(x) < 40 && std::abs(y) < 4; }).empty());
   const Print disc = [](double x, double y) { return std::hypot(x, y) < 9.5; };
@@ -74,7 +74,7 @@ TEST(TestDarkArea, RefusesBarsAndWhatIsTooSmall) {
   EXPECT_TRUE(Areas(disc, 20).empty());
 }
 
-TEST(TestDarkArea, AnOpenSmallRingIsItsHull) {
+TEST(TestDarkArea, SmallOpenRingIsReplacedByHull) {
   const Print open_ring = [](double x, double y) {
     const double r = std::hypot(x, y);
     return r > 13 && r < 17 && !(x > 0 && std::abs(y) < 2.5);
@@ -88,7 +88,7 @@ TEST(TestDarkArea, AnOpenSmallRingIsItsHull) {
   EXPECT_TRUE(Areas(open_ring, 8, 30).empty()) << "larger than small ones";
 }
 
-TEST(OutlineInView, IsThatOfTheRingWithoutTheImageBorder) {
+TEST(OutlineInView, OmitsImageBorderFromOutline) {
   const Eigen::Vector2d center(85, 40);  // ring cut off on the right
   const BorderTracer tracer = TraceSmallFigure([&](double x, double y) {
     const double r = (Eigen::Vector2d(x, y) - center + Eigen::Vector2d(50, 50)).norm();
@@ -106,7 +106,7 @@ TEST(OutlineInView, IsThatOfTheRingWithoutTheImageBorder) {
   EXPECT_EQ(OutlineInView(tracer, tracer.borders()[0], std::span(outline).first(20)), 20u);
 }
 
-TEST(IsCutOff, IsNotWhatLiesWithinTheImage) {
+TEST(IsCutOff, IsFalseForAreaWithinImage) {
   const BorderTracer tracer =
       TraceSmallFigure([](double x, double y) { return std::hypot(x, y) < 48; });
   ASSERT_EQ(tracer.borders().size(), 1u);
@@ -122,7 +122,7 @@ class ContrastTest : public ::testing::Test {
   const Ellipse ring_{Eigen::Vector2d(159.5, 119.5), 50, 50, 0};
 };
 
-TEST_F(ContrastTest, OfARingAndItsWhite) {
+TEST_F(ContrastTest, MeasuresRingAndWhiteBoard) {
   const cv::Mat image = Draw(SpokedPrint(pattern_, 4));
   EXPECT_GT(RingContrast(image, ring_, pattern_), 120);
   EXPECT_GT(BoardContrast(image, ring_), 120);
@@ -131,19 +131,19 @@ TEST_F(ContrastTest, OfARingAndItsWhite) {
   EXPECT_EQ(RingContrast(image, elsewhere, pattern_), 0);
 }
 
-TEST_F(ContrastTest, OfADiscIsNone) {
+TEST_F(ContrastTest, DiscHasNoRingContrast) {
   const cv::Mat disc =
       Draw([this](double x, double y) { return std::hypot(x, y) < pattern_.outer_radius_m(); });
   EXPECT_EQ(RingContrast(disc, ring_, pattern_), 0) << "there must be white inside";
 }
 
-TEST_F(ContrastTest, OfNothingIsNone) {
+TEST_F(ContrastTest, FlatImageHasNoContrast) {
   const cv::Mat flat(240, 320, CV_8UC1, cv::Scalar(100));
   EXPECT_EQ(RingContrast(flat, ring_, pattern_), 0);
   EXPECT_EQ(BoardContrast(flat, ring_), 0);
 }
 
-TEST_F(ContrastTest, AQuarterMayBeLost) {
+TEST_F(ContrastTest, ToleratesLossOfQuarter) {
   cv::Mat image = Draw(SpokedPrint(pattern_, 4));
   image(cv::Rect(160, 20, 100, 99)) = 240;  // a highlight
   EXPECT_GT(RingContrast(image, ring_, pattern_), 100);

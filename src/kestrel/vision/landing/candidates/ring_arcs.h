@@ -40,7 +40,7 @@ struct RingArcsWorkspace {
   std::vector<Eigen::Vector2f> smooth;  // one border, smoothed and thinned out
   std::vector<float> turns;             // rad, turn around each point of 'smooth'
   std::vector<Eigen::Vector2f> points;  // points of all arcs, pixels of the traced image
-  std::vector<Eigen::Vector3d> rays;    // of the same points
+  std::vector<Eigen::Vector3d> rays;    // rays of the same points
   std::vector<Eigen::Vector3d> selected;
   std::vector<RingArc> arcs;
   std::vector<char> used;

@@ -39,7 +39,7 @@ class FindArcRingsTest : public ::testing::Test {
   RingArcsWorkspace workspace_;
 };
 
-TEST_F(FindArcRingsTest, WithoutRoomThereAreNoArcs) {
+TEST_F(FindArcRingsTest, FindsNoArcsWithoutCapacity) {
   const BorderTracer tracer = TraceFigure(OnRing, 320, 240);
   workspace_.Reserve(300);  // the outer edge alone has more points
   const std::size_t room = workspace_.points.capacity();
@@ -48,7 +48,7 @@ TEST_F(FindArcRingsTest, WithoutRoomThereAreNoArcs) {
   EXPECT_EQ(workspace_.points.capacity(), room);
 }
 
-TEST_F(FindArcRingsTest, AWholeRingIsCovered) {
+TEST_F(FindArcRingsTest, CoversWholeRing) {
   const auto& rings = Find(OnRing);
   ASSERT_EQ(rings.size(), 2u) << "its two edges";
   for (const ArcRing& ring : rings) {
@@ -57,7 +57,7 @@ TEST_F(FindArcRingsTest, AWholeRingIsCovered) {
   }
 }
 
-TEST_F(FindArcRingsTest, ABrokenRingIsPutTogether) {
+TEST_F(FindArcRingsTest, JoinsArcsOfBrokenRing) {
   // Cut by a wedge and by a bar: three arcs of each edge.
   const auto& rings = Find([](double x, double y) {
     return OnRing(x, y) && std::abs(y - 130) > 5 &&
@@ -68,7 +68,7 @@ TEST_F(FindArcRingsTest, ABrokenRingIsPutTogether) {
   for (const ArcRing& ring : rings) ExpectCircle(ring);
 }
 
-TEST_F(FindArcRingsTest, ARingGrownTogetherWithSomethingIsFound) {
+TEST_F(FindArcRingsTest, FindsRingMergedWithOtherFigure) {
   const auto& rings = Find([](double x, double y) {
     return OnRing(x, y) || (x > 150 && x < 300 && y > 160 && y < 230);
   });
@@ -82,7 +82,7 @@ TEST_F(FindArcRingsTest, ARingGrownTogetherWithSomethingIsFound) {
   EXPECT_TRUE(outer);
 }
 
-TEST_F(FindArcRingsTest, CoverageIsAskedFor) {
+TEST_F(FindArcRingsTest, RequiresMinimumCoverage) {
   // A third of the ring.
   const Print third = [](double x, double y) { return OnRing(x, y) && y < 82; };
   const auto& rings = Find(third, 0.6);
@@ -98,7 +98,7 @@ TEST_F(FindArcRingsTest, StraightLinesHaveNoArcs) {
               }).empty());
 }
 
-TEST_F(FindArcRingsTest, TheImageBorderIsNoEdge) {
+TEST_F(FindArcRingsTest, IgnoresImageBorder) {
   // Cut off at the top and on the left. A direct fit to a quarter of an arc is known to be too
   // small.
   const auto& rings = Find([](double x, double y) {
@@ -111,7 +111,7 @@ TEST_F(FindArcRingsTest, TheImageBorderIsNoEdge) {
   }
 }
 
-TEST_F(FindArcRingsTest, ArmsThatTouchTheRingLeaveItsInnerEdge) {
+TEST_F(FindArcRingsTest, FindsInnerEdgeWithTouchingArms) {
   const auto& rings = Find([](double x, double y) {
     return OnRing(x, y) ||
            (std::hypot(x - 150, y - 110) < 50 && (std::abs(x - 150) < 6 || std::abs(y - 110) < 6));
@@ -123,7 +123,7 @@ TEST_F(FindArcRingsTest, ArmsThatTouchTheRingLeaveItsInnerEdge) {
   ExpectCircle(*inner);
 }
 
-TEST_F(FindArcRingsTest, OnlyTheBordersThatAreAskedForAreCut) {
+TEST_F(FindArcRingsTest, UsesRequestedBordersOnly) {
   const BorderTracer tracer = TraceFigure(OnRing, 320, 240);
   ASSERT_EQ(tracer.borders().size(), 2u) << "outer and inner";
   workspace_.Reserve(tracer.capacity());

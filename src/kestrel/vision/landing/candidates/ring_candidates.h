@@ -44,7 +44,7 @@ struct RingCandidate {
 
 // Memory of RingFinder. Does not allocate once it is reserved.
 struct RingFinderBuffers {
-  static constexpr std::size_t kMaxRays = 48;  // of one border
+  static constexpr std::size_t kMaxRays = 48;  // rays along one border
 
   struct Outline {
     Ellipse outer_edge;                // outer edge of the ring, pixels of the image of the pass

@@ -58,7 +58,7 @@ std::vector<Eigen::Vector3d> Circle(const RigidTransform& pose) {
   return Outline(pose, [](double) { return 0.5; });
 }
 
-TEST(FitRing, FindsPosesOfACircle) {
+TEST(FitRing, FindsPosesOfCircle) {
   Random random(1);
   for (int trial = 0; trial < 100; ++trial) {
     const RigidTransform pose =
@@ -72,7 +72,7 @@ TEST(FitRing, FindsPosesOfACircle) {
   }
 }
 
-TEST(FitRing, LeavesOutDirtBesideTheRing) {
+TEST(FitRing, IgnoresDirtBesideRing) {
   // Seen obliquely from close by: dirt on the near and on the far side alike.
   const RigidTransform pose = PrintPose({0, 0.2, 0.9}, 1.0, 0, 0);
   for (int first = 0; first < 48; first += 4) {
@@ -82,7 +82,7 @@ TEST(FitRing, LeavesOutDirtBesideTheRing) {
   }
 }
 
-TEST(FitRing, AsksForMostPointsWithinTheTolerance) {
+TEST(FitRing, RequiresMostPointsWithinTolerance) {
   const RigidTransform pose = PrintPose({0.3, 0.2, 2}, 0.5, 1, 0);
   const auto with_every_third = [&](double offset) {
     auto rays = Circle(pose);

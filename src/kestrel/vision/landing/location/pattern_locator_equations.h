@@ -19,7 +19,7 @@ namespace kestrel {
 // Predicts where the outlines are in the image.
 struct PatternLocator::State {
   RigidTransform pose;
-  double spread_px = 0;  // of the black over the white, at every edge
+  double spread_px = 0;  // spread of the black over the white at every edge
   double log_focal = 0;
   Eigen::Vector2d principal_px = Eigen::Vector2d::Zero();
 
@@ -142,7 +142,7 @@ struct PatternLocator::Residuals {
   double EdgeVariance() const;
 
   struct Stretch {
-    double sum = 0;  // of weighted residuals
+    double sum = 0;  // sum of weighted residuals
     double weights = 0;
   };
   double used;
@@ -175,7 +175,7 @@ struct PatternLocator::Solution {
   Matrix Covariance() const { return edge_variance * inverse; }
   double Sigma(int unknown) const { return std::sqrt(edge_variance * inverse(unknown, unknown)); }
 
-  Matrix inverse = Matrix::Zero();  // of the equations
+  Matrix inverse = Matrix::Zero();  // inverse of the equations' matrix
   Vector step = Vector::Zero();
   double mean_square;         // mean square of the offsets after the step
   double camera_mean_square;  // the same against the camera's own lens

@@ -49,7 +49,7 @@ class PatternLocatorTest : public ::testing::Test {
   const PatternLocator locator_{camera_, pattern_};
 };
 
-TEST_F(PatternLocatorTest, RecoversThePose) {
+TEST_F(PatternLocatorTest, RecoversPose) {
   Random random(1);
   for (int trial = 0; trial < 12; ++trial) {
     const double distance = random.Uniform(1.3, 3);
@@ -68,7 +68,7 @@ TEST_F(PatternLocatorTest, RecoversThePose) {
 }
 
 // White spreads over the black in a saturated image, here by half a pixel and more.
-TEST_F(PatternLocatorTest, OverexposureDoesNotMoveIt) {
+TEST_F(PatternLocatorTest, OverexposureDoesNotMovePose) {
   Random random(5);
   for (int trial = 0; trial < 12; ++trial) {
     const double distance = random.Uniform(1.3, 3);
@@ -86,7 +86,7 @@ TEST_F(PatternLocatorTest, OverexposureDoesNotMoveIt) {
   }
 }
 
-TEST_F(PatternLocatorTest, TheCovarianceIsThatOfTheErrors) {
+TEST_F(PatternLocatorTest, CovarianceMatchesErrors) {
   Random random(2);
   for (const double distance : {1.2, 1.8, 3.5}) {
     const RigidTransform truth = PrintPose({0.1, -0.05, distance}, 0.35, 0.8, 0.4);
@@ -99,14 +99,14 @@ TEST_F(PatternLocatorTest, TheCovarianceIsThatOfTheErrors) {
       const auto error = PoseError(location->camera_from_pattern, truth);
       sum += error.dot(location->covariance.ldlt().solve(error)) / 6;
     }
-    const double ratio = std::sqrt(sum / kTrials);  // of errors and standard deviations
+    const double ratio = std::sqrt(sum / kTrials);  // ratio of errors to standard deviations
     EXPECT_GT(ratio, 0.85) << distance;
     EXPECT_LT(ratio, 1.2) << distance;
   }
 }
 
 // The tilt moves the outlines of a print seen from straight above only by its square.
-TEST_F(PatternLocatorTest, FromStraightAboveItSettles) {
+TEST_F(PatternLocatorTest, ConvergesFromStraightAbove) {
   for (const double distance : {3.0, 4.0}) {
     const RigidTransform truth = PrintPose({0.1, 0.2, distance}, 0.02, 0.5, 0.4);
     const RigidTransform tilted = PrintPose({0.1, 0.2, 1.02 * distance}, 0.35, 0.5, 0.4);
@@ -117,7 +117,7 @@ TEST_F(PatternLocatorTest, FromStraightAboveItSettles) {
   }
 }
 
-TEST_F(PatternLocatorTest, WhatIsKnownOfThePlaneSteadiesTheTilt) {
+TEST_F(PatternLocatorTest, KnownPlaneStabilisesTilt) {
   Random random(4);
   const RigidTransform truth = PrintPose({0.3, 0.2, 7}, 0.03, 0.8, 0.4);
   const cv::Mat image = Draw(truth);
@@ -136,7 +136,7 @@ TEST_F(PatternLocatorTest, WhatIsKnownOfThePlaneSteadiesTheTilt) {
   EXPECT_LT(2 * with, without);
 }
 
-TEST_F(PatternLocatorTest, APartOutOfViewSaysNothing) {
+TEST_F(PatternLocatorTest, IgnoresPartOutOfView) {
   Random random(3);
   const RigidTransform truth = PrintPose({1.05, 0, 1.6}, 0, 0, 0);
   const auto location = Locate(Draw(truth), Disturb(truth, &random), 5, 10);
@@ -144,13 +144,13 @@ TEST_F(PatternLocatorTest, APartOutOfViewSaysNothing) {
   EXPECT_LT((Center(location->camera_from_pattern) - Center(truth)).norm(), 0.2);
 }
 
-TEST_F(PatternLocatorTest, WithoutEdgesThereIsNoPose) {
+TEST_F(PatternLocatorTest, FailsWithoutEdges) {
   const RigidTransform pose = PrintPose({0, 0, 2}, 0, 0, 0);
   EXPECT_FALSE(Locate(cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)), pose, 5, 10));
   EXPECT_FALSE(Locate(Draw(pose), PrintPose({0, 0, -2}, 0, 0, 0), 5, 10));
 }
 
-TEST_F(PatternLocatorTest, TheRingAloneGivesItsPlaneAndCentre) {
+TEST_F(PatternLocatorTest, RingAloneGivesPlaneAndCentre) {
   Random random(7);
   const Print ring = [this](double x, double y) { return IsRing(pattern_, x, y); };
   for (int trial = 0; trial < 8; ++trial) {
@@ -168,7 +168,7 @@ TEST_F(PatternLocatorTest, TheRingAloneGivesItsPlaneAndCentre) {
   }
 }
 
-TEST_F(PatternLocatorTest, NothingIsLocatedOnAnEvenImage) {
+TEST_F(PatternLocatorTest, LocatesNothingInUniformImage) {
   const cv::Mat even(240, 320, CV_8UC1, cv::Scalar(120));
   EXPECT_FALSE(locator_.LocateRing(even, PrintPose({0, 0, 2}, 0.2, 0, 0), 5, 10, 4));
 }
@@ -201,7 +201,7 @@ class CalibrationEvidenceTest : public PatternLocatorTest {
   }
 };
 
-TEST_F(CalibrationEvidenceTest, ARightCalibrationIsNotContradicted) {
+TEST_F(CalibrationEvidenceTest, DoesNotContradictRightCalibration) {
   Random random(11);
   constexpr int kTrials = 60;
   double surprise = 0;
@@ -216,7 +216,7 @@ TEST_F(CalibrationEvidenceTest, ARightCalibrationIsNotContradicted) {
   EXPECT_LT(surprise / kTrials, 4) << "three on average";
 }
 
-TEST_F(CalibrationEvidenceTest, AWrongFocalLengthIsSaidWithinItsSigma) {
+TEST_F(CalibrationEvidenceTest, EstimatesWrongFocalLengthWithinSigma) {
   Random random(12);
   for (const double factor : {0.95, 1.05}) {
     constexpr int kTrials = 30;
@@ -229,13 +229,13 @@ TEST_F(CalibrationEvidenceTest, AWrongFocalLengthIsSaidWithinItsSigma) {
       const double error = (evidence.log_focal + std::log(factor)) / evidence.log_focal_sigma;
       squares += error * error;
     }
-    const double ratio = std::sqrt(squares / kTrials);  // of errors and standard deviations
+    const double ratio = std::sqrt(squares / kTrials);  // ratio of errors to standard deviations
     // The true principal point is exactly the calibrated one, which the standard deviation ignores.
     EXPECT_LT(ratio, 1.8) << factor;
   }
 }
 
-TEST_F(CalibrationEvidenceTest, AContradictedCalibrationDoesNotBendThePose) {
+TEST_F(CalibrationEvidenceTest, ContradictedCalibrationDoesNotDistortPose) {
   Random random(13);
   for (const double factor : {0.8, 1.25}) {
     for (int trial = 0; trial < 8; ++trial) {
@@ -252,7 +252,7 @@ TEST_F(CalibrationEvidenceTest, AContradictedCalibrationDoesNotBendThePose) {
   }
 }
 
-TEST_F(CalibrationEvidenceTest, TheMisfitIsThatOfTheCamerasOwnLens) {
+TEST_F(CalibrationEvidenceTest, MisfitRefersToCalibratedLens) {
   Random random(16);
   const RigidTransform truth = PrintPose({0.3, -0.2, 1.4}, 0.6, 1, 0.3);
   const auto right = LocateWith(1, truth, 2, &random);
@@ -267,7 +267,7 @@ TEST_F(CalibrationEvidenceTest, TheMisfitIsThatOfTheCamerasOwnLens) {
 }
 
 // One view leaves something open; views from several sides determine one focal length.
-TEST_F(CalibrationEvidenceTest, ViewsAddUpToTheFocalLength) {
+TEST_F(CalibrationEvidenceTest, ViewsAccumulateToFocalLength) {
   Random random(17);
   for (const double factor : {0.8, 1.0, 1.25}) {
     Eigen::Matrix4d information = Eigen::Vector4d(4, 400, 400, 100).asDiagonal();
@@ -291,7 +291,7 @@ TEST_F(CalibrationEvidenceTest, ViewsAddUpToTheFocalLength) {
 }
 
 // A far print that faces the camera has the same size under any focal length.
-TEST_F(CalibrationEvidenceTest, AFarViewSaysLittle) {
+TEST_F(CalibrationEvidenceTest, FarViewGivesLittleEvidence) {
   Random random(14);
   for (int trial = 0; trial < 10; ++trial) {
     const auto location = LocateWith(1.1, PrintPose({0.1, 0.05, 4}, 0.1, 1, 0.3), 4, &random);
@@ -301,7 +301,7 @@ TEST_F(CalibrationEvidenceTest, AFarViewSaysLittle) {
   }
 }
 
-TEST_F(CalibrationEvidenceTest, APartSaysNothing) {
+TEST_F(CalibrationEvidenceTest, PartialViewGivesNoEvidence) {
   Random random(15);
   const auto location = LocateWith(1.1, PrintPose({1.05, 0, 1.6}, 0, 0, 0), 2, &random);
   ASSERT_TRUE(location);

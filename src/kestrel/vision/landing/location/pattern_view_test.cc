@@ -13,7 +13,7 @@
 namespace kestrel {
 namespace {
 
-TEST(ImageRegion, PixelsOfALevelAreCentredOnThoseTheyAreMadeOf) {
+TEST(ImageRegion, PixelsOfLevelAreCentredOnTheirSources) {
   const ImageRegion region{{64, 32}, 2};
   EXPECT_EQ(region.FromFull({65.5, 33.5}), Eigen::Vector2d(0, 0));
   EXPECT_EQ(region.ToFull({0, 0}), Eigen::Vector2d(65.5, 33.5));
@@ -21,7 +21,7 @@ TEST(ImageRegion, PixelsOfALevelAreCentredOnThoseTheyAreMadeOf) {
   EXPECT_LT((region.ToFull(region.FromFull(pixel)) - pixel).norm(), 1e-12);
 }
 
-TEST(PatternView, AgreesWithTheProjection) {
+TEST(PatternView, AgreesWithProjection) {
   Random random(1);
   for (const CameraIntrinsics& intrinsics : {PaperCamera(), EurocCamera()}) {
     const CameraModel camera(intrinsics);
@@ -45,7 +45,7 @@ TEST(PatternView, AgreesWithTheProjection) {
   }
 }
 
-TEST(PatternView, SamplesTheImageWhereItsPointsAre) {
+TEST(PatternView, SamplesImageAtItsPoints) {
   const CameraModel camera = TestPrintCamera();
   Random random(2);
   cv::Mat image(camera.height_px(), camera.width_px(), CV_8UC1);
@@ -76,7 +76,7 @@ TEST(PatternView, SamplesTheImageWhereItsPointsAre) {
   });
 }
 
-TEST(PatternView, IsNotValidBehindTheCamera) {
+TEST(PatternView, IsInvalidBehindCamera) {
   const CameraModel camera = TestPrintCamera();
   EXPECT_TRUE(PatternView(camera, PrintPose({0, 0, 2}, 0, 0, 0), 0.6, {}).valid());
   EXPECT_FALSE(PatternView(camera, PrintPose({0, 0, -2}, 0, 0, 0), 0.6, {}).valid());

@@ -50,7 +50,7 @@ class DetectionChoice {
   const FindingObserver* observer_;
   SearchLog& log_;
   std::optional<PrintFinding> best_;
-  std::optional<PrintFinding> mirror_;  // of the best finding, when it was found too
+  std::optional<PrintFinding> mirror_;  // mirror pose of the best finding, if it was found too
   bool is_sure_ = false;
 };
 

@@ -48,7 +48,7 @@ PrintDoubts RandomDoubts(Random* random) {
 
 // MayAccept never rejects a finding that would be accepted in the end, no matter how few of the
 // doubts are known and how much the prior takes.
-TEST_F(DetectionChoiceTest, AnEarlyLookLosesNothing) {
+TEST_F(DetectionChoiceTest, EarlyCheckRejectsNoAcceptableFinding) {
   Random random(1);
   int refused_early = 0, accepted = 0;
   for (int trial = 0; trial < 20000; ++trial) {
@@ -73,7 +73,7 @@ TEST_F(DetectionChoiceTest, AnEarlyLookLosesNothing) {
   EXPECT_GT(accepted, 100);
 }
 
-TEST_F(DetectionChoiceTest, WhoeverObservesSeesEverything) {
+TEST_F(DetectionChoiceTest, ObserverSeesEveryFinding) {
   std::vector<double> seen;
   const FindingObserver observer = [&](const PrintFinding& f) { seen.push_back(f.log_odds); };
   DetectionChoice choice = Choice(0.5, &observer);
@@ -85,7 +85,7 @@ TEST_F(DetectionChoiceTest, WhoeverObservesSeesEverything) {
   EXPECT_EQ(seen, (std::vector<double>{-3, 2}));
 }
 
-TEST_F(DetectionChoiceTest, TheMostProbableIsTaken) {
+TEST_F(DetectionChoiceTest, ChoosesMostProbableFinding) {
   Random random(2);
   for (int trial = 0; trial < 300; ++trial) {
     const double min_quality = random.Uniform(0.1, 0.9);
@@ -111,7 +111,7 @@ TEST_F(DetectionChoiceTest, TheMostProbableIsTaken) {
   }
 }
 
-TEST_F(DetectionChoiceTest, WhatIsNotProbableEnoughSaysWhy) {
+TEST_F(DetectionChoiceTest, ReportsReasonOfImprobableFinding) {
   DetectionChoice choice = Choice(0.5);
   PrintFinding finding = FindingAt({10, 10}, -2);
   finding.doubts[PrintDoubt::kDarkBoard] = 1;
@@ -124,7 +124,7 @@ TEST_F(DetectionChoiceTest, WhatIsNotProbableEnoughSaysWhy) {
   EXPECT_EQ(report_.reason, "");
 }
 
-TEST_F(DetectionChoiceTest, TheBoundsOfTheQualityAreReached) {
+TEST_F(DetectionChoiceTest, AcceptsAllAtZeroAndNoneAtOne) {
   DetectionChoice any = Choice(0);
   EXPECT_TRUE(any.Add(FindingAt({0, 0}, -50)));
   DetectionChoice none = Choice(1);
@@ -133,7 +133,7 @@ TEST_F(DetectionChoiceTest, TheBoundsOfTheQualityAreReached) {
 
 // The pose with the smaller residuals is reported, and the other pose of the same ring as its
 // mirror. The covariance reaches the other one.
-TEST_F(DetectionChoiceTest, TheOtherPoseOfTheRingIsTold) {
+TEST_F(DetectionChoiceTest, ReportsMirrorPoseOfRing) {
   PrintFinding right = FindingAt({100, 100}, 3);
   PrintFinding mirror = FindingAt({100.5, 100}, 3.5);
   mirror.location.camera_from_pattern = PrintPose({0.1, 0.02, 5.1}, 0.3, 1 + 3.14, 0.2);
@@ -157,7 +157,7 @@ TEST_F(DetectionChoiceTest, TheOtherPoseOfTheRingIsTold) {
   }
 }
 
-TEST_F(DetectionChoiceTest, APoseThatIsMuchWorseIsNoMirror) {
+TEST_F(DetectionChoiceTest, IgnoresMuchWorseMirrorPose) {
   DetectionChoice choice = Choice(0.5);
   PrintFinding right = FindingAt({100, 100}, 8);
   PrintFinding bent = FindingAt({100.5, 100}, 1);
@@ -171,7 +171,7 @@ TEST_F(DetectionChoiceTest, APoseThatIsMuchWorseIsNoMirror) {
 }
 
 // The search ends at a whole print, and at a partial one only where it determines the pose.
-TEST_F(DetectionChoiceTest, APartThatHardlyFixesThePoseIsNotSure) {
+TEST_F(DetectionChoiceTest, IsNotSureOfPartWithUncertainPose) {
   DetectionChoice whole = Choice(0.5);
   whole.Add(FindingAt({0, 0}, 2));
   EXPECT_TRUE(whole.IsSure());

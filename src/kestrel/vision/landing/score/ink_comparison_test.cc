@@ -85,7 +85,7 @@ class InkComparisonTest : public ::testing::Test {
   const Print print_ = SpokedPrint(pattern_, 4);
 };
 
-TEST_F(InkComparisonTest, NothingSpeaksAgainstThePrint) {
+TEST_F(InkComparisonTest, TruePrintRaisesNoDoubts) {
   const Compared compared = Compare(print_);
   EXPECT_EQ(compared.seen, 1);
   EXPECT_LT(compared.Worst(), 0.03);
@@ -93,7 +93,7 @@ TEST_F(InkComparisonTest, NothingSpeaksAgainstThePrint) {
 }
 
 // Shadows of a body, arms and turning rotors at any place; of an edge; and of a fence.
-TEST_F(InkComparisonTest, ShadowsSpeakAgainstNothing) {
+TEST_F(InkComparisonTest, ShadowsRaiseNoDoubts) {
   const cv::Mat even = Draw(print_);
   const auto uav = [](double turn, double at) {
     return [=](double x, double y) {
@@ -119,7 +119,7 @@ TEST_F(InkComparisonTest, ShadowsSpeakAgainstNothing) {
   }
 }
 
-TEST_F(InkComparisonTest, OtherSignsShowWhatThePrintHasNot) {
+TEST_F(InkComparisonTest, OtherSignsRaiseDoubts) {
   const Print three_arms = [this](double x, double y) {
     return print_(x, y) && !(x > 0.06 && std::abs(y) < 0.06 && x < 0.39);
   };
@@ -143,7 +143,7 @@ TEST_F(InkComparisonTest, OtherSignsShowWhatThePrintHasNot) {
   EXPECT_GT(Compare(SpokedPrint(pattern_, 5)).Worst(), 0.5);
 }
 
-TEST_F(InkComparisonTest, AFlatImageIsUnlikeThePrint) {
+TEST_F(InkComparisonTest, FlatImageIsUnlikePrint) {
   const Compared compared = Compare(cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)));
   EXPECT_EQ(compared[PrintDoubt::kInklessArm], 1);
   EXPECT_EQ(compared[PrintDoubt::kUnlike], 0);
@@ -151,7 +151,7 @@ TEST_F(InkComparisonTest, AFlatImageIsUnlikeThePrint) {
 
 // A highlight that saturates the image hides the ink of an arm, and veils the ink around. What it
 // hides does not speak against the print, unlike a patch of white as large.
-TEST_F(InkComparisonTest, AHighlightHidesAnArm) {
+TEST_F(InkComparisonTest, HighlightExcusesHiddenArm) {
   const cv::Mat even = Draw(print_);
   for (const double sigma_m : {0.06, 0.2}) {
     const cv::Mat lit = Shine(even, {0.2, 0}, sigma_m, 400);
@@ -164,7 +164,7 @@ TEST_F(InkComparisonTest, AHighlightHidesAnArm) {
 }
 
 // White between sharp edges is no highlight, however bright the board is.
-TEST_F(InkComparisonTest, AnOverexposedBoardHidesNoArm) {
+TEST_F(InkComparisonTest, OverexposedBoardExcusesNoMissingArm) {
   for (const int arms : {0, 1, 2, 3}) {
     const Print sign = [&](double x, double y) {
       const bool is_cross = std::min(std::abs(x), std::abs(y)) < 0.05 && std::hypot(x, y) < 0.39;

@@ -22,7 +22,7 @@ PrintDoubts AnyDoubts(Random* random) {
   return doubts;
 }
 
-TEST(PrintDoubts, WhatIsNotKnownCostsNothing) {
+TEST(PrintDoubts, UnknownDoubtsCostNothing) {
   for (const PrintKind kind : kKinds) {
     const PrintDoubts none;
     for (std::size_t i = 0; i < kPrintDoubts; ++i) {
@@ -32,7 +32,7 @@ TEST(PrintDoubts, WhatIsNotKnownCostsNothing) {
   }
 }
 
-TEST(PrintDoubts, MoreDoubtIsNeverMoreProbable) {
+TEST(PrintDoubts, MoreDoubtNeverRaisesProbability) {
   Random random(1);
   for (const PrintKind kind : kKinds) {
     for (int trial = 0; trial < 200; ++trial) {
@@ -46,7 +46,7 @@ TEST(PrintDoubts, MoreDoubtIsNeverMoreProbable) {
   }
 }
 
-TEST(PrintDoubts, TheOddsAreWhatTheDoubtsLeave) {
+TEST(PrintDoubts, OddsAreReducedByEachDoubt) {
   Random random(2);
   for (const PrintKind kind : kKinds) {
     const PrintDoubts doubts = AnyDoubts(&random);
@@ -59,7 +59,7 @@ TEST(PrintDoubts, TheOddsAreWhatTheDoubtsLeave) {
 }
 
 // For every kind of print, every doubt that can be measured has weight somewhere.
-TEST(PrintDoubts, NothingLooksLikeThePrintInSpiteOfEverything) {
+TEST(PrintDoubts, AllDoubtsTogetherRejectPrint) {
   for (const PrintKind kind : kKinds) {
     PrintDoubts all;
     for (std::size_t i = 0; i < kPrintDoubts; ++i) all[DoubtAt(i)] = 2;
@@ -67,7 +67,7 @@ TEST(PrintDoubts, NothingLooksLikeThePrintInSpiteOfEverything) {
   }
 }
 
-TEST(PrintDoubts, TheMainDoubtIsTheOneThatTakesMost) {
+TEST(PrintDoubts, MainDoubtTakesMostOdds) {
   for (const PrintKind kind : kKinds) {
     for (std::size_t i = 0; i < kPrintDoubts; ++i) {
       PrintDoubts doubts;
@@ -94,7 +94,7 @@ TEST(PrintDoubts, TheMainDoubtIsTheOneThatTakesMost) {
   EXPECT_EQ(MainDoubt(PrintKind::kAsAWhole, broken), "the ring is broken");
 }
 
-TEST(PrintDoubts, EveryReasonIsAnotherOne) {
+TEST(PrintDoubts, EveryDoubtHasItsOwnReason) {
   std::set<std::string> reasons;
   std::size_t weighed = 0;
   for (std::size_t i = 0; i < kPrintDoubts; ++i) {
@@ -110,7 +110,7 @@ TEST(PrintDoubts, EveryReasonIsAnotherOne) {
   EXPECT_GT(weighed, 5u);
 }
 
-TEST(ProbabilityOf, IsThatOfTheOdds) {
+TEST(ProbabilityOf, ConvertsLogOdds) {
   EXPECT_EQ(ProbabilityOf(0), 0.5);
   EXPECT_NEAR(ProbabilityOf(std::log(9)), 0.9, 1e-12);
   EXPECT_NEAR(ProbabilityOf(-std::log(9)), 0.1, 1e-12);

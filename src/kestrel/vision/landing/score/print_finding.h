@@ -20,7 +20,7 @@ struct PrintFinding {
   std::optional<SeenPrint> seen;  // location in the image by its edges
   double seen_rms_px = 0;         // root mean square offset of the edges from 'seen'
   Eigen::Vector2d center_px;      // image of the middle of the print
-  Eigen::Vector2d diameters_px;   // of the ring, the longer one first
+  Eigen::Vector2d diameters_px;   // diameters of the ring, the longer one first
   PrintDoubts doubts;
   double log_odds = 0;  // that it is the pattern, by the doubts alone
   double told = 0;      // log odds that the hint adds to that; at most 0

@@ -33,7 +33,7 @@ RingProbe::RingProbe(const LandingPattern& pattern) {
 }
 
 double RingProbe::Contrast(const cv::Mat& image, const PatternView& view) const {
-  constexpr std::size_t kFewest = kPlaces / 6;  // of which a contrast is known
+  constexpr std::size_t kFewest = kPlaces / 6;  // places with a known contrast
   std::array<float, 3 * kPlaces> gray;
   view.Sample(image, x_m_.data(), y_m_.data(), gray.size(), gray.data());
   std::array<float, kPlaces> outside, inside;

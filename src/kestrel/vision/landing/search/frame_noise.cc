@@ -55,7 +55,7 @@ class Roughness {
   }
 
  private:
-  static constexpr std::size_t kMost = 4 * 2 * 255 + 1;  // of sums of four pixels
+  static constexpr std::size_t kMost = 4 * 2 * 255 + 1;  // values for sums of four pixels
   std::array<int, kMost> histogram_{};
   int count_ = 0;
 };

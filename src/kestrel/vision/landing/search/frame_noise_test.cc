@@ -35,7 +35,7 @@ TEST(FrameNoiseTest, MeasuresNoiseAndContrast) {
   }
 }
 
-TEST(FrameNoiseTest, TextureIsNoNoise) {
+TEST(FrameNoiseTest, DoesNotCountTextureAsNoise) {
   Random random(2);
   const cv::Mat even(240, 320, CV_8UC1, cv::Scalar(128));
   cv::Mat texture = AddNoise(even, 60, &random);
@@ -43,12 +43,12 @@ TEST(FrameNoiseTest, TextureIsNoNoise) {
   EXPECT_LT(MeasureNoise(texture), 0.05 * MeasureContrast(texture));
 }
 
-TEST(FrameNoiseTest, AnImageWithoutRowsOrColumnsHasNone) {
+TEST(FrameNoiseTest, IsZeroWithoutRowsOrColumns) {
   EXPECT_EQ(MeasureNoise(cv::Mat(1, 1, CV_8UC1, cv::Scalar(9))), 0);
   EXPECT_EQ(MeasureNoise(cv::Mat(1, 100, CV_8UC1, cv::Scalar(9))), 0);
 }
 
-TEST(NoiseFilterTest, LeavesFramesWithLittleNoiseAsTheyAre) {
+TEST(NoiseFilterTest, KeepsFramesWithLittleNoise) {
   Random random(3);
   NoiseFilter filter;
   const cv::Mat dark = DarkFrame();
@@ -59,7 +59,7 @@ TEST(NoiseFilterTest, LeavesFramesWithLittleNoiseAsTheyAre) {
   EXPECT_EQ(&filter.Filter(noisy), &noisy);
 }
 
-TEST(NoiseFilterTest, TakesTheNoiseFromDarkFrames) {
+TEST(NoiseFilterTest, ReducesNoiseOfDarkFrames) {
   Random random(4);
   NoiseFilter filter;
   const cv::Mat dark = DarkFrame();

@@ -14,7 +14,7 @@ namespace {
 constexpr double kCredibleTilt = 0.7;
 // Difference of two such cosines below which both poses count as equally level.
 constexpr double kAlikeTilt = 0.05;
-// Log odds of a pattern at another distance than the hint says.
+// Log odds of a pattern at another distance than that of the hint.
 constexpr double kWrongDistance = -2;
 
 }  // namespace

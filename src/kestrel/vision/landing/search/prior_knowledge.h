@@ -39,7 +39,7 @@ class PriorKnowledge {
   double LogOddsOfDistance(const Eigen::Vector3d& center_in_camera) const;
 
   // The order in which the two poses of a ring are tested: the more level one first.
-  // 'one_is_right': the hint tells the poses apart, so the second one is tested only where the
+  // 'one_is_right': the hint distinguishes the poses, so the second one is tested only where the
   // first one fails.
   struct Order {
     std::array<int, 2> poses{0, 1};

@@ -39,7 +39,7 @@ class PriorKnowledgeTest : public ::testing::Test {
   const LandingPatternDetectorOptions options_{};
 };
 
-TEST_F(PriorKnowledgeTest, WithoutAHintNothingIsKnown) {
+TEST_F(PriorKnowledgeTest, IsEmptyWithoutHint) {
   const LandingHint nothing;
   const PriorKnowledge prior = Of(nothing);
   EXPECT_FALSE(prior.PartOfImage(0.5));
@@ -51,7 +51,7 @@ TEST_F(PriorKnowledgeTest, WithoutAHintNothingIsKnown) {
   EXPECT_EQ(prior.Up(), Vector3d(0, 0, -1)) << "the camera looks straight down";
 }
 
-TEST_F(PriorKnowledgeTest, ThePartHoldsTheBoardWhereverItMayBe) {
+TEST_F(PriorKnowledgeTest, PartOfImageContainsBoard) {
   Random random(1);
   for (int trial = 0; trial < 200; ++trial) {
     const double distance = random.Uniform(0.5, 12);
@@ -77,7 +77,7 @@ TEST_F(PriorKnowledgeTest, ThePartHoldsTheBoardWhereverItMayBe) {
   }
 }
 
-TEST_F(PriorKnowledgeTest, NonsenseSaysNothingAboutThePart) {
+TEST_F(PriorKnowledgeTest, InvalidHintGivesNoPart) {
   for (const Vector3d& center : {Vector3d(0, 0, 0), Vector3d(0, 0, -2), Vector3d(kNan, 0, 1),
                                  Vector3d(500, 0, 1), Vector3d(0, 1e9, 1e-9)}) {
     const LandingHint hint = CenterAt(center);
@@ -87,7 +87,7 @@ TEST_F(PriorKnowledgeTest, NonsenseSaysNothingAboutThePart) {
   EXPECT_FALSE(Of(hint).PartOfImage(kNan));
 }
 
-TEST_F(PriorKnowledgeTest, ARingIsPredictedFromAboveOnly) {
+TEST_F(PriorKnowledgeTest, PredictsRingOnlyWithKnownPlaneFromAbove) {
   LandingHint hint = CenterAt({0.1, 0, 3});
   EXPECT_FALSE(Of(hint).PredictedRing()) << "nothing is known of its plane";
   hint.up_in_camera = UpTilted(0.2);
@@ -101,7 +101,7 @@ TEST_F(PriorKnowledgeTest, ARingIsPredictedFromAboveOnly) {
   EXPECT_FALSE(Of(hint).PredictedRing());
 }
 
-TEST_F(PriorKnowledgeTest, StepsThatSuitFindRingsOfTheSize) {
+TEST_F(PriorKnowledgeTest, SuitableStepsFindRingsOfPredictedSize) {
   // 220 px/m at 1 m: a ring of 22 px at 10 m, of 220 px at 1 m.
   for (const double distance : {1.0, 3.0, 10.0}) {
     const LandingHint hint = CenterAt({0, 0, distance});
@@ -126,7 +126,7 @@ TEST_F(PriorKnowledgeTest, StepsThatSuitFindRingsOfTheSize) {
   EXPECT_TRUE(Of(low).Suits({0, SearchMethod::kCross}));
 }
 
-TEST_F(PriorKnowledgeTest, WhatIsNotAsFarAsToldIsLessProbableAndNothingIsMore) {
+TEST_F(PriorKnowledgeTest, WrongDistanceLowersOddsAndNoneRaisesThem) {
   LandingHint hint = CenterAt({0, 0, 5});
   hint.center_sigma_m = 0.2;
   EXPECT_EQ(Of(hint).LogOddsOfDistance({0, 0, 5.5}), 0);
@@ -153,7 +153,7 @@ TEST_F(PriorKnowledgeTest, WhatIsNotAsFarAsToldIsLessProbableAndNothingIsMore) {
   }
 }
 
-TEST_F(PriorKnowledgeTest, TheLevelPoseIsTestedFirst) {
+TEST_F(PriorKnowledgeTest, TestsLevelPoseFirst) {
   const CirclePose level{{0, 0, 5}, UpTilted(0)}, tilted{{0, 0, 5}, UpTilted(0.6)};
   LandingHint hint;
   hint.up_in_camera = UpTilted(0.05);
@@ -166,7 +166,7 @@ TEST_F(PriorKnowledgeTest, TheLevelPoseIsTestedFirst) {
   EXPECT_TRUE(second.one_is_right);
 }
 
-TEST_F(PriorKnowledgeTest, BothPosesStayWhereTheAttitudeDoesNotDecide) {
+TEST_F(PriorKnowledgeTest, KeepsBothPosesWhenAttitudeIsUndecided) {
   const CirclePose a{{0, 0, 5}, UpTilted(0.3)}, b{{0, 0, 5}, UpTilted(-0.3)};
   const LandingHint nothing;
   EXPECT_FALSE(Of(nothing).OrderOf({a, b}).one_is_right);
@@ -186,7 +186,7 @@ TEST_F(PriorKnowledgeTest, BothPosesStayWhereTheAttitudeDoesNotDecide) {
   }
 }
 
-TEST_F(PriorKnowledgeTest, APlaneThatContradictsWhatIsUpHasNoPrior) {
+TEST_F(PriorKnowledgeTest, ContradictoryPlaneHasNoPrior) {
   LandingHint hint;
   hint.up_in_camera = UpTilted(0.1);
   const auto prior = Of(hint).LevelPrior(UpTilted(0.3));

@@ -11,7 +11,7 @@
 namespace kestrel {
 namespace {
 
-TEST(SearchPlan, NoStepIsTakenTwiceAndNoPassIsIdle) {
+TEST(SearchPlan, HasNoDuplicateStepAndNoUnusedPass) {
   std::set<std::pair<std::size_t, SearchMethod>> steps;
   std::set<std::size_t> passes;
   for (const SearchStep& step : kSteps) {
@@ -35,7 +35,7 @@ TEST(SearchPlan, SearchesArcsOfRingsOfAllSizes) {
 }
 
 // At the resolution of a pass, the smallest ring it searches for still has visible strokes.
-TEST(SearchPlan, PassesSeeTheirSmallestRing) {
+TEST(SearchPlan, PassesResolveTheirSmallestRing) {
   for (const SearchPass& pass : kPasses) {
     EXPECT_GE(pass.min_ring_px / std::exp2(pass.image_level), 6);
     EXPECT_LT(pass.min_ring_px, pass.max_ring_px);

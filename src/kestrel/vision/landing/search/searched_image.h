@@ -30,7 +30,7 @@ struct SearchedImageBuffers {
 
   // Reserves memory for images of the size of 'image'; true when the size is new.
   bool Reserve(const cv::Mat& image);
-  std::size_t most_points() const;  // of the borders of a pass with arcs
+  std::size_t most_points() const;  // points in the borders of a pass with arcs
 };
 
 // Writes the dark and bright pixels of a pass to 'buffers->binary'. Needs 'buffers->pyramid' up to

@@ -14,7 +14,7 @@ constexpr std::uint8_t kDark = 0, kUndecided = 128, kBright = 255;
 
 const SearchPass& FirstPass(int level) {
   return *std::find_if(kPasses.begin(), kPasses.end(), [&](const SearchPass& pass) {
-    // A pass with another definition of dark would say less about the threshold.
+    // A pass with another definition of dark would represent the threshold less well.
     const bool is_plain = !pass.black && !pass.top_hat && !pass.not_bright;
     return pass.image_level == level && is_plain;
   });

@@ -15,7 +15,7 @@ cv::Mat Pattern() {
   return image;
 }
 
-TEST(ThresholdViewTest, PaintIsDarkAndTheBoardBrightAtEveryResolution) {
+TEST(ThresholdViewTest, PaintIsDarkAndBoardBrightAtEveryResolution) {
   ThresholdView view;
   const cv::Mat image = Pattern();
   for (const int level : {3, 2, 1, 0}) {
@@ -29,13 +29,13 @@ TEST(ThresholdViewTest, PaintIsDarkAndTheBoardBrightAtEveryResolution) {
   }
 }
 
-TEST(ThresholdViewTest, WhatIsNoGrayImageIsLeftOut) {
+TEST(ThresholdViewTest, IgnoresNonGrayImages) {
   ThresholdView view;
   EXPECT_TRUE(view.Draw({}, 0).empty());
   EXPECT_TRUE(view.Draw(cv::Mat(64, 64, CV_8UC3, cv::Scalar(1)), 0).empty());
 }
 
-TEST(ThresholdViewTest, AnImageTooSmallForATileIsUndecided) {
+TEST(ThresholdViewTest, ImageTooSmallForTileIsUndecided) {
   const cv::Mat drawn = ThresholdView().Draw(cv::Mat(5, 6, CV_8UC1, cv::Scalar(9)), 3);
   ASSERT_EQ(drawn.size(), cv::Size(6, 5));
   EXPECT_EQ(cv::countNonZero(drawn != 128), 0);

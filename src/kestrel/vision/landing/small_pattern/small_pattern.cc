@@ -133,9 +133,9 @@ struct SmallPatternFitter::System {
   Eigen::Matrix<double, kUnknowns, kUnknowns> h;
   Eigen::Matrix<double, kUnknowns, 1> b;
   double count;  // weighted number of pixels
-  double sum;    // of the gray values, without highlights
+  double sum;    // sum of the gray values without highlights
   double sum_squares;
-  double squares;  // of the residuals, without highlights
+  double squares;  // sum of the squared residuals without highlights
 
   double variance() const { return squares / std::max(1.0, count - kUnknowns); }
   // Share of the image's variance, without its noise, that the print does not explain.
@@ -252,7 +252,7 @@ bool SmallPatternFitter::Improve(const System& system, const std::optional<Norma
 std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
     const cv::Mat& image, const RigidTransform& initial, Light light, int iterations,
     SmallPatternWorkspace* workspace, const std::optional<NormalPrior>& prior) const {
-  const int enough = light == Light::kShadows ? kEnoughToTellInk : kEnoughToFit;
+  const int enough = light == Light::kShadows ? kEnoughToSeparateInk : kEnoughToFit;
   if (!Gather(image, initial, enough, workspace)) return std::nullopt;
   State state;
   state.pose = initial;

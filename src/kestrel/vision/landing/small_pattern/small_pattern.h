@@ -27,7 +27,7 @@ struct SmallPatternWorkspace {
   static constexpr int kLogBlur = kPoseUnknowns;
   static constexpr int kWhite = kLogBlur + 1;
   static constexpr int kContrast = kWhite + 1;
-  static constexpr int kSlope = kContrast + 1;  // of the light, along both axes of the print
+  static constexpr int kSlope = kContrast + 1;  // slope of the light along both axes of the print
   static constexpr int kUnknowns = kSlope + 2;
   static constexpr int kResidual = kUnknowns;
   using Column = std::vector<float>;
@@ -47,8 +47,8 @@ struct SmallPatternWorkspace {
     Column dark_by_log_blur;
     Column expected;  // gray value that the print predicts
     Column seen;      // gray value of the image, without highlights; as expected where it saturates
-    Column residual;  // of the image, with highlights
-    Column weight;    // of the residual, 0 to 1
+    Column residual;  // residual of the image with highlights
+    Column weight;    // weight of the residual, 0 to 1
     Column root_weight;  // root of that; 0 where the image saturates
   };
 
@@ -110,7 +110,7 @@ class SmallPatternFitter {
 
   struct Start {
     RigidTransform camera_from_pattern;
-    double correlation;  // of the image with the print under a good lens's blur, -1 to 1
+    double correlation;  // correlation of image and print under a good lens's blur, -1 to 1
   };
   // Returns the element of 'scales' at which ring and white fit the image best. The ring lies as
   // 'ring', that many times smaller. Nothing when none fits. Does not allocate.

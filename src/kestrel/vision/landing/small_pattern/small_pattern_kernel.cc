@@ -195,7 +195,8 @@ void CompareGrays(const PrintLight& light, float limit, SmallPatternWorkspace* w
         hn::MulAdd(At(points.x, i), Of(light.slope_x),
                    hn::MulAdd(At(points.y, i), Of(light.slope_y), Of(light.white)));
     const Vector expected = hn::NegMulAdd(Of(light.contrast), At(points.dark, i), white);
-    // A saturated pixel of which more is expected counts as showing what is expected.
+    // A saturated pixel only shows that the light is at least as bright as the sensor's limit.
+    // Where the model expects more, the pixel agrees with it: the residual is 0.
     const auto cut_off = hn::And(hn::Ge(gray, Of(light.saturated)), hn::Gt(expected, gray));
     const Vector seen = hn::IfThenElse(cut_off, expected, gray);
     const Vector residual = hn::Sub(seen, expected);
@@ -205,7 +206,7 @@ void CompareGrays(const PrintLight& light, float limit, SmallPatternWorkspace* w
     Put(residual, &points.residual, i);
     const Vector weight = hn::Min(Of(1), hn::Div(Of(limit), magnitude));
     Put(weight, &points.weight, i);
-    // A saturated pixel does not count for small changes.
+    // A small change of the model does not change the residual of a saturated pixel: no derivative.
     Put(hn::IfThenZeroElse(cut_off, hn::Sqrt(weight)), &points.root_weight, i);
   }
 }

@@ -50,7 +50,7 @@ class SmallPatternKernelTest : public ::testing::Test {
   SmallPatternWorkspace workspace_;
 };
 
-TEST_F(SmallPatternKernelTest, APrintIsDarkWhereItsStrokesAre) {
+TEST_F(SmallPatternKernelTest, PrintIsDarkAtItsStrokes) {
   ForEveryTarget([&] {
     constexpr double kSharp = 0.05;  // px
     EvaluatePrint(ModelOf(pattern_, pose_, kSharp), &workspace_);
@@ -76,7 +76,7 @@ TEST_F(SmallPatternKernelTest, APrintIsDarkWhereItsStrokesAre) {
   });
 }
 
-TEST_F(SmallPatternKernelTest, DerivativesAreThoseOfTheGrayValues) {
+TEST_F(SmallPatternKernelTest, DerivativesMatchGrayValues) {
   ForEveryTarget([&] {
     using Unknowns = Eigen::Matrix<double, SmallPatternWorkspace::kUnknowns, 1>;
     const auto expected_at = [&](const Unknowns& change) {
@@ -116,7 +116,7 @@ TEST_F(SmallPatternKernelTest, DerivativesAreThoseOfTheGrayValues) {
   });
 }
 
-TEST_F(SmallPatternKernelTest, OutliersAndWhatIsCutOffCountLess) {
+TEST_F(SmallPatternKernelTest, ReducesWeightOfOutliersAndSaturation) {
   ForEveryTarget([&] {
     EvaluatePrint(ModelOf(pattern_, pose_, 0.8), &workspace_);
     const PrintLight light{.white = 300,

@@ -19,7 +19,7 @@ namespace {
 constexpr double kWidestInk = 1.5;
 constexpr double kBlurReachPx = 1;     // widening of ink by blur, on either side
 constexpr double kLeastLight = 0.2;    // least light in a shadow, share of the light beside it
-constexpr double kMaxRemaining = 0.5;  // of the unexplained variance, without shadows
+constexpr double kMaxRemaining = 0.5;  // share of the variance that was unexplained without shadows
 constexpr double kBrightest = 0.9;     // quantile: the light beside the shadows
 
 struct Offset {

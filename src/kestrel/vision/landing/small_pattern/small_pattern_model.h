@@ -22,7 +22,7 @@ namespace kestrel {
 // Largest numbers of pixels of a box around a print for which every pixel is used.
 inline constexpr int kEnoughToFit = 1200;
 inline constexpr int kEnoughToStart = 600;
-inline constexpr int kEnoughToTellInk = 2400;  // to tell ink from light by its width
+inline constexpr int kEnoughToSeparateInk = 2400;  // to distinguish ink from light by its width
 
 // Returns the matrix from rays to homogeneous coordinates of the plane of a pose.
 inline Eigen::Matrix3d PlaneFromRay(const RigidTransform& camera_from_pattern) {

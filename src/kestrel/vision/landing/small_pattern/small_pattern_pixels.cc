@@ -17,8 +17,9 @@ constexpr int kMaxSide = 256;  // largest side of the box around the print, pixe
 }  // namespace
 
 SmallPatternWorkspace::SmallPatternWorkspace() {
-  constexpr std::size_t kVector = 64;                                 // at most, floats
-  constexpr std::size_t kMost = kEnoughToTellInk + 2 * kMaxSide + 1;  // of a box and its border
+  constexpr std::size_t kVector = 64;  // at most, floats
+  constexpr std::size_t kMost =
+      kEnoughToSeparateInk + 2 * kMaxSide + 1;  // pixels of box and border
   const auto make_room = [](auto&... columns) { (columns.resize(kMost + kVector), ...); };
   for (auto* rays : {&pixels.ray, &pixels.ray_by_u, &pixels.ray_by_v}) {
     for (Column& column : *rays) make_room(column);
@@ -36,8 +37,8 @@ SmallPatternWorkspace::SmallPatternWorkspace() {
 // The box of the disc under a pose; nothing where it is not in view, or too large to be small.
 std::optional<SmallPatternFitter::PixelBox> SmallPatternFitter::BoxAround(
     const RigidTransform& pose, const cv::Size& image) const {
-  constexpr int kCorners = 8;                  // of an octagon around the circle
-  constexpr double kCornerRadius = 1.0823922;  // of the circle's radius
+  constexpr int kCorners = 8;                  // corners of an octagon around the circle
+  constexpr double kCornerRadius = 1.0823922;  // in radii of the circle
   constexpr int kMinSide = 4;
   const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
   Eigen::AlignedBox2d around;
@@ -118,7 +119,7 @@ void SmallPatternFitter::KeepPixelsOfPrint(const cv::Mat& image, const RigidTran
   workspace->count = count;
 }
 
-// One-sided differences suffice: they only say how far the blur reaches.
+// One-sided differences suffice: they only determine how far the blur reaches.
 void SmallPatternFitter::DifferentiateRays(SmallPatternWorkspace* workspace) const {
   SmallPatternWorkspace::Pixels& pixels = workspace->pixels;
   const std::size_t count = workspace->count;

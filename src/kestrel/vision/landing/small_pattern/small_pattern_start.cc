@@ -12,7 +12,7 @@
 namespace kestrel {
 namespace {
 
-constexpr double kMinRingCorrelation = 0.2;  // of a start, ring and white alone
+constexpr double kMinRingCorrelation = 0.2;  // with ring and white alone
 
 // The ring 'scale' times smaller, hence that much farther away.
 CirclePose Shrunk(const CirclePose& ring, double scale) {

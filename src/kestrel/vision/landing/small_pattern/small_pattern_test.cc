@@ -111,7 +111,7 @@ TEST_F(SmallPatternTest, LocatesRingsOf13To28Pixels) {
   }
 }
 
-TEST_F(SmallPatternTest, OtherFiguresInTheRingFitWorse) {
+TEST_F(SmallPatternTest, OtherFiguresInRingFitWorse) {
   Random random(2);
   const Print empty = [this](double x, double y) { return IsRing(pattern_, x, y); };
   for (const int diameter_px : {16, 20, 24, 28}) {
@@ -124,10 +124,10 @@ TEST_F(SmallPatternTest, OtherFiguresInTheRingFitWorse) {
   }
 }
 
-TEST_F(SmallPatternTest, CovarianceIsThatOfTheErrors) {
+TEST_F(SmallPatternTest, CovarianceMatchesErrors) {
   struct Case {
     double noise;         // gray values
-    double lowest_ratio;  // of errors and standard deviations
+    double lowest_ratio;  // ratio of errors to standard deviations
   };
   // With little noise the error of the model, which the covariance includes, is the larger part.
   for (const Case& one : {Case{6, 1. / 3}, Case{20, 0.8}}) {
@@ -137,7 +137,7 @@ TEST_F(SmallPatternTest, CovarianceIsThatOfTheErrors) {
   }
 }
 
-TEST_F(SmallPatternTest, OverexposureDoesNotMoveIt) {
+TEST_F(SmallPatternTest, OverexposureDoesNotMovePose) {
   Random random(4);
   const RigidTransform truth = PoseOf(24, &random);
   cv::Mat image = Draw(SpokedPrint(pattern_, 4), truth);
@@ -148,13 +148,13 @@ TEST_F(SmallPatternTest, OverexposureDoesNotMoveIt) {
               0.03);
 }
 
-TEST_F(SmallPatternTest, AFlatImageFitsNothing) {
+TEST_F(SmallPatternTest, FlatImageFitsNothing) {
   const RigidTransform pose = PrintPose({0, 0, 10}, 0, 0, 0);
   EXPECT_FALSE(fitter_.Refine(cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)), pose, Light::kEven, 8,
                               &workspace_));
 }
 
-TEST_F(SmallPatternTest, OtherSignsShowWhatThePrintHasNot) {
+TEST_F(SmallPatternTest, OtherSignsRaiseDoubts) {
   Random random(4);
   const auto others = [&](const Print& print, const RigidTransform& pose) {
     return FitInPlace(Draw(print, pose), pose, Light::kEven);
@@ -177,7 +177,7 @@ TEST_F(SmallPatternTest, OtherSignsShowWhatThePrintHasNot) {
 }
 
 // Shadows of a straight edge, and of the body and the four rotors of a UAV.
-TEST_F(SmallPatternTest, ShadowsAreTakenOut) {
+TEST_F(SmallPatternTest, RemovesShadows) {
   Random random(6);
   const auto edge = [](double x, double y) { return 0.6 * x + 0.8 * y > 0.1; };
   const auto uav = [](double x, double y) {
@@ -228,7 +228,7 @@ TEST_F(SmallPatternTest, ShadowsDoNotExplainOtherSigns) {
   }
 }
 
-TEST_F(SmallPatternTest, NoiseIsNotExplained) {
+TEST_F(SmallPatternTest, DoesNotExplainNoise) {
   Random random(7);
   double most = 0;
   for (int i = 0; i < 40; ++i) {
@@ -243,7 +243,7 @@ TEST_F(SmallPatternTest, NoiseIsNotExplained) {
   EXPECT_GT(fit->explained, 0.8);
 }
 
-TEST_F(SmallPatternTest, AHighlightDoesNotSpoilTheFit) {
+TEST_F(SmallPatternTest, HighlightDoesNotSpoilFit) {
   Random random(5);
   for (const int diameter_px : {18, 24}) {
     const RigidTransform truth = PoseOf(diameter_px, &random);
@@ -259,7 +259,7 @@ TEST_F(SmallPatternTest, AHighlightDoesNotSpoilTheFit) {
   }
 }
 
-TEST_F(SmallPatternTest, AHighlightInAQuadrantIsNoSign) {
+TEST_F(SmallPatternTest, HighlightInQuadrantRaisesNoDoubt) {
   Random random(6);
   for (const int diameter_px : {18, 24}) {
     const RigidTransform truth = PoseOf(diameter_px, &random);
@@ -277,7 +277,7 @@ TEST_F(SmallPatternTest, AHighlightInAQuadrantIsNoSign) {
   }
 }
 
-TEST_F(SmallPatternTest, AnArmInAHighlightIsNotMissing) {
+TEST_F(SmallPatternTest, ArmInHighlightIsNotMissing) {
   Random random(7);
   const RigidTransform truth = PoseOf(24, &random);
   const cv::Mat image = 0.4 * AddNoise(Draw(SpokedPrint(pattern_, 4), truth), 2, &random);
@@ -300,7 +300,7 @@ TEST_F(SmallPatternTest, AnArmInAHighlightIsNotMissing) {
 }
 
 // Noise that is uncorrelated between pixels does not lower the correlation, however strong it is.
-TEST_F(SmallPatternTest, NoiseIsTakenOutOfTheCorrelation) {
+TEST_F(SmallPatternTest, RemovesNoiseFromCorrelation) {
   Random random(10);
   const RigidTransform truth = PoseOf(26, &random);
   const cv::Mat clean = Draw(SpokedPrint(pattern_, 4), truth);

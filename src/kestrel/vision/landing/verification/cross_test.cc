@@ -36,7 +36,7 @@ class FindArmsTest : public ::testing::Test {
   const Print pattern_ = SpokedPrint(kPattern, 4);
 };
 
-TEST_F(FindArmsTest, FindsTheArms) {
+TEST_F(FindArmsTest, FindsArms) {
   for (double angle = 0; angle < 1.57; angle += 0.2) {
     const auto found = Find(pattern_, angle);
     ASSERT_TRUE(found) << angle;
@@ -44,7 +44,7 @@ TEST_F(FindArmsTest, FindsTheArms) {
   }
 }
 
-TEST_F(FindArmsTest, FindsThemInHalfOfThePrintAndAcrossShadow) {
+TEST_F(FindArmsTest, FindsArmsInHalfOfPrintAndAcrossShadow) {
   for (double angle = 0; angle < 1.57; angle += 0.2) {
     const auto cut_off = Find(pattern_, angle, 165);
     ASSERT_TRUE(cut_off) << angle;

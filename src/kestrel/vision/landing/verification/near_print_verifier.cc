@@ -21,7 +21,7 @@ constexpr double kLeastArms = 0.2;
 // else, as a share of the shorter axis.
 constexpr double kSameSign = 0.12;
 // Search reach for the edges of a ring without a cross, times the usual reach. Where much of the
-// ring is cut off or hidden, the rest tells little about its far side.
+// ring is cut off or hidden, the rest hardly constrains its far side.
 constexpr std::array<double, 2> kRefinedReaches{1.5, 2.5};
 constexpr int kRefinements = 4;
 constexpr double kPredictedReach = 0.12;  // share of the diameter, for a predicted ring
@@ -29,8 +29,9 @@ constexpr double kSureReach = 0.02;       // the same, for a ring whose edges ar
 constexpr double kCrossReach = 0.03;      // the same, for a ring that follows from the cross
 constexpr double kLeastReachPx = 2;
 constexpr double kMinStep = 0.12;  // least step of an edge, share of the print's contrast per pixel
-// The middle of a print follows the edges around it only as far as they deviate from the pose by
-// more than this many standard deviations.
+// Shifts of a print's middle, as seen by its edges, that count as noise: below this many standard
+// deviations of that middle the pose's projection is kept, above it the middle moves towards the
+// edges.
 constexpr double kSureCenter = 4;
 
 // Returns the level of the pyramid at which a ring is about 40 to 80 pixels wide.
@@ -158,7 +159,7 @@ std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::FindCross(
 }
 
 // Fits a ring to the edges of both of its circles before its inside is examined: where the ring is
-// cut off or broken, its first estimate says little about the far side.
+// cut off or broken, its first estimate hardly constrains the far side.
 std::optional<RingLocation> NearPrintVerifier::RefineRing(const CirclePose& ring, double reach_px,
                                                           int iterations) {
   const SearchLog::Timer timer = search_.log.Time(LandingStage::kRing);

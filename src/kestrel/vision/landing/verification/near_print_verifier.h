@@ -40,7 +40,7 @@ class NearPrintVerifier {
   // A possible print: a ring with a cross inside, or a cross alone.
   struct Hypothesis {
     RigidTransform camera_from_pattern;
-    double contrast;  // of ring and white, gray values
+    double contrast;  // contrast of ring and white, gray values
   };
 
   std::optional<Hypothesis> FindCross(const RigidTransform& ring, double diameter_px);

@@ -17,10 +17,10 @@ namespace {
 
 using Light = SmallPatternFitter::Light;
 
-constexpr double kMinMajorPx = 9;                // longer diameter of the smallest ring
-constexpr double kFlattestRing = 0.08;           // axis ratio of the flattest ring
-constexpr double kMinCorrelation = 0.35;         // of a start with the image
-constexpr double kSureCorrelation = 0.6;         // of a start by the direction of an arm
+constexpr double kMinMajorPx = 9;         // longer diameter of the smallest ring
+constexpr double kFlattestRing = 0.08;    // axis ratio of the flattest ring
+constexpr double kMinCorrelation = 0.35;  // correlation of a start with the image
+constexpr double kSureCorrelation = 0.6;  // correlation of a start by the direction of an arm
 constexpr double kMinCorrelationOfEither = 0.7;  // else the mirror pose is not tested
 // Explained share of the variance below which shadows are searched for even on a print that is
 // found in even light: they bend the pose.

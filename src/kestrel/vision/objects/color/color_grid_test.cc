@@ -17,7 +17,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-TEST(ColorGrid, LabelsAsTheModelClassifies) {
+TEST(ColorGrid, LabelsMatchModel) {
   const ColorModel model = DefaultObjectModel().colors;
   const ColorGrid grid(model);
   Random random(1);
@@ -36,7 +36,7 @@ TEST(ColorGrid, LabelsAsTheModelClassifies) {
   EXPECT_EQ(grid.At(250, 250, 250), kAmbiguousLabel) << "white";
 }
 
-TEST(ColorGrid, RegionsOfHueAndSaturationAreSetAndCleared) {
+TEST(ColorGrid, SetsAndClearsRegionsOfHueAndSaturation) {
   ColorGrid grid;
   const HueSaturationRegion red{350, 10, 0.5, 1};
   const std::size_t count = grid.SetRegion(red, 3);
@@ -49,7 +49,7 @@ TEST(ColorGrid, RegionsOfHueAndSaturationAreSetAndCleared) {
   EXPECT_EQ(grid.labels(), ColorGrid().labels());
 }
 
-TEST(ColorGrid, SavesAndLoadsTheRawBytes) {
+TEST(ColorGrid, SavesAndLoadsRawBytes) {
   const ColorGrid grid(DefaultObjectModel().colors);
   const TestFolder folder;
   const std::string path = folder / "grid.bin";
@@ -58,14 +58,14 @@ TEST(ColorGrid, SavesAndLoadsTheRawBytes) {
   EXPECT_EQ(ColorGrid::Load(path, 5).labels(), grid.labels());
 }
 
-TEST(ColorGrid, RedChangesSlowestInAFile) {
+TEST(ColorGrid, StoresRedAsSlowestIndex) {
   std::string bytes(ColorGrid::kCells, '\0');
   bytes[(50 << 12) + (2 << 6) + 1] = 1;
   const ColorGrid grid = ColorGrid::Parse(bytes, 1, "grid");
   EXPECT_EQ(grid.At(1 * 4, 2 * 4, 50 * 4), 1);
 }
 
-TEST(ColorGrid, FilesThatAreNoGridAreRefused) {
+TEST(ColorGrid, RefusesFilesWithoutGrid) {
   const auto error_of = [](const std::string& bytes) -> std::string {
     try {
       ColorGrid::Parse(bytes, 4, "grid.bin");

@@ -61,7 +61,7 @@ Eigen::Vector3d Offset(const Hsv& color, const Hsv& mean) {
 struct Moments {
   double weight = 0;  // mean
   Hsv mean;
-  Eigen::Matrix3d covariance;  // of Offset
+  Eigen::Matrix3d covariance;  // covariance of Offset
 };
 
 Moments WeightedMoments(std::span<const Hsv> samples, std::span<const double> weights) {

@@ -17,7 +17,7 @@ struct ColorComponent {
   double weight = 1;  // relative to the colour's other components, positive
   Hsv mean;
   Hsv sigma;               // standard deviations, positive
-  double correlation = 0;  // of hue and saturation, -1 to 1 exclusive
+  double correlation = 0;  // correlation of hue and saturation, -1 to 1 exclusive
 
   // Mahalanobis distance of 'color' from the mean, in standard deviations.
   double Mahalanobis(const Hsv& color) const;

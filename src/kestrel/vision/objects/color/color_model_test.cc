@@ -19,7 +19,7 @@ ColorMixture MixtureAt(const std::string& name, float hue_deg) {
   return {name, {{1, {hue_deg, 0.8F, 0.7F}, {8, 0.1F, 0.15F}}}};
 }
 
-TEST(Hsv, HueGoesAroundTheCircle) {
+TEST(Hsv, HueWrapsAroundCircle) {
   EXPECT_FLOAT_EQ(HsvFromBgr(0, 0, 200).hue_deg, 0);
   EXPECT_FLOAT_EQ(HsvFromBgr(200, 0, 0).hue_deg, 240);
   EXPECT_FLOAT_EQ(HsvFromBgr(50, 0, 200).hue_deg, 345);
@@ -27,7 +27,7 @@ TEST(Hsv, HueGoesAroundTheCircle) {
   EXPECT_FLOAT_EQ(HueDifference(355, 5), -10);
 }
 
-TEST(ColorModel, NearestColourWinsAndTheRestIsBackground) {
+TEST(ColorModel, ClassifiesNearestColourAndBackground) {
   ColorModel model;
   model.colors = {MixtureAt("red", 0), MixtureAt("green", 120)};
   EXPECT_EQ(model.Classify({355, 0.8F, 0.7F}), 0U);
@@ -36,7 +36,7 @@ TEST(ColorModel, NearestColourWinsAndTheRestIsBackground) {
   EXPECT_FALSE(model.Classify({0, 0.1F, 0.7F})) << "gray";
 }
 
-TEST(ColorModel, ContradictionsAreNamed) {
+TEST(ColorModel, ReportsContradictions) {
   ColorModel model;
   EXPECT_THAT(model.Validate(), Contains(HasSubstr("at least one color")));
   model.colors = {MixtureAt("red", 0), MixtureAt("crimson", 0)};
@@ -49,7 +49,7 @@ TEST(ColorModel, ContradictionsAreNamed) {
   EXPECT_THAT(model.Validate(), Contains(HasSubstr("sigmas must be positive")));
 }
 
-TEST(FitColorMixture, FindsMeanAndDeviationAcrossTheEndsOfTheHueCircle) {
+TEST(FitColorMixture, FindsMeanAndDeviationAcrossHueWrap) {
   Random random(1);
   std::vector<Hsv> samples;
   for (int i = 0; i < 2000; ++i) {
@@ -92,7 +92,7 @@ std::vector<Hsv> FadingRed(int count) {
   return samples;
 }
 
-TEST(FitColorMixture, HueAndSaturationAreOneGaussianAcrossTheEndsOfTheCircle) {
+TEST(FitColorMixture, FitsJointHueSaturationGaussianAcrossHueWrap) {
   const ColorMixture mixture = FitColorMixture("red", FadingRed(3000), 1);
   const ColorComponent& component = mixture.components.front();
   EXPECT_NEAR(component.sigma.hue_deg, 16, 1.5);
@@ -103,7 +103,7 @@ TEST(FitColorMixture, HueAndSaturationAreOneGaussianAcrossTheEndsOfTheCircle) {
   EXPECT_GT(mixture.Mahalanobis({16, 0.5F, 0.6F}), 3) << "across it";
 }
 
-TEST(FitColorMixture, NoDirectionIsNarrowerThanTheNoise) {
+TEST(FitColorMixture, LimitsDeviationToNoise) {
   const std::vector<Hsv> samples(100, {120, 0.5F, 0.5F});
   const ColorComponent component = FitColorMixture("green", samples, 1).components.front();
   EXPECT_FLOAT_EQ(component.sigma.hue_deg, 4);
@@ -122,7 +122,7 @@ TEST(FitColorMixture, SeparatesTwoHues) {
   EXPECT_GT(mixture.Mahalanobis({5, 0.7F, 0.6F}), 3);
 }
 
-TEST(ColorComponent, CorrelationTiltsTheEllipseAndKeepsItsVolume) {
+TEST(ColorComponent, CorrelationTiltsEllipseAndKeepsVolume) {
   const ColorComponent straight{1, {0, 0.5F, 0.5F}, {10, 0.1F, 0.1F}, 0};
   const ColorComponent tilted{1, {0, 0.5F, 0.5F}, {10, 0.1F, 0.1F}, 0.8};
   EXPECT_NEAR(straight.Mahalanobis({10, 0.6F, 0.5F}), std::sqrt(2.0), 1e-4);
@@ -131,12 +131,12 @@ TEST(ColorComponent, CorrelationTiltsTheEllipseAndKeepsItsVolume) {
               -std::log(std::sqrt(1 - 0.64)), 1e-9);
 }
 
-TEST(FitColorMixture, TooFewPixelsAreRefused) {
+TEST(FitColorMixture, RefusesTooFewPixels) {
   const std::vector<Hsv> samples(3);
   EXPECT_THROW(FitColorMixture("red", samples, 1), InputError);
 }
 
-TEST(ObjectModel, DefaultIsValidAndKnowsItsColours) {
+TEST(ObjectModel, DefaultIsValidAndHasItsColours) {
   const ObjectModel model = DefaultObjectModel();
   EXPECT_THAT(model.Validate(), IsEmpty());
   const auto name = [&](const Hsv& color) {

@@ -16,7 +16,7 @@ namespace kestrel {
 // first bin is the neighbour of the last.
 class HueSaturationHistogram {
  public:
-  static constexpr int kHues = 72;  // of 5 degrees each, the first from 0
+  static constexpr int kHues = 72;  // bins of 5 degrees each, the first from 0
   static constexpr int kSaturations = 25;
 
   void Add(const Hsv& color);

@@ -26,7 +26,7 @@ void AddCloud(float hue_deg, float saturation, float value, int count, Random* r
   }
 }
 
-TEST(HueSaturationHistogram, RedIsNotCutInTwo) {
+TEST(HueSaturationHistogram, DoesNotSplitRedAtHueWrap) {
   Random random(1);
   std::vector<Hsv> samples;
   AddCloud(358, 0.8F, 0.6F, 1000, &random, &samples);
@@ -38,7 +38,7 @@ TEST(HueSaturationHistogram, RedIsNotCutInTwo) {
   EXPECT_GT(histogram.At(HueSaturationHistogram::kHues - 1, 20), 0U);
 }
 
-TEST(HueSaturationHistogram, TakesTheEndsOfItsRanges) {
+TEST(HueSaturationHistogram, AcceptsEndsOfRanges) {
   HueSaturationHistogram histogram;
   EXPECT_EQ(histogram.CutHue_deg(), 0);
   histogram.Add({0, 0, 0});
@@ -47,7 +47,7 @@ TEST(HueSaturationHistogram, TakesTheEndsOfItsRanges) {
   EXPECT_EQ(histogram.At(HueSaturationHistogram::kHues - 1, 24), 1U);
 }
 
-TEST(SampleWarnings, SayWhatToDo) {
+TEST(SampleWarnings, AdviseWhatToDo) {
   Random random(2);
   std::vector<Hsv> samples;
   AddCloud(120, 0.7F, 0.6F, 500, &random, &samples);
@@ -61,7 +61,7 @@ TEST(SampleWarnings, SayWhatToDo) {
   EXPECT_THAT(SampleWarnings(samples), ElementsAre(HasSubstr("expose longer")));
 }
 
-TEST(ChooseColorMixture, HasAsManyComponentsAsThereAreClouds) {
+TEST(ChooseColorMixture, HasOneComponentPerCloud) {
   Random random(3);
   std::vector<Hsv> samples;
   AddCloud(0, 0.5F, 0.8F, 2500, &random, &samples);
@@ -74,7 +74,7 @@ TEST(ChooseColorMixture, HasAsManyComponentsAsThereAreClouds) {
   EXPECT_LT(two.criteria[1], two.criteria[0]);
 }
 
-TEST(ChooseColorMixture, IsTheSameEachTime) {
+TEST(ChooseColorMixture, IsDeterministic) {
   Random random(4);
   std::vector<Hsv> samples;
   AddCloud(40, 0.6F, 0.5F, 3000, &random, &samples);

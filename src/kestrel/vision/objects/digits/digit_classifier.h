@@ -41,8 +41,8 @@ class DigitClassifier {
  private:
   // Logarithms of a figure's shares.
   struct LogFigure {
-    DigitFigure set_gain;  // of the probability that a pixel is set, minus that of the opposite
-    double empty = 0;      // of the probability of an image without set pixels
+    DigitFigure set_gain;  // log-probability that a pixel is set, minus that it is not
+    double empty = 0;      // log-probability of an image without set pixels
   };
   static LogFigure LogOf(const DigitFigure& figure);
   static double LogLikelihood(const DigitImage& image, const LogFigure& figure);

@@ -72,7 +72,7 @@ std::optional<FaceCorners> FindFace(const cv::Mat& image) {
   return corners ? RefineCorners(image, *corners) : std::nullopt;
 }
 
-TEST(FindCuboidFace, CornersAreThoseOfTheUpperFace) {
+TEST(FindCuboidFace, FindsCornersOfUpperFace) {
   for (const double angle : {0.1, 0.5, 0.9, 1.3}) {
     const CuboidView view = DrawCuboid("5", angle);
     const auto corners = FindFace(view.image);
@@ -88,11 +88,11 @@ TEST(FindCuboidFace, CornersAreThoseOfTheUpperFace) {
   }
 }
 
-TEST(FindCuboidFace, WithoutADigitThereIsNone) {
+TEST(FindCuboidFace, FindsNoFaceWithoutDigit) {
   EXPECT_FALSE(FindFace(DrawCuboid(" ", 0.3).image));
 }
 
-TEST(Digits, AreReadInEveryOrientation) {
+TEST(Digits, ReadsDigitsInEveryOrientation) {
   const DigitClassifier classifier(DefaultDigitModel());
   for (int digit = 0; digit < 10; ++digit) {
     for (int quarter = 0; quarter < 4; ++quarter) {
@@ -119,7 +119,7 @@ std::optional<LikelyDigit> ReadText(const std::string& text, double angle) {
 }
 
 // An E and an N that lie on their side look like a 3 and a 2.
-TEST(Digits, OtherFiguresAreRarelyTakenForDigits) {
+TEST(Digits, RarelyTakesOtherFiguresForDigits) {
   int cut_out = 0, taken = 0;
   for (const char* text : {"A", "E", "F", "H", "K", "M", "N", "P", "R", "T", "U",
                            "V", "W", "X", "Y", "#", "+", "=", "&", "%", "*", "m"}) {
@@ -131,7 +131,7 @@ TEST(Digits, OtherFiguresAreRarelyTakenForDigits) {
   EXPECT_LE(taken, 2);
 }
 
-TEST(Digits, DigitsStayLikely) {
+TEST(Digits, KeepsDigitsLikely) {
   for (int digit = 0; digit < kDigitCount; ++digit) {
     const bool has_twin = digit == 6 || digit == 9;  // each is at most half as likely
     const auto likely = ReadText(std::to_string(digit), 0.7);
@@ -141,7 +141,7 @@ TEST(Digits, DigitsStayLikely) {
   }
 }
 
-TEST(CutOutDigit, ItalicsStandUpright) {
+TEST(CutOutDigit, UprightsItalics) {
   const CuboidView view = DrawCuboid("4", 0.2);
   CuboidView slanted = view;  // a square figure appears slanted on a face that is a parallelogram
   const cv::Matx23d shear(1, -0.25, 0.25 * 55, 0, 1, 0);
@@ -174,7 +174,7 @@ TEST(CutOutDigit, ViewsAreQuarterTurns) {
   }
 }
 
-TEST(DigitModel, ReadsWhatItPrintsAndRefusesTheRest) {
+TEST(DigitModel, RoundTripsAndRefusesMalformedText) {
   const std::string text = PrintDigitModel(DefaultDigitModel());
   EXPECT_EQ(ParseDigitModel(text, "digits"), DefaultDigitModel());
   const auto error_of = [](const std::string& bad) -> std::string {
@@ -193,7 +193,7 @@ TEST(DigitModel, ReadsWhatItPrintsAndRefusesTheRest) {
   EXPECT_THAT(error_of(bad), HasSubstr("digits.txt:2: expected percent"));
 }
 
-TEST(DigitTrainer, CountsAndIsNeverCertain) {
+TEST(DigitTrainer, CountsAndNeverReachesCertainty) {
   DigitTrainer trainer;
   DigitImage image{};
   image[5] = 1;
@@ -204,7 +204,7 @@ TEST(DigitTrainer, CountsAndIsNeverCertain) {
   EXPECT_FLOAT_EQ(model[4 * kStyleCount][6], 0.5F);
 }
 
-TEST(DigitTrainer, TellsStylesApart) {
+TEST(DigitTrainer, SeparatesStyles) {
   DigitTrainer trainer;
   DigitImage thin{};
   thin[5] = 1;

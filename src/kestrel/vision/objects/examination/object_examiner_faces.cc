@@ -36,7 +36,7 @@ ObjectExaminer::Outcome ObjectExaminer::TestCuboid(const Segment& segment,
   const Outcome outcome =
       TestSilhouette(segment, object, hint_.camera_height_m, detection, reached);
   if (outcome == Outcome::kObject || !hint_.camera_height_m) return outcome;
-  // The told height may be wrong. A cuboid of another size may fit, but it is not on that ground.
+  // The given height may be wrong. A cuboid of another size may fit, but it is not on that ground.
   *detection = before;
   const Outcome of_any_size = TestSilhouette(segment, object, std::nullopt, detection, reached);
   return of_any_size == Outcome::kElsewhere ? of_any_size : Outcome::kNone;

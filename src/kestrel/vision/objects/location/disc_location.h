@@ -16,11 +16,11 @@ Cone ConeOfCircle(const Eigen::Vector3d& center, const Eigen::Vector3d& normal, 
 // 'row_direction': a vector along the image's rows at the disc. 'up': unit vector upwards in the
 // camera frame, where the attitude is known.
 //
-// Two circles have the same cone (CirclePosesFromCone). Without 'up' they cannot be told apart; the
-// result is then the point between their centres, on the axis of the cone. With 'up' the disc is
-// assumed horizontal. Its centre is then seen along Q^-1 up (the pole of the vanishing line of its
-// plane), and its distance follows from the length of the image row through the centre: a rolling
-// shutter shears the image and stretches its columns, but keeps the length of rows.
+// Two circles have the same cone (CirclePosesFromCone). Without 'up' they are indistinguishable;
+// the result is then the point between their centres, on the axis of the cone. With 'up' the disc
+// is assumed horizontal. Its centre is then seen along Q^-1 up (the pole of the vanishing line of
+// its plane), and its distance follows from the length of the image row through the centre: a
+// rolling shutter shears the image and stretches its columns, but keeps the length of rows.
 Eigen::Vector3d LocateDisc(const Cone& cone, double radius_m, const Eigen::Vector3d& row_direction,
                            const std::optional<Eigen::Vector3d>& up);
 

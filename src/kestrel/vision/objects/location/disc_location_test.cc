@@ -28,12 +28,12 @@ TEST(LocateDisc, IsExactWithKnownAttitude) {
   EXPECT_LT((LocateDisc(cone, kRadius_m, kAlongRow, kUp) - kCenter).norm(), 1e-6);
 }
 
-TEST(LocateDisc, IsNearWithoutAttitude) {
+TEST(LocateDisc, IsApproximateWithoutAttitude) {
   const Cone cone = ConeOfCircle(kCenter, kUp, kRadius_m);
   EXPECT_LT((LocateDisc(cone, kRadius_m, kAlongRow, std::nullopt) - kCenter).norm(), 0.02);
 }
 
-TEST(LocateDisc, RollingShutterDoesNotChangeTheDistance) {
+TEST(LocateDisc, RollingShutterDoesNotChangeDistance) {
   const Eigen::Vector3d below(0, 0, 5);
   const Eigen::Vector3d up(0, 0, -1);
   const Cone cone = Distorted(ConeOfCircle(below, up, kRadius_m), 0.08, 1.07);
@@ -41,7 +41,7 @@ TEST(LocateDisc, RollingShutterDoesNotChangeTheDistance) {
   EXPECT_GT(std::abs(LocateDisc(cone, kRadius_m, kAlongRow, std::nullopt).norm() - 5), 0.03);
 }
 
-TEST(LocationCovariance, IsLongAlongTheRay) {
+TEST(LocationCovariance, IsElongatedAlongRay) {
   const Eigen::Vector3d position(0, 3, 4);
   const Eigen::Matrix3d covariance = LocationCovariance(position, 0.001, 0.02);
   const Eigen::Vector3d ray = position.normalized();
@@ -49,7 +49,7 @@ TEST(LocationCovariance, IsLongAlongTheRay) {
   EXPECT_NEAR(covariance(0, 0), 0.005 * 0.005, 1e-12);
 }
 
-TEST(GroundPlane, DistanceIsThatOfTheNearestPossibleHeight) {
+TEST(GroundPlane, DistanceUsesNearestPossibleHeight) {
   const GroundPlane ground{Eigen::Vector3d(0, 0, -1), 5.0};
   const Eigen::Vector3d ray = Eigen::Vector3d(0, 0.6, 0.8);
   EXPECT_NEAR(*ground.DistanceNear(ray, 9, 0, 0.1), 5 / 0.8, 1e-12);
@@ -58,7 +58,7 @@ TEST(GroundPlane, DistanceIsThatOfTheNearestPossibleHeight) {
   EXPECT_FALSE(GroundPlane{}.DistanceNear(ray, 5, 0, 0.1)) << "not known";
 }
 
-TEST(LooksLikeDisc, OtherSizesAndUprightDiscsDoNot) {
+TEST(LooksLikeDisc, RejectsOtherSizesAndUprightDiscs) {
   const Eigen::Vector3d ray = kCenter.normalized();
   const auto looks = [&](const Eigen::Vector3d& normal, double radius) {
     return LooksLikeDisc(ConeOfCircle(kCenter, normal, radius), ray, kCenter.norm(), kUp, kRadius_m,

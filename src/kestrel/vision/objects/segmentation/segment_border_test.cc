@@ -28,7 +28,7 @@ SegmentBorder BorderOfRectangle(int left, int top, int right, int bottom) {
   return border;
 }
 
-TEST(FindBorder, GivesTheEndsOfRowsAndColumnsHalfAPixelFurtherOut) {
+TEST(FindBorder, ReturnsRowAndColumnEndsHalfPixelOutwards) {
   const SegmentBorder border = BorderOfRectangle(10, 12, 14, 14);
   EXPECT_EQ(border.points.size(), 2 * (5 + 3));
   EXPECT_TRUE(border.cut.empty());
@@ -39,7 +39,7 @@ TEST(FindBorder, GivesTheEndsOfRowsAndColumnsHalfAPixelFurtherOut) {
   }
 }
 
-TEST(FindBorder, TellsTheImagesBorderApart) {
+TEST(FindBorder, SeparatesImageBorder) {
   const SegmentBorder border = BorderOfRectangle(0, 12, 4, 14);
   EXPECT_EQ(border.cut.size(), 3 + 2 * 2);  // left ends, and the columns at the border
   for (const Eigen::Vector2d& point : border.points) EXPECT_GT(point.x(), 1);

@@ -25,7 +25,7 @@ const ColorGrid& Grid() {
   return grid;
 }
 
-// Area, bounding box and colour: enough to tell segments apart.
+// Area, bounding box and colour: enough to distinguish segments.
 using Key = std::tuple<std::size_t, int, int, int, int, int>;
 
 std::set<Key> FindAll(const cv::Mat& image, int step, std::size_t min_pixels) {
@@ -59,7 +59,7 @@ cv::Mat RandomScene(std::uint64_t seed) {
   return image;
 }
 
-TEST(SegmentSearch, CoarseSearchFindsTheSameSegmentsAsAlgorithm4) {
+TEST(SegmentSearch, CoarseSearchFindsSameSegmentsAsAlgorithm4) {
   constexpr int kMinPixels = 30;
   const int step = SearchStep(kMinPixels);
   EXPECT_GE(step, 3);
@@ -71,7 +71,7 @@ TEST(SegmentSearch, CoarseSearchFindsTheSameSegmentsAsAlgorithm4) {
   }
 }
 
-TEST(SegmentSearch, ColoursThatTouchAreSegmentsOfTheirOwn) {
+TEST(SegmentSearch, SeparatesTouchingColours) {
   cv::Mat image(100, 100, CV_8UC3, kAsphalt);
   cv::rectangle(image, cv::Rect(10, 20, 30, 40), kRed, cv::FILLED);
   cv::rectangle(image, cv::Rect(40, 20, 20, 40), kGreen, cv::FILLED);
@@ -79,7 +79,7 @@ TEST(SegmentSearch, ColoursThatTouchAreSegmentsOfTheirOwn) {
             (std::set<Key>{{1200, 1, 10, 39, 20, 59}, {800, 4, 40, 59, 20, 59}}));
 }
 
-TEST(SegmentSearch, PartOfALargerImageAndBorder) {
+TEST(SegmentSearch, SearchesSubImageUpToItsBorder) {
   cv::Mat image(100, 120, CV_8UC3, kRed);
   const cv::Mat part = image(cv::Rect(10, 10, 50, 30));
   SegmentationWorkspace workspace;
@@ -92,7 +92,7 @@ TEST(SegmentSearch, PartOfALargerImageAndBorder) {
   EXPECT_FALSE(search.Next(&segment));
 }
 
-TEST(SegmentSearch, NearestSegmentIsFoundFirstAndEachOnce) {
+TEST(SegmentSearch, FindsNearestSegmentFirstAndEachOnce) {
   cv::Mat image(200, 200, CV_8UC3, kAsphalt);
   cv::circle(image, {60, 60}, 8, kRed, cv::FILLED);
   cv::circle(image, {120, 60}, 8, kRed, cv::FILLED);
@@ -107,7 +107,7 @@ TEST(SegmentSearch, NearestSegmentIsFoundFirstAndEachOnce) {
   EXPECT_FALSE(search.FindNear(80, 60, 60, std::nullopt, &segment));
 }
 
-TEST(SegmentSearch, WhiteJoinsWhereItIsEnclosed) {
+TEST(SegmentSearch, JoinsEnclosedWhite) {
   cv::Mat image(100, 100, CV_8UC3, kWhite);
   cv::rectangle(image, cv::Rect(30, 30, 40, 40), kRed, cv::FILLED);
   cv::rectangle(image, cv::Rect(45, 40, 8, 20), kWhite, cv::FILLED);
@@ -122,7 +122,7 @@ TEST(SegmentSearch, WhiteJoinsWhereItIsEnclosed) {
   EXPECT_EQ(segment.ambiguous_pixels, 160);
 }
 
-TEST(SegmentationWorkspace, ServesImagesOfEverySize) {
+TEST(SegmentationWorkspace, WorksForImagesOfEverySize) {
   SegmentationWorkspace workspace;
   for (const cv::Size& size : {cv::Size(40, 30), cv::Size(200, 100), cv::Size(1, 1)}) {
     const cv::Mat image(size, CV_8UC3, kRed);
@@ -145,7 +145,7 @@ SegmentShape ShapeOf(const cv::Mat& image) {
   return MeasureShape(image, segment);
 }
 
-TEST(MeasureShape, EllipseHasItsAxesAndCircularityOne) {
+TEST(MeasureShape, MeasuresAxesAndUnitCircularityOfEllipse) {
   cv::Mat image(300, 400, CV_8UC3, kAsphalt);
   cv::ellipse(image, cv::RotatedRect({200.0F, 150.0F}, {160.0F, 80.0F}, 30.0F), kRed, cv::FILLED);
   const SegmentShape shape = ShapeOf(image);

@@ -72,8 +72,8 @@ Eigen::Vector3f AxisBetween(const Eigen::Vector3f& inside, const Eigen::Vector3f
 }
 
 struct Crossing {
-  double index;  // of the share of the inside, per sample; positive
-  float slope;   // of the share of the inside, per sample, positive
+  double index;  // sample index at which the share of the inside passes one half
+  float slope;   // decrease of the share of the inside per sample; positive
 };
 
 // Finds where the profile, after 'first', first passes half-way from 'inside' to 'outside'.

@@ -16,7 +16,7 @@ constexpr int kResiduals = kExtents + 3;  // also the digit's position and the s
 using Residuals = Eigen::Matrix<double, kResiduals, 1>;
 using Parameters = Eigen::Vector4d;  // centre, yaw, logarithm of half a side
 using Corners = std::array<Eigen::Vector2d, 4>;
-using SideFaces = std::array<bool, 4>;  // of the edge from each corner to the next
+using SideFaces = std::array<bool, 4>;  // seen at the edge from each corner to the next
 
 const std::array<Eigen::Vector2d, kExtents>& Directions() {
   static const std::array<Eigen::Vector2d, kExtents> directions = [] {

@@ -11,7 +11,7 @@ namespace kestrel {
 namespace {
 
 constexpr double kHalf = 0.02;
-constexpr double kShrinking = 1 / (1 + 2 * kHalf);  // of the lower face of a cube
+constexpr double kShrinking = 1 / (1 + 2 * kHalf);  // scale of a cube's lower face in the image
 const Eigen::Vector2d kTopCenter(0.5, -0.3);
 
 std::vector<Eigen::Vector2d> UpperFace(double yaw) {
@@ -44,7 +44,7 @@ double CornerError(const CuboidFit& fit, double yaw) {
 
 const Eigen::Vector2d kDigit = kTopCenter + kHalf * Eigen::Vector2d(0.1, -0.15);
 
-TEST(FitCuboid, FindsTheUpperFaceOfAnOutlineWithSideFaces) {
+TEST(FitCuboid, FindsUpperFaceOfOutlineWithSideFaces) {
   for (double yaw = 0; yaw < 1.5; yaw += 0.1) {
     const auto outline = WithLowerFace(UpperFace(yaw));
     const auto fit = FitCuboid({outline, {}, kDigit, 1, kHalf});
@@ -54,21 +54,21 @@ TEST(FitCuboid, FindsTheUpperFaceOfAnOutlineWithSideFaces) {
   }
 }
 
-TEST(FitCuboid, NeedsNoHeight) {
+TEST(FitCuboid, FitsWithoutHeight) {
   const auto outline = WithLowerFace(UpperFace(0.4));
   const auto fit = FitCuboid({outline, {}, kDigit, 1, {}});
   ASSERT_TRUE(fit);
   EXPECT_LT(CornerError(*fit, 0.4), 0.15);
 }
 
-TEST(FitCuboid, SideFacesMayBeTooDarkToHaveAColor) {
+TEST(FitCuboid, ToleratesColorlessDarkSideFaces) {
   const auto outline = UpperFace(0.7);
   const auto fit = FitCuboid({outline, {}, kDigit, 1, kHalf});
   ASSERT_TRUE(fit);
   EXPECT_LT(CornerError(*fit, 0.7), 0.08);
 }
 
-TEST(FitCuboid, TheImageMayCutTheLowerFaceOff) {
+TEST(FitCuboid, ToleratesLowerFaceCutOffByImage) {
   const auto outline = UpperFace(0.7);
   std::vector<Eigen::Vector2d> cut;
   for (const Eigen::Vector2d& corner : outline) cut.push_back(0.5 * (1 + kShrinking) * corner);
@@ -77,7 +77,7 @@ TEST(FitCuboid, TheImageMayCutTheLowerFaceOff) {
   EXPECT_LT(CornerError(*fit, 0.7), 0.1);
 }
 
-TEST(FitCuboid, OtherShapesLeaveAResidual) {
+TEST(FitCuboid, OtherShapesLeaveResidual) {
   std::vector<Eigen::Vector2d> line;
   for (int i = -3; i <= 3; ++i) line.emplace_back(kTopCenter + i * Eigen::Vector2d(kHalf, 0));
   const auto fit = FitCuboid({line, {}, kTopCenter, 1, kHalf});

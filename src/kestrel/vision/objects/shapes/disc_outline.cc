@@ -102,7 +102,7 @@ std::optional<DiscOutline> FitOnce(const cv::Mat& image, const RayTable& rays, d
                                    const Ellipse& start, DiscOutlineWorkspace* workspace) {
   constexpr int kMaxRounds = 6;
   constexpr double kMinLimitPx = 0.5;
-  constexpr double kMinLimitShare = 0.015;  // of the radius; no disc is cut perfectly
+  constexpr double kMinLimitShare = 0.015;  // share of the radius; no disc is cut perfectly
   const double radius_px = std::sqrt(start.semi_major * start.semi_minor);
   workspace->rays.clear();
   workspace->points.clear();

@@ -44,7 +44,7 @@ double DepthOf(const Eigen::Vector2d& point, std::span<const Eigen::Vector2d> bo
 // Returns the deepest points that are far enough from each other and about equally deep.
 Discs FindCenters(std::span<const Eigen::Vector2d> inside,
                   std::span<const Eigen::Vector2d> border) {
-  constexpr double kMinDepth = 0.7;  // of points near a centre; larger than in a neck
+  constexpr double kMinDepth = 0.7;  // in radii, near a centre; larger than in a neck
   std::array<double, 2 * kTouchingDiscsPoints> depths;
   const std::size_t size = std::min(inside.size(), depths.size());
   for (std::size_t i = 0; i < size; ++i) depths[i] = DepthOf(inside[i], border);
@@ -95,7 +95,7 @@ bool IsBorderOf(const Discs& discs, std::span<const Eigen::Vector2d> border, dou
   constexpr double kTolerance = 0.05;
   constexpr double kMinShare = 0.96;
   constexpr std::size_t kSectors = 16;
-  constexpr double kMinSeen = 0.3;  // of a disc with three others around it
+  constexpr double kMinSeen = 0.3;  // least visible share of a disc with three others around it
   std::array<std::bitset<kSectors>, kMaxDiscs> seen;
   double fitting = 0;
   for (const Eigen::Vector2d& point : border) {

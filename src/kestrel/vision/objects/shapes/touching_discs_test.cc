@@ -78,7 +78,7 @@ Figure Star(int tips, double radius) {
   };
 }
 
-TEST(RadiusOfTouchingDiscs, DiscsThatTouchHaveTheirRadius) {
+TEST(RadiusOfTouchingDiscs, FindsRadiusOfTouchingDiscs) {
   for (const double radius : {8.0, 12.0, 20.0}) {
     const double near = 1.9 * radius;
     const std::vector<std::vector<Eigen::Vector2d>> groups = {
@@ -96,7 +96,7 @@ TEST(RadiusOfTouchingDiscs, DiscsThatTouchHaveTheirRadius) {
   }
 }
 
-TEST(RadiusOfTouchingDiscs, OtherFiguresAreNone) {
+TEST(RadiusOfTouchingDiscs, RejectsOtherFigures) {
   const auto either = [](const Figure& a, const Figure& b) {
     return [=](const Eigen::Vector2d& at) { return a(at) || b(at); };
   };
