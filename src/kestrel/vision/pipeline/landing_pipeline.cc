@@ -40,6 +40,7 @@ class LandingPipeline::Impl {
     pose_time_sigma_s_ = sample.time_sigma_s;
     return poses_.Add(sample);
   }
+  PoseStatus AddGimbal(const GimbalSample& sample) { return poses_.Add(sample); }
   void SetAltitude(std::optional<double> altitude_m) { altitude_m_ = altitude_m; }
   void LimitSearch(double max_search_ms) { max_search_ms_ = max_search_ms; }
   void ChangeOptions(const LandingPipelineOptions& options);
@@ -341,6 +342,9 @@ LandingPipeline::LandingPipeline(LandingPipeline&&) noexcept = default;
 LandingPipeline& LandingPipeline::operator=(LandingPipeline&&) noexcept = default;
 
 PoseStatus LandingPipeline::AddPose(const PoseSample& sample) { return impl_->AddPose(sample); }
+PoseStatus LandingPipeline::AddGimbal(const GimbalSample& sample) {
+  return impl_->AddGimbal(sample);
+}
 void LandingPipeline::SetAltitude(std::optional<double> altitude_m) {
   impl_->SetAltitude(altitude_m);
 }

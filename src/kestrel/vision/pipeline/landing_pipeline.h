@@ -14,6 +14,7 @@
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/core/poses/gimbal_history.h"
 #include "kestrel/core/poses/pose_history.h"
 #include "kestrel/vision/landing/landing_pattern_detector.h"
 #include "kestrel/vision/pipeline/measurement_noise.h"
@@ -131,6 +132,8 @@ class LandingPipeline {
   // the last frame. A frame that arrives before the pose after its time has none, or a predicted
   // one.
   PoseStatus AddPose(const PoseSample& sample);
+  // Adds a report of the gimbal on which the calibration has the camera, in the same way.
+  PoseStatus AddGimbal(const GimbalSample& sample);
 
   // Sets the height (m) of the camera above the pattern for frames without a pose; nothing when not
   // known.
