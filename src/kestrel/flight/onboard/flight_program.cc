@@ -161,6 +161,7 @@ void FlightProgram::Take(Event event) {
     source_pose_.Set(*pose);
     return TakePose(*pose);
   }
+  if (const auto* report = std::get_if<GimbalSample>(&event)) return TakeGimbal(*report);
   auto& frame = std::get<Frame>(event);
   latency_.step(kArrival).Add(Now() - frame.time);
   if (const auto recorder = Recorder()) {
@@ -172,6 +173,11 @@ void FlightProgram::Take(Event event) {
 void FlightProgram::TakePose(const PoseSample& pose) {
   events_.Push(pose);
   if (const auto recorder = Recorder()) recorder->AddPose(pose);
+}
+
+void FlightProgram::TakeGimbal(const GimbalSample& report) {
+  events_.Push(report);
+  if (const auto recorder = Recorder()) recorder->AddGimbal(report);
 }
 
 // --- The vision thread ---
@@ -189,6 +195,10 @@ void FlightProgram::See() {
     const std::lock_guard lock(vision_mutex_);
     if (const auto* pose = std::get_if<PoseSample>(&event)) {
       parts_.vision->AddPose(*pose);
+      continue;
+    }
+    if (const auto* report = std::get_if<GimbalSample>(&event)) {
+      parts_.vision->AddGimbal(*report);
       continue;
     }
     const auto& frame = std::get<Frame>(event);

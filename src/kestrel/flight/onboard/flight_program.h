@@ -87,6 +87,8 @@ class FlightProgram {
   // Takes a pose of the autopilot, on the local clock, from its listener. Called by the thread in
   // which Run lets the connection receive.
   void TakeAutopilotPose(const PoseSample& pose);
+  // Takes a report of the gimbal, as above.
+  void TakeGimbal(const GimbalSample& report);
 
  private:
   // The steps whose latency is measured.

@@ -284,6 +284,9 @@ void LiveSession::Impl::OpenAutopilot() {
                                         options_.link.signing_key);
   }
   guard_ = guard.get();
+  if (const auto& gimbal = parts_.calibration.gimbal) {
+    options_.autopilot.gimbal_device_id = gimbal->device_id;
+  }
   connection_.emplace(parts_.autopilot, options_.link, tap, std::move(guard));
   autopilot_.emplace(
       options_.autopilot, &*connection_,
@@ -293,6 +296,7 @@ void LiveSession::Impl::OpenAutopilot() {
           .event = [this](const AutopilotEvent& e) { Say(e.text); },
           .text = [this](std::uint8_t severity,
                          std::string_view text) { Say(WordsOfAutopilot(text), LevelOf(severity)); },
+          .gimbal = [this](const GimbalSample& report) { program_->TakeGimbal(report); },
       });
 }
 

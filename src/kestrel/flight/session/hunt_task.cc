@@ -83,6 +83,7 @@ class HuntVision : public Vision {
              const HuntPipelineOptions& options, std::vector<double> origin = {});
 
   void AddPose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
+  void AddGimbal(const GimbalSample& sample) override { pipeline_.AddGimbal(sample); }
   Duration pose_lead() const override;
   Observation Process(const Frame& frame) override;
   TrackSnapshot snapshot() const override { return snapshot_; }

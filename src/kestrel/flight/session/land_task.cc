@@ -20,11 +20,6 @@
 namespace kestrel {
 namespace {
 
-std::optional<RigidTransform> InverseOf(const std::optional<RigidTransform>& transform) {
-  if (!transform) return std::nullopt;
-  return transform->Inverse();
-}
-
 std::string AttitudeWarning(const Contradiction& tilt) {
   return fmt::format(
       "the attitude says that the pattern is tilted by {:.0f} degrees (median of {} frames): {}"
@@ -42,6 +37,7 @@ class LandingVision : public Vision {
                 std::vector<double> predict_s = {});
 
   void AddPose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
+  void AddGimbal(const GimbalSample& sample) override { pipeline_.AddGimbal(sample); }
   Duration pose_lead() const override { return clock_offset_; }
   Observation Process(const Frame& frame) override;
   TrackSnapshot snapshot() const override { return snapshot_; }
@@ -64,7 +60,6 @@ class LandingVision : public Vision {
   std::string LensWarning() const;
 
   LandingPipeline pipeline_;
-  std::optional<RigidTransform> camera_from_body_;
   Duration clock_offset_;
   std::optional<double> altitude_m_;
   bool has_world_, is_lens_unknown_, is_live_;
@@ -77,7 +72,6 @@ class LandingVision : public Vision {
 LandingVision::LandingVision(const SessionCamera& camera, const LandingPipelineOptions& options,
                              std::vector<double> predict_s)
     : pipeline_(camera.calibration, InFlight(options, camera.is_live)),
-      camera_from_body_(InverseOf(camera.calibration.body_from_camera)),
       clock_offset_(camera.calibration.clock_offset.value_or(Duration::zero())),
       altitude_m_(camera.altitude_m),
       has_world_(camera.has_world),
@@ -125,14 +119,16 @@ void LandingVision::UpdateSnapshot(const LandingObservation& observation) {
   if (!detection) return;
   const TargetDetector& detector = pipeline_.detector();
   snapshot_.area = PatternArea(*detection, detector.shape(), detector.camera());
-  if (!camera_from_body_) return;
+  if (!observation.camera_from_body) return;
   snapshot_.sight = {snapshot_.captured,
-                     detection->camera_from_pattern.Inverse() * *camera_from_body_};
+                     detection->camera_from_pattern.Inverse() * *observation.camera_from_body};
 }
 
 std::optional<TargetReport> LandingVision::Sighting(const LandingObservation& observation) const {
   const auto& detection = observation.report.detection;
-  if (!detection || !observation.world_from_camera || !camera_from_body_) return std::nullopt;
+  if (!detection || !observation.world_from_camera || !observation.camera_from_body) {
+    return std::nullopt;
+  }
   const RigidTransform& world_from_camera = *observation.world_from_camera;
   const Eigen::Vector3d& center = detection->camera_from_pattern.translation;
   // Relative to the UAV only the pose's attitude counts, including the errors that all frames
@@ -141,7 +137,7 @@ std::optional<TargetReport> LandingVision::Sighting(const LandingObservation& ob
   noise.pose_sigma_m = noise.pose_bias_m = 0;
   TargetReport report;
   report.time = snapshot_.captured;
-  report.world_from_body = world_from_camera * *camera_from_body_;
+  report.world_from_body = world_from_camera * *observation.camera_from_body;
   report.position_in_world = world_from_camera * center;
   report.normal_in_world = world_from_camera.rotation *
                            (detection->camera_from_pattern.rotation * Eigen::Vector3d::UnitZ());

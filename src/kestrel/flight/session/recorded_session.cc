@@ -49,6 +49,7 @@ bool RecordedSession::RunToEnd(const std::function<bool(std::size_t done)>& go_o
     const Event event = events.Next();
     if (std::holds_alternative<EndOfStream>(event)) return true;
     if (const auto* pose = std::get_if<PoseSample>(&event)) vision_->AddPose(*pose);
+    if (const auto* report = std::get_if<GimbalSample>(&event)) vision_->AddGimbal(*report);
     const auto* frame = std::get_if<Frame>(&event);
     if (frame == nullptr) continue;
     if (!go_on(times_ms_.size())) return false;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "kestrel/core/base/time.h"
+#include "kestrel/core/poses/gimbal_history.h"
 #include "kestrel/core/poses/pose_history.h"
 #include "kestrel/flight/session/observation.h"
 #include "kestrel/flight/session/observation_sink.h"
@@ -24,6 +25,8 @@ class Vision {
   virtual ~Vision() = default;
 
   virtual void AddPose(const PoseSample& pose) = 0;
+  // Takes a report of the gimbal on which the camera is.
+  virtual void AddGimbal(const GimbalSample& sample) = 0;
 
   // Time from a frame's time, on the navigation's clock, to the last pose that the frame needs.
   virtual Duration pose_lead() const = 0;

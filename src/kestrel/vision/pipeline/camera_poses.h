@@ -18,7 +18,8 @@ namespace kestrel {
 
 struct CameraPose {
   RigidTransform world_from_camera;
-  PoseUncertainty uncertainty;  // in addition to that of a reported pose
+  RigidTransform camera_from_body;  // at this time: a gimbal turns
+  PoseUncertainty uncertainty;      // in addition to that of a reported pose
 };
 
 // Poses of the camera at the times of its images, from the navigation's poses, the mount (with the
@@ -73,7 +74,8 @@ class CameraPoses {
   std::optional<CameraPose> OnMount(const BodyPose& body, Time image_time) const {
     if (!body_from_camera_) return std::nullopt;
     if (gimbal_) return OnGimbal(body, image_time);
-    return CameraPose{body.world_from_body * *body_from_camera_, body.uncertainty};
+    return CameraPose{body.world_from_body * *body_from_camera_, body_from_camera_->Inverse(),
+                      body.uncertainty};
   }
 
   // The gimbal knows the horizon itself: the attitude of the body matters for its heading only.
@@ -89,8 +91,10 @@ class CameraPoses {
     }
     PoseUncertainty uncertainty = body.uncertainty;
     uncertainty.attitude_rad = std::hypot(uncertainty.attitude_rad, attitude->sigma_rad);
-    return CameraPose{RigidTransform{world_from_platform, world_from_pivot.translation} *
-                          gimbal_->platform_from_camera,
+    const RigidTransform world_from_camera =
+        RigidTransform{world_from_platform, world_from_pivot.translation} *
+        gimbal_->platform_from_camera;
+    return CameraPose{world_from_camera, world_from_camera.Inverse() * body.world_from_body,
                       uncertainty};
   }
 

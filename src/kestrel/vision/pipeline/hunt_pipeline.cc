@@ -101,8 +101,10 @@ void HuntPipeline::Impl::ChangeOptions(const HuntPipelineOptions& options) {
 const HuntObservation& HuntPipeline::Impl::Process(const cv::Mat& image, Time time) {
   observation_.time = time;
   observation_.world_from_camera.reset();
+  observation_.camera_from_body.reset();
   if (const auto camera = poses_.At(time)) {
     observation_.world_from_camera = camera->world_from_camera;
+    observation_.camera_from_body = camera->camera_from_body;
   }
   Detect(image);
   LocateInWorld();

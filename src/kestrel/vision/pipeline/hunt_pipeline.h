@@ -71,6 +71,7 @@ struct HuntObservation {
   Time time;  // of the frame, on the images' clock
   ObjectReport report;
   std::optional<RigidTransform> world_from_camera;  // when there is a pose for this time
+  std::optional<RigidTransform> camera_from_body;   // as well
   // For each detection, in order: position and covariance in the world (ENU, m), when it has a
   // location and there is a pose. With a rolling shutter, the pose is that of its row.
   std::vector<std::optional<ObjectLocation>> in_world;

@@ -14,6 +14,15 @@
 #include "kestrel/vision/pipeline/world_location.h"
 
 namespace kestrel {
+namespace {
+
+// Nothing where the mount moves, or is not known.
+std::optional<RigidTransform> CameraFromBody(const CameraCalibration& calibration) {
+  if (calibration.gimbal || !calibration.body_from_camera) return std::nullopt;
+  return calibration.body_from_camera->Inverse();
+}
+
+}  // namespace
 
 const char* ToString(PositionMethod method) {
   return method == PositionMethod::kSize ? "size" : "altitude";
@@ -94,6 +103,7 @@ class LandingPipeline::Impl {
   std::unique_ptr<TargetWorkspace> workspace_;
   std::optional<Others> others_;  // nothing once the target was found
   CameraPoses poses_;
+  std::optional<RigidTransform> fixed_mount_;  // camera from body
   double pose_time_sigma_s_ = 0;
   std::optional<double> altitude_m_;
   TargetTracker tracker_;
@@ -118,6 +128,7 @@ LandingPipeline::Impl::Impl(const CameraCalibration& calibration,
       poses_(calibration, LandingPipelineOptions::kPoseCapacity,
              DurationFromSeconds(options.pose_gap_s), Duration::zero(),
              DurationFromSeconds(options.pose_extrapolation_s)),
+      fixed_mount_(CameraFromBody(calibration)),
       tracker_(options.tracker) {
   if (!is_detector_own_) others_ = OthersOf(detector_->camera(), options.target);
 }
@@ -154,8 +165,10 @@ void LandingPipeline::Impl::LookForOthers(const cv::Mat& image, LandingObservati
 LandingObservation LandingPipeline::Impl::Process(const cv::Mat& image, Time time) {
   LandingObservation observation;
   observation.time = time;
+  observation.camera_from_body = fixed_mount_;
   if (const auto camera = poses_.At(time)) {
     observation.world_from_camera = camera->world_from_camera;
+    observation.camera_from_body = camera->camera_from_body;
     observation.pose_uncertainty = camera->uncertainty;
   }
   observation.pose = poses_.Check(time);

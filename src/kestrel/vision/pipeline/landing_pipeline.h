@@ -93,8 +93,10 @@ struct LandingObservation {
   // With a miss, as long as the target was never found: another tag that was read.
   std::optional<OtherTag> other_tag = {};
   std::optional<RigidTransform> world_from_camera;  // when there is a pose for this time
-  PoseLookup pose = PoseLookup::kEmpty;             // whether there is a pose, or why not
-  PoseUncertainty pose_uncertainty;                 // of a predicted pose
+  // The mount; on a gimbal only when there is a pose for this time.
+  std::optional<RigidTransform> camera_from_body;
+  PoseLookup pose = PoseLookup::kEmpty;  // whether there is a pose, or why not
+  PoseUncertainty pose_uncertainty;      // of a predicted pose
   // With a detection and a pose: the pattern's centre in the world (ENU, m), the method, and the
   // yaw of the pattern, see PatternYaw, if it has one.
   std::optional<Eigen::Vector3d> center_in_world;

@@ -84,6 +84,7 @@ class EarlierResults : public Vision {
                Duration::zero(), Duration::zero()) {}
 
   void AddPose(const PoseSample& pose) override { poses_.Add(pose); }
+  void AddGimbal(const GimbalSample& sample) override { poses_.Add(sample); }
   Duration pose_lead() const override { return clock_offset_; }
   Observation Process(const Frame& frame) override {
     const auto camera = poses_.At(frame.time);
