@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kestrel/core/geometry/rigid_transform.h"
-
 namespace kestrel {
 namespace {
 
@@ -31,6 +29,16 @@ double Remainder(double since_first_s, double since_second_s) {
 
 const char* ToString(YawFrame frame) { return frame == YawFrame::kEarth ? "earth" : "vehicle"; }
 
+RigidTransform WorldFromPlatform(const RigidTransform& world_from_body,
+                                 const RigidTransform& body_from_pivot,
+                                 const GimbalAttitude& attitude) {
+  RigidTransform pose = world_from_body * body_from_pivot;
+  const double heading = attitude.yaw_frame == YawFrame::kVehicle ? HeadingOf(pose.rotation) : 0;
+  pose.rotation =
+      (RotationBy(heading * Eigen::Vector3d::UnitZ()) * attitude.level_from_platform).normalized();
+  return pose;
+}
+
 GimbalHistory::GimbalHistory(std::size_t capacity) : ring_(std::max<std::size_t>(capacity, 2)) {}
 
 PoseStatus GimbalHistory::Add(const GimbalSample& sample) {
@@ -49,12 +57,25 @@ PoseStatus GimbalHistory::Add(const GimbalSample& sample) {
   return PoseStatus::kOk;
 }
 
+// Index of the first sample not before 'time', by bisection; size_ when there is none.
+std::size_t GimbalHistory::FirstNotBefore(Time time) const {
+  std::size_t begin = 0;
+  for (std::size_t end = size_; begin < end;) {
+    const std::size_t middle = begin + (end - begin) / 2;
+    if (Sample(middle).time < time) {
+      begin = middle + 1;
+    } else {
+      end = middle;
+    }
+  }
+  return begin;
+}
+
 std::optional<GimbalAttitude> GimbalHistory::At(Time time, Duration max_ahead) const {
   if (size_ == 0 || time < Sample(0).time || time > Sample(size_ - 1).time + max_ahead) {
     return std::nullopt;
   }
-  std::size_t after = 0;
-  while (after + 1 < size_ && Sample(after).time < time) ++after;
+  const std::size_t after = std::min(FirstNotBefore(time), size_ - 1);
   const GimbalSample& to = Sample(after);
   if (to.time == time) return GimbalAttitude{to.level_from_platform, to.yaw_frame};
   if (after == 0) return std::nullopt;

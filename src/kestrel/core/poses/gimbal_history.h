@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "kestrel/core/base/time.h"
+#include "kestrel/core/geometry/rigid_transform.h"
 #include "kestrel/core/poses/pose_history.h"
 
 namespace kestrel {
@@ -33,6 +34,12 @@ struct GimbalAttitude {
   double sigma_rad = 0;  // per axis, of a motion that the reports do not show; 0 at a report
 };
 
+// Returns the pose of the platform in the world: its attitude is that of the gimbal, which knows
+// the horizon itself; the heading of the body matters where the yaw is against that.
+RigidTransform WorldFromPlatform(const RigidTransform& world_from_body,
+                                 const RigidTransform& body_from_pivot,
+                                 const GimbalAttitude& attitude);
+
 // The latest reports of a gimbal, in order of time. Bounded: the newest replaces the oldest.
 // Allocates at construction only and never throws afterwards.
 class GimbalHistory {
@@ -51,6 +58,7 @@ class GimbalHistory {
   bool is_empty() const { return size_ == 0; }
 
  private:
+  std::size_t FirstNotBefore(Time time) const;
   const GimbalSample& Sample(std::size_t i) const { return ring_[(first_ + i) % ring_.size()]; }
 
   std::vector<GimbalSample> ring_;

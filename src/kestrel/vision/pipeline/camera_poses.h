@@ -6,8 +6,6 @@
 #include <cstddef>
 #include <optional>
 
-#include <Eigen/Geometry>
-
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/core/geometry/rigid_transform.h"
@@ -78,21 +76,14 @@ class CameraPoses {
                       body.uncertainty};
   }
 
-  // The gimbal knows the horizon itself: the attitude of the body matters for its heading only.
   std::optional<CameraPose> OnGimbal(const BodyPose& body, Time image_time) const {
     const Time gimbal_time = image_time + clock_offset_ - gimbal_->clock_offset;
     const auto attitude = gimbal_history_.At(gimbal_time, kMaxGimbalAhead);
     if (!attitude) return std::nullopt;
-    const RigidTransform world_from_pivot = body.world_from_body * gimbal_->body_from_pivot;
-    Eigen::Quaterniond world_from_platform = attitude->level_from_platform;
-    if (attitude->yaw_frame == YawFrame::kVehicle) {
-      const double heading = HeadingOf(world_from_pivot.rotation);
-      world_from_platform = RotationBy(heading * Eigen::Vector3d::UnitZ()) * world_from_platform;
-    }
     PoseUncertainty uncertainty = body.uncertainty;
     uncertainty.attitude_rad = std::hypot(uncertainty.attitude_rad, attitude->sigma_rad);
     const RigidTransform world_from_camera =
-        RigidTransform{world_from_platform, world_from_pivot.translation} *
+        WorldFromPlatform(body.world_from_body, gimbal_->body_from_pivot, *attitude) *
         gimbal_->platform_from_camera;
     return CameraPose{world_from_camera, world_from_camera.Inverse() * body.world_from_body,
                       uncertainty};
