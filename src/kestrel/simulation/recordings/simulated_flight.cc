@@ -154,9 +154,9 @@ void SimulatedFlight::AddGimbal(std::vector<RecordingFile>* files) const {
   const auto reports =
       gimbal_->Reports(errors_.clock_offset_s, Radians(options_.navigation.world_yaw_deg),
                        RandomOf(seed_, FlightPart::kGimbal));
-  std::string rows = EurocGimbalColumns() + "\n";
-  for (const GimbalSample& report : reports) rows += EurocGimbalCells(report) + "\n";
-  files->push_back({euroc::kGimbal, rows});
+  constexpr double kTruth_hz = 200;
+  files->push_back({euroc::kGimbal, EurocGimbalText(reports)});
+  files->push_back({euroc::kTrueGimbal, EurocGimbalText(gimbal_->Truth(kTruth_hz))});
   files->push_back(
       {euroc::kGimbalSensor, EurocGimbalSensorText(*nominal_.gimbal, reports.front().yaw_frame,
                                                    options_.gimbal.rate_hz)});

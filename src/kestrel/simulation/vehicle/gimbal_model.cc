@@ -72,12 +72,23 @@ RigidTransform SimulatedGimbal::WorldFromPlatform(double time_s) const {
   return {Attitude(time_s), world_from_body_(time_s) * body_from_pivot_.translation};
 }
 
+double SimulatedGimbal::end_s() const {
+  return begin_s_ + static_cast<double>(angles_.size() - 1) / kSteps_hz;
+}
+
+std::vector<GimbalSample> SimulatedGimbal::Truth(double rate_hz) const {
+  std::vector<GimbalSample> truth;
+  for (double time_s = begin_s_; time_s <= end_s(); time_s += 1 / rate_hz) {
+    truth.push_back({TimeOfFlight(time_s), Attitude(time_s), YawFrame::kEarth});
+  }
+  return truth;
+}
+
 std::vector<GimbalSample> SimulatedGimbal::Reports(double clock_offset_s, double world_yaw_rad,
                                                    Random random) const {
   const YawFrame frame = options_.yaw_frame == "earth" ? YawFrame::kEarth : YawFrame::kVehicle;
-  const double end_s = begin_s_ + static_cast<double>(angles_.size() - 1) / kSteps_hz;
   std::vector<GimbalSample> reports;
-  for (double time_s = begin_s_; time_s <= end_s; time_s += 1 / options_.rate_hz) {
+  for (double time_s = begin_s_; time_s <= end_s(); time_s += 1 / options_.rate_hz) {
     const double turn = frame == YawFrame::kEarth
                             ? world_yaw_rad
                             : -HeadingOf((world_from_body_(time_s) * body_from_pivot_).rotation);

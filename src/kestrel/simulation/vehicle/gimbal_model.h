@@ -53,7 +53,11 @@ class SimulatedGimbal {
   std::vector<GimbalSample> Reports(double clock_offset_s, double world_yaw_rad,
                                     Random random) const;
 
+  // Returns the true attitudes in the world, 'rate_hz' a second, on the clock of the images.
+  std::vector<GimbalSample> Truth(double rate_hz) const;
+
  private:
+  double end_s() const;
   Eigen::Quaterniond Attitude(double time_s) const;
 
   GimbalOptions options_;

@@ -13,6 +13,7 @@ inline constexpr char kPoses[] = "nav0/data.csv";
 inline constexpr char kPoseSensor[] = "nav0/sensor.yaml";
 inline constexpr char kGimbal[] = "gimbal0/data.csv";
 inline constexpr char kGimbalSensor[] = "gimbal0/sensor.yaml";
+inline constexpr char kTrueGimbal[] = "gimbal_groundtruth0/data.csv";
 inline constexpr char kTruePoses[] = "state_groundtruth_estimate0/data.csv";
 inline constexpr char kTruePatterns[] = "landing_pattern0/data.csv";
 inline constexpr char kScene[] = "scene.yaml";

@@ -100,6 +100,12 @@ std::string EurocGimbalCells(const GimbalSample& sample) {
                      q.y(), q.z());
 }
 
+std::string EurocGimbalText(const std::vector<GimbalSample>& samples) {
+  std::string text = EurocGimbalColumns() + "\n";
+  for (const GimbalSample& sample : samples) text += EurocGimbalCells(sample) + "\n";
+  return text;
+}
+
 std::string EurocPoseColumns(const std::string& frames) {
   return fmt::format(
       "#timestamp [ns],p_{0}_{1}_x [m],p_{0}_{1}_y [m],p_{0}_{1}_z [m],"

@@ -33,6 +33,9 @@ std::string EurocGimbalSensorText(const GimbalMount& gimbal, YawFrame yaw_frame,
 std::string EurocGimbalColumns();
 std::string EurocGimbalCells(const GimbalSample& sample);
 
+// Returns the text of gimbal0/data.csv.
+std::string EurocGimbalText(const std::vector<GimbalSample>& samples);
+
 // Returns the text of nav0/sensor.yaml.
 std::string EurocPoseSensorText(double rate_hz);
 
