@@ -6,7 +6,8 @@
 // Example:
 //   const CameraCalibration calibration = ReadCalibration("camera.yaml");
 //   ObservationSinks sinks;
-//   sinks.Add(OpenLandingMcapSink("flight.mcap", /*replace=*/true, calibration, {},
-//                                 [](const std::string& text) { std::cerr << text << "\n"; }));
+//   sinks.Add(OpenMcapSink("flight.mcap", /*replace=*/true, *MakeTask("land", TaskOptions()),
+//                          calibration, [](const std::string& text) { std::cerr << text << "\n";
+//                          }));
 
 #include "kestrel/app/foxglove/mcap_sink.h"  // IWYU pragma: export

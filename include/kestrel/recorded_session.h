@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// A session over a recording: every frame through the vision, every result to a sink.
+// A session over a recording: every frame through the vision of a task, every result to the sinks.
 //
 // Example:
 //   struct Counter : ObservationSink {
@@ -9,9 +9,10 @@
 //     int frames = 0;
 //   };
 //   const OpenedSource opened = OpenRecording({.sources = {"flight.bag"}});
-//   LandingRun landing(opened, LandingPipelineOptions(), /*altitude_m=*/std::nullopt);
-//   Counter counter;
-//   RunRecording(opened, &landing, &counter, [](std::size_t) { return true; });
-//   std::cout << counter.frames << " frames, " << landing.Found() << "\n";
+//   RecordedSession session(opened, *MakeTask("land", TaskOptions()), /*altitude_m=*/std::nullopt);
+//   const Counter* const counter = session.sinks().Add(std::make_unique<Counter>());
+//   session.AddTables({.folder = "results"});
+//   session.Run([](std::size_t) { return true; });
+//   std::cout << counter->frames << " frames\n" << session.Summary();
 
 #include "kestrel/flight/session/recorded_session.h"  // IWYU pragma: export

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// The interface of the vision of a session over a recording, for a pipeline of your own.
+// The interface of the vision of a session, for a pipeline of your own.
 //
 // Example:
 //   struct FrameCounter : Vision {

@@ -134,8 +134,8 @@ std::optional<std::string> PathOf(const py::object& options) {
   return options.attr("__fspath__")().cast<std::string>();
 }
 
-ConfigurationFile ReadConfiguration(const std::string& path) {
-  ConfigurationFile file;
+TaskOptions ReadConfiguration(const std::string& path) {
+  TaskOptions file;
   ReadOptionFields(WithoutOtherGroups(ReadFile(path)), path, FieldsOf(file));
   return file;
 }

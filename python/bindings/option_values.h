@@ -6,29 +6,17 @@
 #include <vector>
 
 #include "casters.h"
-#include "kestrel/hunt_pipeline.h"
-#include "kestrel/landing_pipeline.h"
+#include "kestrel/flight/session/task.h"
 #include "kestrel/options.h"
 
 namespace kestrel::python {
-
-// The groups of a configuration file of the command (`kestrel config`) that Python's classes read.
-struct ConfigurationFile {
-  LandingPipelineOptions landing;
-  HuntPipelineOptions hunt;
-
-  static void Visit(auto& self, auto&& visit) {
-    visit.Group("landing", self.landing);
-    visit.Group("hunt", self.hunt);
-  }
-};
 
 // Returns the path that 'options' are, if they are one and no dict.
 std::optional<std::string> PathOf(const pybind11::object& options);
 
 // Reads the file of a command's configuration. Other groups are for others. Throws InputError as
 // ReadOptions does.
-ConfigurationFile ReadConfiguration(const std::string& path);
+TaskOptions ReadConfiguration(const std::string& path);
 
 // Sets the fields that a dict names: the names of the YAML file, in dicts of groups or with dots
 // ("pattern.outer_diameter_m"). Throws InputError for an unknown name, which it compares with the
@@ -45,7 +33,7 @@ void WarnOf(const TargetOptions& target);
 // configuration file, of which 'part' takes its part), changed by the keyword arguments.
 template <class Options, class Part>
 Options OptionsOf(const pybind11::object& options, const pybind11::kwargs& keywords, Part part) {
-  Options result = part(ConfigurationFile());
+  Options result = part(TaskOptions());
   if (const auto path = PathOf(options)) {
     result = part(ReadConfiguration(*path));
   } else if (!options.is_none()) {

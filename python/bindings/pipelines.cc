@@ -47,9 +47,9 @@ class Guarded {
   Pipeline pipeline_;
 };
 
-class LandingVision : public Guarded<LandingPipeline> {
+class GuardedLanding : public Guarded<LandingPipeline> {
  public:
-  explicit LandingVision(LandingPipeline pipeline)
+  explicit GuardedLanding(LandingPipeline pipeline)
       : Guarded(std::move(pipeline)),
         view_(std::make_shared<PadView>(
             PadView{this->pipeline().detector().camera(), this->pipeline().detector().shape()})) {}
@@ -65,9 +65,9 @@ class LandingVision : public Guarded<LandingPipeline> {
   std::shared_ptr<PadView> view_;
 };
 
-class HuntVision : public Guarded<HuntPipeline> {
+class GuardedHunt : public Guarded<HuntPipeline> {
  public:
-  HuntVision(HuntPipeline pipeline, std::shared_ptr<ObjectModel> model)
+  GuardedHunt(HuntPipeline pipeline, std::shared_ptr<ObjectModel> model)
       : Guarded(std::move(pipeline)), model_(std::move(model)) {}
 
   SeenHunt Process(const py::handle& image, Time time) {
@@ -152,7 +152,7 @@ constexpr char kSetAltitude[] =
     "not known.";
 
 void BindLandingPipeline(py::module_& module) {
-  py::class_<LandingVision, std::shared_ptr<LandingVision>>(
+  py::class_<GuardedLanding, std::shared_ptr<GuardedLanding>>(
       module, "LandingPipeline",
       "The whole vision of a landing: images and poses in; the pad, its place in the world and its "
       "track out.")
@@ -161,10 +161,10 @@ void BindLandingPipeline(py::module_& module) {
              const auto values = OptionsOf<LandingPipelineOptions>(
                  options, keywords, [](const auto& file) { return file.landing; });
              if (detector) {
-               return std::make_shared<LandingVision>(LandingPipeline(
+               return std::make_shared<GuardedLanding>(LandingPipeline(
                    calibration, std::make_unique<SharedDetector>(detector->target()), values));
              }
-             auto made = std::make_shared<LandingVision>(LandingPipeline(calibration, values));
+             auto made = std::make_shared<GuardedLanding>(LandingPipeline(calibration, values));
              WarnOf(values.target);
              return made;
            }),
@@ -176,44 +176,44 @@ void BindLandingPipeline(py::module_& module) {
            "detector: TargetDetector in place of that of the options.")
       .def(
           "add_pose",
-          [](LandingVision& self, const PoseSample& sample) {
+          [](GuardedLanding& self, const PoseSample& sample) {
             return self.With([&](LandingPipeline& pipeline) { return pipeline.AddPose(sample); });
           },
           py::arg("sample"), kAddPose)
       .def(
           "set_altitude",
-          [](LandingVision& self, std::optional<double> altitude_m) {
+          [](GuardedLanding& self, std::optional<double> altitude_m) {
             RequireAltitude(altitude_m);
             self.With([&](LandingPipeline& pipeline) { pipeline.SetAltitude(altitude_m); });
           },
           py::arg("altitude_m"), kSetAltitude)
-      .def("process", &LandingVision::Process, py::arg("image"), py::arg("time_ns"),
+      .def("process", &GuardedLanding::Process, py::arg("image"), py::arg("time_ns"),
            "Processes a frame.\n\nimage: uint8 of shape (rows, columns), gray, of the camera's "
            "size; not copied.\ntime_ns: middle of the exposure, int, ns.\nReturns a "
            "LandingObservation. Lets other threads run.")
       .def(
           "predict",
-          [](LandingVision& self, Time time) {
+          [](GuardedLanding& self, Time time) {
             return self.With(
                 [&](LandingPipeline& pipeline) { return pipeline.tracker().Predict(time); });
           },
           py::arg("time_ns"),
           "Returns the TargetEstimate of the track at a time, or None where it is not known.")
-      .def("__repr__", [](const LandingVision& self) {
+      .def("__repr__", [](const GuardedLanding& self) {
         return fmt::format("<LandingPipeline: a pad of {:.3g} m>",
                            self.pipeline().detector().shape().diameter_m);
       });
 }
 
 void BindHuntPipeline(py::module_& module) {
-  py::class_<HuntVision, std::shared_ptr<HuntVision>>(
+  py::class_<GuardedHunt, std::shared_ptr<GuardedHunt>>(
       module, "HuntPipeline",
       "The whole vision of a hunt: colour images and poses in; objects and their map out.")
       .def(py::init([](const CameraCalibration& calibration,
                        const std::shared_ptr<ObjectModel>& model, const py::object& options,
                        const py::kwargs& keywords) {
              const auto used = model ? model : std::make_shared<ObjectModel>(DefaultObjectModel());
-             return std::make_shared<HuntVision>(
+             return std::make_shared<GuardedHunt>(
                  HuntPipeline(calibration, *used,
                               OptionsOf<HuntPipelineOptions>(
                                   options, keywords, [](const auto& file) { return file.hunt; })),
@@ -225,28 +225,28 @@ void BindHuntPipeline(py::module_& module) {
            "options, too.")
       .def(
           "add_pose",
-          [](HuntVision& self, const PoseSample& sample) {
+          [](GuardedHunt& self, const PoseSample& sample) {
             return self.With([&](HuntPipeline& pipeline) { return pipeline.AddPose(sample); });
           },
           py::arg("sample"), kAddPose)
       .def(
           "set_altitude",
-          [](HuntVision& self, std::optional<double> altitude_m) {
+          [](GuardedHunt& self, std::optional<double> altitude_m) {
             RequireAltitude(altitude_m);
             self.With([&](HuntPipeline& pipeline) { pipeline.SetAltitude(altitude_m); });
           },
           py::arg("altitude_m"), kSetAltitude)
-      .def("process", &HuntVision::Process, py::arg("image"), py::arg("time_ns"),
+      .def("process", &GuardedHunt::Process, py::arg("image"), py::arg("time_ns"),
            "Processes a frame.\n\nimage: uint8 of shape (rows, columns, 3), BGR, of the camera's "
            "size; not copied.\ntime_ns: middle of the exposure, int, ns.\nReturns a "
            "HuntObservation. Lets other threads run.")
       .def(
           "confirmed",
-          [](HuntVision& self) {
+          [](GuardedHunt& self) {
             return self.With([](HuntPipeline& pipeline) { return pipeline.map().Confirmed(); });
           },
           "Returns the confirmed objects of the map, a list of MappedObject.")
-      .def("__repr__", [](const HuntVision& self) {
+      .def("__repr__", [](const GuardedHunt& self) {
         return fmt::format("<HuntPipeline: {} classes>",
                            self.pipeline().detector().model().classes.size());
       });

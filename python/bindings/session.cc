@@ -21,12 +21,9 @@
 #include "kestrel/app/fly/fly_source.h"
 #include "kestrel/asynchronous_sink.h"
 #include "kestrel/comms/dds/dds_domain.h"
-#include "kestrel/flight/session/hunt_files.h"
-#include "kestrel/flight/session/landing_files.h"
-#include "kestrel/hunt_run.h"
+#include "kestrel/flight/session/task.h"
 #include "kestrel/io/recording/tables/landing_csv.h"
 #include "kestrel/io/recording/tables/object_csv.h"
-#include "kestrel/landing_run.h"
 #include "kestrel/live_session.h"
 #include "kestrel/observation_sinks.h"
 #include "kestrel/recorded_session.h"
@@ -89,19 +86,15 @@ class CallingSink : public ObservationSink {
       : sinks_(sinks), views_(std::move(views)) {}
 
   void Take(const Observation& observation) override {
-    ++frames_;
     if (sinks_->empty()) return;
     const py::gil_scoped_acquire acquire;
     const py::object seen = py::cast(views_.Seen(observation));
     for (const py::function& sink : *sinks_) sink(seen);
   }
 
-  std::size_t frames() const { return frames_; }
-
  private:
   const std::vector<py::function>* sinks_;
   Views views_;
-  std::size_t frames_ = 0;
 };
 
 // The first error of a function of Python. A flight goes on without that function.
@@ -161,14 +154,13 @@ void CheckSignals() {
 }
 
 // Returns the groups of 'options' that a session over a recording reads, too.
-ConfigurationFile VisionOptions(const py::object& options) {
+TaskOptions VisionOptions(const py::object& options) {
   py::object vision = options;
   if (py::isinstance<py::dict>(options)) {
     vision = options.attr("copy")();
     vision.attr("pop")("fly", py::none());
   }
-  const auto values =
-      OptionsOf<ConfigurationFile>(vision, {}, [](const auto& file) { return file; });
+  const auto values = OptionsOf<TaskOptions>(vision, {}, [](const auto& file) { return file; });
   RequireValid(values.landing);
   RequireValid(values.hunt);
   return values;
@@ -204,12 +196,13 @@ class Session {
     RequireConsistent(choices_);
     if (choices_.is_live) {
       flight_ = FlightOptionsOf(choices_.options);
-      options_ = {flight_.landing, flight_.hunt};
+      options_ = flight_;
     } else {
       options_ = VisionOptions(choices_.options);
     }
     if (!choices_.is_hunt) WarnOf(options_.landing.target);
     if (!choices_.model) choices_.model = std::make_shared<ObjectModel>(DefaultObjectModel());
+    task_ = MakeTask(choices_.is_hunt ? "hunt" : "land", options_, {.model = *choices_.model});
   }
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -226,70 +219,37 @@ class Session {
   }
 
  private:
-  PixelFormat format() const { return choices_.is_hunt ? PixelFormat::kBgr : PixelFormat::kGray; }
-
   OpenedSource Open() const {
     if (py::isinstance<Recording>(choices_.source)) {
       OpenedSource opened = choices_.source.cast<const Recording&>().open();
-      opened.source->set_format(format());
+      opened.source->set_format(task_->format());
       return opened;
     }
-    return OpenWithWarnings(ChoiceOf(choices_.source, choices_.camera, format()));
+    return OpenWithWarnings(ChoiceOf(choices_.source, choices_.camera, task_->format()));
   }
 
   std::string RunRecorded() {
     const OpenedSource opened = Open();
     const py::gil_scoped_release release;
-    return choices_.is_hunt ? RunHunt(opened) : RunLanding(opened);
-  }
-
-  OutputOptions Output(const OpenedSource& opened) const {
-    return {choices_.output, choices_.replace, "", opened.source->rate_hz()};
-  }
-
-  std::string RunLanding(const OpenedSource& opened) {
-    LandingRun run(opened, options_.landing, choices_.altitude_m);
-    const TargetDetector& detector = run.pipeline().detector();
-    ObservationSinks sinks(SinkErrors::kThrow);
+    RecordedSession session(opened, *task_, choices_.altitude_m);
     if (!choices_.output.empty()) {
-      const bool has_track = opened.has_world() && !options_.landing.still;
-      sinks.Add(std::make_unique<LandingFiles>(Output(opened), &run.pipeline(), has_track,
-                                               std::vector<double>()));
+      session.AddTables({choices_.output, choices_.replace, "", opened.source->rate_hz()});
     }
-    const auto view = std::make_shared<PadView>(PadView{detector.camera(), detector.shape()});
-    return RunToEnd(opened, {view, nullptr}, &run, &sinks);
-  }
-
-  std::string RunHunt(const OpenedSource& opened) {
-    HuntRun run(opened, *choices_.model, ColorGrid(choices_.model->colors), options_.hunt,
-                choices_.altitude_m);
-    ObservationSinks sinks(SinkErrors::kThrow);
-    if (!choices_.output.empty()) {
-      const bool has_map = opened.has_world() && !options_.hunt.still;
-      sinks.Add(std::make_unique<HuntFiles>(Output(opened), &run.pipeline(), has_map,
-                                            std::vector<double>()));
-    }
-    return RunToEnd(opened, {nullptr, choices_.model}, &run, &sinks);
-  }
-
-  std::string RunToEnd(const OpenedSource& opened, const Views& views, Vision* vision,
-                       ObservationSinks* sinks) {
-    const auto* const called = sinks->Add(std::make_unique<CallingSink>(&choices_.sinks, views));
-    RunRecording(opened, vision, sinks, [&](std::size_t /*done*/) {
+    session.sinks().Add(
+        std::make_unique<CallingSink>(&choices_.sinks, ViewsOf(opened.calibration)));
+    session.Run([&](std::size_t /*done*/) {
       CheckSignals();
       return !is_stopped_;
     });
-    sinks->Finish();
-    std::string text =
-        fmt::format("{} frames, {}\n{}", called->frames(), vision->Found(), vision->Remarks());
-    if (const std::string warning = vision->Warning(); !warning.empty()) text += warning + "\n";
+    std::string text = session.Summary();
+    if (const auto warning = session.vision().Warning(); !warning.empty()) text += warning + "\n";
     return text;
   }
 
   LiveSessionParts Parts(FlySource* source, const FlyAutopilot& autopilot,
                          ObservationSink* sink) const {
     LiveSessionParts parts = SessionParts(source, autopilot);
-    if (choices_.is_hunt) parts.objects = *choices_.model;
+    parts.task = task_;
     parts.sink = sink;
     parts.guides = choices_.guides;
     parts.output = choices_.output;
@@ -298,15 +258,15 @@ class Session {
     return parts;
   }
 
-  Views LiveViews(const OpenedLiveSource& opened) const {
+  Views ViewsOf(const CameraCalibration& calibration) const {
     const LandingPipelineOptions& landing = options_.landing;
-    return {std::make_shared<PadView>(PadView{CameraModel(opened.calibration.intrinsics),
+    return {std::make_shared<PadView>(PadView{CameraModel(calibration.intrinsics),
                                               ShapeOfTarget(landing.target, landing.detector)}),
             choices_.model};
   }
 
   std::string RunLive() {
-    const RecordingChoice recording = ChoiceOf(choices_.source, choices_.camera, format());
+    const RecordingChoice recording = ChoiceOf(choices_.source, choices_.camera, task_->format());
     const py::gil_scoped_release release;
     FlySource source(flight_,
                      [this] { return OpenRos2Node(DdsDomain(std::nullopt), flight_.dds); });
@@ -317,7 +277,7 @@ class Session {
     ObservationSinks sinks;
     sinks.Add(std::make_unique<AsynchronousSink>(
         AsynchronousSinkOptions{.thread_name = "python"},
-        std::make_unique<CallingWriter>(&choices_, LiveViews(source.live), &sink_error)));
+        std::make_unique<CallingWriter>(&choices_, ViewsOf(source.live.calibration), &sink_error)));
     LiveSession session(Parts(&source, autopilot, &sinks),
                         SessionOptions(flight_, source, autopilot));
     if (autopilot.simulated) autopilot.simulated->Start();
@@ -340,7 +300,8 @@ class Session {
   }
 
   Choices choices_;
-  ConfigurationFile options_;
+  TaskOptions options_;
+  std::shared_ptr<const Task> task_;
   KestrelOptions flight_;  // of live sessions
   std::atomic<bool> is_stopped_{false};
 };

@@ -103,7 +103,7 @@ def test_an_error_of_a_sink_ends_the_run(recording):
 def test_a_sink_stops_the_run(recording):
     frames = []
     session = kestrel.Session(recording, sinks=[lambda seen: (frames.append(seen), session.stop())])
-    assert "1 frames" in session.run()
+    assert "1 frame," in session.run()
 
 
 def test_a_live_session_plays_a_recording(recording):

@@ -16,12 +16,14 @@
 #include "kestrel/app/console/messages/console_json.h"
 #include "kestrel/app/console/replay/hunt_replay.h"
 #include "kestrel/app/console/replay/landing_replay.h"
+#include "kestrel/app/console/replay/replay_run.h"
 #include "kestrel/app/foxglove/mcap_sink.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/flight/onboard/live_session.h"
 #include "kestrel/flight/onboard/live_session_options.h"
 #include "kestrel/flight/ros/ros_sink.h"
 #include "kestrel/flight/session/observation_sinks.h"
+#include "kestrel/flight/session/task.h"
 
 namespace kestrel {
 namespace {
@@ -101,27 +103,27 @@ void WritePage(const ReplayResult& result, const fs::path& file) {
   for (const MapEntry& entry : result.map) page << entry.object.label << '\n';
 }
 
-void Play(bool is_hunt, const std::string& recording, const fs::path& folder) {
+void Play(const std::string& name, const std::string& recording, const fs::path& folder) {
   const ObjectModel model = DefaultObjectModel();
   LiveSessionOptions options;
   options.flight.events.pose_wait_s = 1;  // no frame goes without its pose
+  const TaskOptions tasks;
+  const std::shared_ptr<const Task> task = MakeTask(name, tasks);
   const std::unique_ptr<ReplaySearch> search =
-      is_hunt ? SearchForObjects({recording}, options.hunt, model, std::nullopt)
-              : SearchForPattern({recording}, options.landing, std::nullopt);
+      name == "hunt" ? SearchForObjects({recording}, tasks.hunt, model, std::nullopt)
+                     : SearchForPattern({recording}, tasks.landing, std::nullopt);
   const RecordingChoice choice{.sources = {recording}, .format = search->format()};
   const OpenedSource opened = OpenRecording(choice);
   fs::create_directories(folder);
 
   MaskedSinks sinks;
-  const std::variant<LandingView, HuntView> view =
-      is_hunt ? std::variant<LandingView, HuntView>(HuntView{model})
-              : ViewOf(opened.calibration, options.landing);
-  sinks.sinks.Add(OpenMcapFile((folder / "session.mcap").string(), /*replace=*/true,
-                               opened.calibration.intrinsics, view));
+  sinks.sinks.Add(OpenMcapFile((folder / "session.mcap").string(), /*replace=*/true, *task,
+                               opened.calibration));
   sinks.sinks.Add(MakeWaitingRosSink(std::make_unique<RosResults>(
       std::make_shared<RosBytes>(folder / "ros.bin"), DdsOptions(),
-      RosFrames{"camera", "map", "base_link"}, opened.calibration, options.landing, model)));
-  ReplayRun* const replay = sinks.sinks.Add(search->Detect({})(opened));
+      RosFrames{"camera", "map", "base_link"}, opened.calibration, tasks.landing, model)));
+  const ReplayRun replay = search->Detect({})(opened);
+  sinks.sinks.Add(std::make_unique<GuardedSink>(replay.frames, [](const std::string&) {}));
 
   SteppedSource source(opened, std::chrono::milliseconds(100), &sinks);
   LiveSessionParts parts;
@@ -129,12 +131,12 @@ void Play(bool is_hunt, const std::string& recording, const fs::path& folder) {
   parts.calibration = opened.calibration;
   parts.rate_hz = opened.source->rate_hz();
   parts.has_poses = true;
-  if (is_hunt) parts.objects = model;
+  parts.task = task;
   parts.sink = &sinks;
   parts.output = (folder / "tables").string();
   LiveSession(parts, options).Run([] { return false; });
   sinks.Finish();
-  WritePage(replay->TakeResult(), folder / "page.json");
+  WritePage(replay.frames->TakeResult(), folder / "page.json");
 }
 
 }  // namespace
@@ -143,7 +145,7 @@ void Play(bool is_hunt, const std::string& recording, const fs::path& folder) {
 int main(int argc, char** argv) {
   if (argc != 4) return 2;
   try {
-    kestrel::Play(argv[1] == std::string("hunt"), argv[2], argv[3]);
+    kestrel::Play(argv[1], argv[2], argv[3]);
   } catch (const kestrel::InputError& error) {
     std::cerr << error.what() << "\n";
     return 1;

@@ -22,6 +22,7 @@
 #include "kestrel/flight/ros/ros2_result_connection.h"
 #include "kestrel/flight/ros/ros_sink.h"
 #include "kestrel/flight/session/asynchronous_sink.h"
+#include "kestrel/flight/session/land_task.h"
 #include "kestrel/flight/session/observation_sinks.h"
 #include "test_session.h"
 
@@ -177,8 +178,7 @@ TEST_F(FailingSink, SurvivesStalledWriter) {
 }
 
 TEST_F(FailingSink, SurvivesFullDiskOfMcapFile) {
-  sinks_.Add(OpenMcapSink("/dev/full", /*replace=*/true, SmallCamera().intrinsics,
-                          ViewOf(SmallCamera(), LandingPipelineOptions()),
+  sinks_.Add(OpenMcapSink("/dev/full", /*replace=*/true, LandTask({}), SmallCamera(),
                           [this](const std::string& text) { Say(text); }));
   Fly();
   ExpectAllResults();

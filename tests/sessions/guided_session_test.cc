@@ -14,6 +14,7 @@
 #include "kestrel/comms/mavlink/connection.h"
 #include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/comms/mavlink/socket_address.h"
+#include "kestrel/flight/session/task.h"
 #include "test_session.h"
 
 namespace kestrel {
@@ -31,8 +32,10 @@ std::string EventsWithTagOf(double size_m) {
   parts.autopilot = "udpout://127.0.0.1:9";
   LiveSessionOptions options = SessionOptions();
   options.flight.guard.enabled = false;
-  options.landing.target.kind = "apriltag";
-  options.landing.target.apriltag.size_m = size_m;
+  TaskOptions tasks;
+  tasks.landing.target.kind = "apriltag";
+  tasks.landing.target.apriltag.size_m = size_m;
+  parts.task = MakeTask("land", tasks);
   LiveSession(parts, options).Run([] { return false; });
   return witness.seen().events;
 }

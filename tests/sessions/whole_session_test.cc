@@ -24,11 +24,14 @@
 #include "kestrel/comms/team/team_member.h"
 #include "kestrel/comms/team/team_view.h"
 #include "kestrel/core/base/test_folder.h"
-#include "kestrel/flight/onboard/hunt_vision.h"
 #include "kestrel/flight/onboard/recording_switch.h"
 #include "kestrel/flight/ros/ros2_result_connection.h"
 #include "kestrel/flight/ros/ros_sink.h"
+#include "kestrel/flight/session/hunt_task.h"
+#include "kestrel/flight/session/land_task.h"
 #include "kestrel/flight/session/observation_sinks.h"
+#include "kestrel/flight/session/task.h"
+#include "kestrel/flight/session/team_sharing.h"
 #include "kestrel/io/recording/open_source.h"
 #include "test_session.h"
 
@@ -38,7 +41,7 @@ namespace {
 using std::chrono::milliseconds;
 using ::testing::IsEmpty;
 
-FlightView LandingViewOfSession() { return ViewOf(SmallCamera(), LandingPipelineOptions()); }
+TaskView LandingViewOfSession() { return ViewOf(SmallCamera(), LandingPipelineOptions()); }
 
 // All sinks of a flight, as `kestrel fly --console --mcap --dds` has them.
 class AllSinks {
@@ -50,7 +53,7 @@ class AllSinks {
     console = sinks.Add(std::make_unique<FlightConsole>(
         AnyPort(), "a flight", LandingViewOfSession(), FlightExamination(SmallCamera(), ".", 0),
         live->channels()));
-    sinks.Add(OpenMcapSink(mcap, /*replace=*/false, camera, LandingViewOfSession(),
+    sinks.Add(OpenMcapSink(mcap, /*replace=*/false, LandTask({}), SmallCamera(),
                            [this](const std::string& text) { Say(text); }));
     if (Ros2Node::Knows("tf2_msgs/TFMessage")) AddRos(domain);
   }
@@ -200,7 +203,7 @@ TEST(WholeSession, AppliesChangedOptionsFromNextFrame) {
   std::optional<Witness::Seen> changed;
   session.Run([&] {
     if (changed || witness.seen().found == 0) return false;
-    LiveSessionOptions options = SessionOptions();
+    TaskOptions options;
     options.landing.detector.min_quality = 1;
     session.Change(options);
     session.BetweenFrames([&] { changed = witness.seen(); });
@@ -218,9 +221,9 @@ class TeamUav {
       : member_({name, 1}, {}), topic_(domain, "sessions", name), camera_(300, DiscImage, 2) {
     witness_ = sinks_.Add(std::make_unique<Witness>());
     LiveSessionParts parts = LandingParts(&camera_, &sinks_);
-    parts.objects = DefaultObjectModel();
+    parts.task = std::make_shared<HuntTask>(HuntPipelineOptions(), DefaultObjectModel());
     session_.emplace(parts, SessionOptions());
-    session_->hunt()->ShareMap(milliseconds(50));
+    maps_ = sinks_.Add(std::make_unique<MapCopies>(session_->vision().map(), milliseconds(50)));
   }
 
   void Fly() {
@@ -236,7 +239,7 @@ class TeamUav {
 
  private:
   void Exchange() {
-    if (auto map = session_->hunt()->TakeMap()) member_.Tell(std::move(map->objects), Now());
+    if (auto map = maps_->TakeNewest()) member_.Tell(std::move(map->objects), Now());
     topic_.Receive([this](auto bytes) { member_.Hear(bytes, Now()); });
     member_.Tick(Now(), [this](auto bytes) { topic_.Send(bytes); });
     sinks_.Take(TeamReport{Now(), OwnMap(ViewTeam(member_, Now(), &fusion_))});
@@ -248,6 +251,7 @@ class TeamUav {
   DrawnCamera camera_;
   ObservationSinks sinks_;
   Witness* witness_;
+  MapCopies* maps_;
   std::optional<LiveSession> session_;
 };
 

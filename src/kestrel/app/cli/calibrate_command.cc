@@ -41,7 +41,8 @@ CameraCalibration ReadGiven(const CalibrateArguments& arguments, const FrameSour
   return *calibration;
 }
 
-void PrintResult(const FlightCalibration& result, const FlightCalibrationOptions& options) {
+void PrintResult(const FlightCalibration& result, const FlightCalibrationOptions& options,
+                 const std::optional<FlownGimbal>& gimbal) {
   if (options.estimate_mount) {
     const Eigen::Vector3d angles = Degrees(1) * result.angles;
     const Eigen::Vector3d sigmas = Degrees(1) * result.angle_sigmas;
@@ -50,7 +51,10 @@ void PrintResult(const FlightCalibration& result, const FlightCalibrationOptions
                "{:.3f} degrees\n",
                angles.x(), sigmas.x(), angles.y(), sigmas.y(), angles.z(), sigmas.z());
   }
-  if (options.estimate_clock) {
+  if (options.estimate_clock && gimbal) {
+    fmt::print(stderr, "clock offset of the gimbal: {:.4f} +- {:.4f} s\n",
+               gimbal->image_clock_offset_s - result.estimate.clock_offset_s, result.clock_sigma_s);
+  } else if (options.estimate_clock) {
     fmt::print(stderr, "clock offset: {:.4f} +- {:.4f} s\n", result.estimate.clock_offset_s,
                result.clock_sigma_s);
   }
@@ -95,8 +99,10 @@ void RunCalibrate(const CalibrateArguments& arguments, FlightCalibrationOptions 
     throw Interrupted(fmt::format(
         "interrupted after {} images: no calibration is made from a part of a flight", done));
   }
-  const FlightCalibration result = CalibrateFlight(flight.sightings(), poses, given, options);
-  PrintResult(result, options);
+  const auto gimbal = FlownGimbalOf(calibration, source->gimbal(), arguments.recording);
+  const FlightCalibration result =
+      CalibrateFlight(flight.sightings(), poses, given, options, gimbal);
+  PrintResult(result, options, gimbal);
   RequireUse(result, arguments.force);
   SetMountAndClock(result.estimate, &calibration);
   WriteCalibration(calibration, source->rate_hz(), arguments.output, arguments.force);

@@ -7,10 +7,8 @@ namespace kestrel {
 
 // Each adds a subcommand with its options to the command line; `fly` has a header of its own.
 
-// `kestrel land SOURCE...`: runs the landing pipeline over a source.
-void AddLandCommand(CLI::App* app);
-// `kestrel hunt SOURCE...`: runs the coloured-object pipeline over a source.
-void AddHuntCommand(CLI::App* app);
+// `kestrel land SOURCE...`, `kestrel hunt SOURCE...`: run a task over a source.
+void AddTaskCommands(CLI::App* app);
 // `kestrel doctor`: says what is wrong with camera, calibration, mount, autopilot and computer, and
 // what to do about it.
 void AddDoctorCommand(CLI::App* app);

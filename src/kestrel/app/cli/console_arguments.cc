@@ -6,7 +6,6 @@
 #include "kestrel/app/console/replay/landing_replay.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/options.h"
-#include "kestrel/vision/objects/object_model.h"
 
 namespace kestrel {
 
@@ -22,7 +21,7 @@ LandingPipelineOptions ConsoleArguments::LandingOptions(const KestrelOptions& op
 }
 
 bool ConsoleArguments::IsLive() const {
-  return source.sources.size() == 1 && !is_hunt && IsLiveSource(source.sources.front());
+  return source.sources.size() == 1 && task == "land" && IsLiveSource(source.sources.front());
 }
 
 void ConsoleArguments::RequireEnd() const {
@@ -37,15 +36,12 @@ void ConsoleArguments::RequireEnd() const {
 std::unique_ptr<ReplaySearch> MakeSearch(const ConsoleArguments& arguments,
                                          const KestrelOptions& options) {
   const SourceArguments& source = arguments.source;
-  if (!arguments.is_hunt) {
+  if (arguments.task == "land") {
     return SearchForPattern(source.sources, arguments.LandingOptions(options), source.altitude_m);
   }
   HuntPipelineOptions hunt = options.hunt;
   hunt.still = hunt.still || source.still;
-  return SearchForObjects(
-      source.sources, hunt,
-      arguments.model.empty() ? DefaultObjectModel() : ReadObjectModel(arguments.model),
-      source.altitude_m);
+  return SearchForObjects(source.sources, hunt, ReadModel(arguments.model), source.altitude_m);
 }
 
 }  // namespace kestrel

@@ -18,8 +18,8 @@ struct ConsoleArguments {
   SourceArguments source;
   std::string address;
   std::string model;
-  std::string output;  // folder for the files that the page saves; empty: OutputFolder
-  bool is_hunt = false;
+  std::string output;         // folder for the files that the page saves; empty: OutputFolder
+  std::string task = "land";  // name of its kind
   bool is_demo = false;
   // Result of `kestrel land` or `hunt` that is shown instead of a new run; empty: none.
   std::string result;

@@ -23,7 +23,7 @@
 #include "kestrel/app/console/replay/recorded_autopilot.h"
 #include "kestrel/app/console/replay/replay_console.h"
 #include "kestrel/core/base/error.h"
-#include "kestrel/flight/session/observation_sinks.h"
+#include "kestrel/flight/session/task.h"
 
 namespace kestrel {
 namespace {
@@ -40,26 +40,25 @@ void RunConsole(const ConsoleArguments& arguments) {
   const std::string& name = arguments.source.sources.front();
   std::optional<ColorSource> colors = FindColors(choice, arguments.model, arguments.OutputFolder());
   const bool has_colors = colors.has_value();
-  if (!has_colors && !arguments.model.empty() && !arguments.is_hunt) {
+  if (!has_colors && !arguments.model.empty() && arguments.task == "land") {
     throw InputError("--model: " + name + " has no images in color to teach it by");
   }
   ReplayConsole console(arguments.PageOptions(options), name, search->Subject(), std::move(colors));
   PrintLinks(console.urls());
   if (has_colors) fmt::print(stderr, "folder for taught colors: {}\n", arguments.OutputFolder());
   const auto start = arguments.result.empty() ? search->Detect({}) : search->Show(arguments.result);
-  ObservationSinks sinks(SinkErrors::kThrow);
-  ReplayRun* const run = sinks.Add(start(opened));
-  RunToEnd(opened, run->vision(), &sinks, [&](std::size_t done) {
+  const ReplayRun run = start(opened);
+  RunToEnd(opened, run.session.get(), [&](std::size_t done) {
     if (done % kFramesPerReport != 0) return;
     const std::size_t frames = opened.source->frame_count().value_or(0);
     console.SetProgress(fmt::format("{} of {} frames", done, frames));
   });
   if (WasInterrupted()) return;
-  if (run->done() == 0) throw InputError(name + ": has no images to show");
+  if (run.frames->done() == 0) throw InputError(name + ": has no images to show");
   console.OfferCalibration(CalibrationTools(arguments.source.Recording(PixelFormat::kGray),
                                             arguments.LandingOptions(options),
                                             arguments.OutputFolder()));
-  ReplayResult result = run->TakeResult();
+  ReplayResult result = run.frames->TakeResult();
   ReplayConsole::Recording recording = RecordingOf(choice, *search);
   recording.autopilot =
       ReadRecordedAutopilot(choice.sources, result.frames.front().time, result.frames.back().time);
@@ -100,7 +99,7 @@ void AddConsoleCommand(CLI::App* app) {
                    "Address of the page (127.0.0.1:8080); port 0: any free one")
       ->type_name("ADDRESS:PORT");
   command->add_flag(
-      "--hunt", arguments->is_hunt,
+      "--hunt{hunt}", arguments->task,
       "Search for coloured objects, as `kestrel hunt` does, instead of the landing pattern");
   command
       ->add_option("--model", arguments->model,
@@ -117,8 +116,7 @@ void AddConsoleCommand(CLI::App* app) {
     if (arguments->source.sources.empty()) throw CLI::RequiredError("SOURCE, or --demo,");
     if (IsStudy(*arguments)) return RunStudyConsole(*arguments);
     if (arguments->IsLive()) return RunCameraConsole(*arguments);
-    const char* const table =
-        arguments->is_hunt ? "object_detections.csv" : "landing_detections.csv";
+    const std::string table(MakeTask(arguments->task, TaskOptions())->table());
     arguments->result = TakeResult(table, &arguments->source.sources).value_or("");
     RunConsole(*arguments);
   });

@@ -68,7 +68,7 @@ StudyConsole::Run OpenForReplay(const ConsoleArguments& given, const std::string
   arguments.source.options = {};
   ReadWords(of_run.arguments, &arguments);
   arguments.source.sources = {path};
-  arguments.is_hunt = variant.task == "hunt";
+  arguments.task = variant.task;
   arguments.RequireEnd();
   StudyConsole::Run run;
   run.search =
@@ -91,7 +91,7 @@ void RunStudyConsole(const ConsoleArguments& arguments) {
   StudyResults results(folder);
   std::vector<StudyVariant> variants = results.Variants();
   ConsoleArguments any = arguments;
-  any.is_hunt = variants.front().task == "hunt";
+  any.task = variants.front().task;
   ReplaySubject subject = MakeSearch(any, options)->Subject();
   subject.has_truth = true;  // some recordings may have it
   StudyConsole console(arguments.PageOptions(options), folder, std::move(results), variants,

@@ -45,6 +45,7 @@ std::optional<CameraCalibration> CalibrationFor(const ConvertArguments& argument
       CalibrationOf(source, arguments.camera, PrintUnusedKeys);
   if (calibration && !calibration->body_from_camera) {
     calibration->body_from_camera = source.mount().body_from_camera;
+    calibration->gimbal = source.mount().gimbal;
   }
   return calibration;
 }
@@ -121,6 +122,7 @@ void RunConvert(const ConvertArguments& arguments) {
                                   arguments.destination));
   }
   for (; pose != poses.end(); ++pose) recording->AddPose(*pose);
+  recording->AddGimbal(source->gimbal());
   recording->Close();
   fmt::print(stderr, "{} frames, {} poses{}\n", frames, pose - poses.begin(),
              LeftOutInWords(*source));

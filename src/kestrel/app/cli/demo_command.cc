@@ -41,8 +41,7 @@ constexpr char kGuide[] = "docs/first-landing.md";
 void RunCommand(const std::string& words) {
   fmt::print(stderr, "\nkestrel {}\n", words);
   CLI::App app("", "kestrel");
-  AddLandCommand(&app);
-  AddHuntCommand(&app);
+  AddTaskCommands(&app);
   AddSimulateCommand(&app);
   app.parse(words);
   if (WasInterrupted()) throw Interrupted("interrupted");

@@ -82,7 +82,7 @@ void FlyArguments::AddTo(CLI::App* command) {
                  "No guard: if Kestrel dies in flight, only the autopilot's own time-out acts")
       ->needs(guide_flag);
   CLI::Option* hunt_flag = command->add_flag(
-      "--hunt", hunt, "Search for coloured objects instead of the landing pattern");
+      "--hunt{hunt}", task, "Search for coloured objects instead of the landing pattern");
   command->add_option("--model", model, "Objects and their colours (YAML), with --hunt")
       ->type_name("FILE")
       ->needs(hunt_flag);

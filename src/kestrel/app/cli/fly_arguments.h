@@ -25,8 +25,8 @@ struct FlyArguments {
   std::optional<std::string> console;  // ADDRESS:PORT; empty: as in the options
   bool guide = false;
   bool no_guard = false;
-  bool hunt = false;
-  std::string model;  // file with the model of the objects
+  std::string task = "land";  // name of its kind
+  std::string model;          // file with the model of the objects
   TeamArguments team;
   bool loop = false;
   // Options that the command line sets over the configuration file, as "key=value"; by ReadOptions.

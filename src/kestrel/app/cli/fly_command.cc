@@ -27,16 +27,18 @@
 #include "kestrel/app/foxglove/flight_live.h"
 #include "kestrel/app/foxglove/mcap_sink.h"
 #include "kestrel/app/options/field_settings.h"
+#include "kestrel/app/views/task_view.h"
 #include "kestrel/comms/team/team_link.h"
 #include "kestrel/core/base/bounded_queue.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/flight/onboard/camera_automatics.h"
 #include "kestrel/flight/onboard/flight_keeper.h"
-#include "kestrel/flight/onboard/hunt_vision.h"
 #include "kestrel/flight/onboard/live_session.h"
 #include "kestrel/flight/ros/ros2_result_connection.h"
 #include "kestrel/flight/ros/ros_sink.h"
 #include "kestrel/flight/session/observation_sinks.h"
+#include "kestrel/flight/session/task.h"
+#include "kestrel/flight/session/team_sharing.h"
 #include "kestrel/io/recording/open_source.h"
 
 namespace kestrel {
@@ -82,8 +84,8 @@ class FlightLog : public ObservationSink {
   Time start_ = Now();
 };
 
-RecordingChoice CameraChoice(const FlyArguments& arguments) {
-  return arguments.source.Recording(arguments.hunt ? PixelFormat::kBgr : PixelFormat::kGray);
+std::shared_ptr<const Task> TaskOf(const FlyArguments& arguments, const KestrelOptions& options) {
+  return MakeTask(arguments.task, options, {.model = ReadModel(arguments.model)});
 }
 
 // A flight: its sinks and its team around a LiveSession.
@@ -94,8 +96,9 @@ class Flight {
       : arguments_(arguments),
         options_(options),
         settings_(arguments.source.options.config, arguments.given, options),
+        task_(TaskOf(arguments, options)),
         source_(options_, arguments_.source.dds.NodeOpener(options_.dds)) {
-    OpenAloud(CameraChoice(arguments_), arguments_.loop, &source_);
+    OpenAloud(arguments_.source.Recording(task_->format()), arguments_.loop, &source_);
     RequireAutopilot();
     log_ = sinks_.Add(std::make_unique<FlightLog>());
     OpenConsole();
@@ -105,7 +108,8 @@ class Flight {
     autopilot_ = MakeFlyAutopilot(arguments.autopilot, options_.fly, arguments.guide, &source_);
     session_.emplace(Parts(), SessionOptions(options_, source_, autopilot_));
     if (team_) {
-      session_->hunt()->ShareMap(DurationFromSeconds(TeamOptions::kTellPeriod_s));
+      maps_ = sinks_.Add(std::make_unique<MapCopies>(
+          session_->vision().map(), DurationFromSeconds(TeamOptions::kTellPeriod_s)));
     }
   }
 
@@ -156,14 +160,7 @@ class Flight {
   // Prints a line on the terminal; no other sink gets it.
   void Log(const std::string& text) { log_->Take(SessionEvent{Now(), EventLevel::kInfo, text}); }
 
-  ObjectModel ReadModel() const {
-    return arguments_.model.empty() ? DefaultObjectModel() : ReadObjectModel(arguments_.model);
-  }
-
-  FlightView View() const {
-    if (arguments_.hunt) return HuntView{ReadModel(), options_.hunt.detector};
-    return ViewOf(source_.live.calibration, options_.landing);
-  }
+  TaskView View() const { return ViewOf(*task_, source_.live.calibration); }
 
   // The first step: an error about a port in use comes before anything is written.
   void OpenConsole() {
@@ -184,7 +181,7 @@ class Flight {
 
   // Folders where the page of colours of a hunt keeps frames and models.
   std::optional<FlightColors> Colors() const {
-    if (!arguments_.hunt) return std::nullopt;
+    if (!std::holds_alternative<HuntView>(View())) return std::nullopt;
     const std::filesystem::path folder = options_.fly.keep_folder;
     return FlightColors{PathOfNow(folder, "colors_"), (folder / "taught").string(),
                         [camera = arguments_.source.sources.front()] {
@@ -210,19 +207,18 @@ class Flight {
     const DdsOptions& options = options_.dds;
     std::shared_ptr<Ros2Node> node = source_.dds.node();
     if (!node) node = arguments_.source.dds.OpenNode(options);
-    const ResultTopics topics = arguments_.hunt ? ResultTopics(kHuntTopics) : kLandingTopics;
-    sinks_.Add(
-        MakeRosSink(std::make_unique<RosResults>(
-                        std::make_unique<Ros2ResultConnection>(node, options.node, topics), options,
-                        Frames(), source_.live.calibration, options_.landing, ReadModel()),
-                    [this](const std::string& text) { Log(text); }));
+    sinks_.Add(MakeRosSink(
+        std::make_unique<RosResults>(
+            std::make_unique<Ros2ResultConnection>(node, options.node, task_->topics()), options,
+            Frames(), source_.live.calibration, options_.landing, ReadModel(arguments_.model)),
+        [this](const std::string& text) { Log(text); }));
   }
 
   void OpenMcap() {
     const SourceArguments& source = arguments_.source;
     if (source.mcap.empty()) return;
     RequireNoSource(source.mcap, source.sources);
-    sinks_.Add(OpenMcapSink(source.mcap, source.force, source_.live.calibration.intrinsics, View(),
+    sinks_.Add(OpenMcapSink(source.mcap, source.force, *task_, source_.live.calibration,
                             [this](const std::string& text) { Say(text, EventLevel::kWarning); }));
   }
 
@@ -234,12 +230,13 @@ class Flight {
           "--team: expected --autopilot or a source with poses, and the camera's mount");
     }
     team_.emplace(arguments_.team.team, arguments_.source.dds.Domain(), options_.team,
-                  options_.hunt.map, ReadModel(), [this](const std::string& text) { Say(text); });
+                  options_.hunt.map, ReadModel(arguments_.model),
+                  [this](const std::string& text) { Say(text); });
   }
 
   LiveSessionParts Parts() {
     LiveSessionParts parts = SessionParts(&source_, autopilot_);
-    if (arguments_.hunt) parts.objects = ReadModel();
+    parts.task = task_;
     parts.sink = &sinks_;
     if (arguments_.profile != "auto") parts.profile = ParseLinkProfile(arguments_.profile);
     parts.guides = arguments_.guide;
@@ -270,7 +267,7 @@ class Flight {
   }
 
   void ShareMap() {
-    if (auto map = session_->hunt()->TakeMap()) {
+    if (auto map = maps_->TakeNewest()) {
       if (map->position) team_->SetPosition(*map->position);
       team_->Tell(std::move(map->objects));
       sinks_.Take(TeamReport{map->captured, team_->Map()});
@@ -280,9 +277,11 @@ class Flight {
   }
 
   void LeaveTeam() {
-    team_->Finish(session_->hunt()->Objects(), WasInterrupted);
+    team_->Finish(session_->vision().map()->Confirmed(), WasInterrupted);
     sinks_.Take(TeamReport{seen_, team_->Map()});
-    if (session_->output() != nullptr) team_->WriteMap(/*origin=*/{}, *session_->output());
+    const SourceArguments& source = arguments_.source;
+    if (source.output.empty()) return;
+    team_->WriteMap(/*origin=*/{}, OutputFolder(source.output, source.force));
   }
 
   // Everything that waits is written; then all that is known is said.
@@ -298,12 +297,14 @@ class Flight {
   FlyArguments arguments_;
   KestrelOptions options_;
   FieldSettings settings_;  // used by the page's thread
+  std::shared_ptr<const Task> task_;
   FlySource source_;
   ObservationSinks sinks_;
   FlightLog* log_ = nullptr;          // of the sinks
   FlightConsole* console_ = nullptr;  // of the sinks; null: none
   std::optional<TeamLink> team_;
-  Time seen_{};  // the newest frame that the team was told of
+  MapCopies* maps_ = nullptr;  // of the sinks; null: no team
+  Time seen_{};                // the newest frame that the team was told of
   FlyAutopilot autopilot_;
   std::optional<LiveSession> session_;
   std::optional<FlightKeeper> keeper_;
@@ -336,7 +337,7 @@ void RunUncalibrated(const FlyArguments& arguments, const KestrelOptions& option
       name, ShellWord(name));
   RequireNoResults(arguments, advice);
   FlySource source(options, {});
-  CameraRunChoice choice{.camera = CameraChoice(arguments),
+  CameraRunChoice choice{.camera = arguments.source.Recording(TaskOf(arguments, options)->format()),
                          .is_looped = arguments.loop,
                          .keep_folder = options.fly.keep_folder,
                          .record = arguments.record,

@@ -41,8 +41,7 @@ int main(int argc, char** argv) {
   app.fallthrough();  // also behind the subcommand
   app.require_subcommand(1);
   kestrel::AddDemoCommand(&app);
-  kestrel::AddLandCommand(&app);
-  kestrel::AddHuntCommand(&app);
+  kestrel::AddTaskCommands(&app);
   kestrel::AddFlyCommand(&app);
   kestrel::AddDoctorCommand(&app);
   kestrel::AddConsoleCommand(&app);

@@ -41,6 +41,10 @@ CLI::Validator InRange(double min, double max, const std::string& words) {
       "");
 }
 
+ObjectModel ReadModel(const std::string& file) {
+  return file.empty() ? DefaultObjectModel() : ReadObjectModel(file);
+}
+
 void RequireNoSource(const std::string& file, const std::vector<std::string>& sources) {
   std::error_code ignored;
   for (const std::string& source : sources) {

@@ -12,6 +12,7 @@
 #include "kestrel/app/cli/option_arguments.h"
 #include "kestrel/flight/session/result_files.h"
 #include "kestrel/io/bags/open_recording.h"
+#include "kestrel/vision/objects/object_model.h"
 
 namespace kestrel {
 
@@ -45,6 +46,9 @@ struct SourceArguments {
 
   OutputOptions Output(const OpenedSource& opened) const;
 };
+
+// Returns the objects of a file; those that are built in where it has no name.
+ObjectModel ReadModel(const std::string& file);
 
 // Throws InputError when the file to be written is one of the sources.
 void RequireNoSource(const std::string& file, const std::vector<std::string>& sources);

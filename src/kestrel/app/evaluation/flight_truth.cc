@@ -9,6 +9,7 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/read_file.h"
 #include "kestrel/core/camera/calibration_reader.h"
+#include "kestrel/io/recording/euroc/euroc_layout.h"
 #include "kestrel/io/recording/euroc/euroc_recording.h"
 
 namespace kestrel {
@@ -41,11 +42,20 @@ std::string CalibrationFile(const std::string& root) {
   return (fs::path(root) / "cam0" / "sensor.yaml").string();
 }
 
-RigidTransform TrueMount(const std::string& root, const SceneTruth& scene) {
+CameraCalibration ReadMount(const std::string& root) {
   const std::string file = CalibrationFile(root);
-  const auto nominal = ReadCalibration(file).body_from_camera;
-  if (!nominal) throw InputError(file + ": no T_BS, expected the mount of the camera");
-  return {scene.mount_error * nominal->rotation, nominal->translation};
+  CameraCalibration calibration = ReadCalibration(file);
+  if (calibration.body_from_camera) return calibration;
+  throw InputError(file + ": no T_BS, expected the mount of the camera");
+}
+
+GimbalHistory ReadGimbal(const std::string& root, const CameraCalibration& calibration) {
+  if (!calibration.gimbal) return GimbalHistory(0);
+  const std::string file = (fs::path(root) / euroc::kTrueGimbal).string();
+  const auto samples = ParseGimbalRows(ReadFile(file), file, YawFrame::kEarth);
+  GimbalHistory gimbal(samples.size());
+  for (const GimbalSample& sample : samples) gimbal.Add(sample);
+  return gimbal;
 }
 
 PoseHistory ReadPoses(const std::string& root) {
@@ -64,8 +74,9 @@ FlightTruth::FlightTruth(const std::string& recording)
       frames_(ReadFrameTimes(root_)),
       scene_(ReadScene(root_)),
       camera_(ReadCalibration(CalibrationFile(root_)).intrinsics),
-      body_from_camera_(TrueMount(root_, scene_)),
-      poses_(ReadPoses(root_)) {}
+      calibration_(ReadMount(root_)),
+      poses_(ReadPoses(root_)),
+      gimbal_(ReadGimbal(root_, calibration_)) {}
 
 void FlightTruth::RequireFrame(Time time, const std::string& row) const {
   if (std::binary_search(frames_.begin(), frames_.end(), time)) return;
@@ -77,7 +88,15 @@ void FlightTruth::RequireFrame(Time time, const std::string& row) const {
 std::optional<RigidTransform> FlightTruth::WorldFromCamera(Time time) const {
   const std::optional<RigidTransform> world_from_body = WorldFromBody(time);
   if (!world_from_body) return std::nullopt;
-  return *world_from_body * body_from_camera_;
+  const auto true_mount = [this](const RigidTransform& nominal) {
+    return RigidTransform{scene_.mount_error * nominal.rotation, nominal.translation};
+  };
+  const auto& gimbal = calibration_.gimbal;
+  if (!gimbal) return *world_from_body * true_mount(*calibration_.body_from_camera);
+  const auto attitude = gimbal_.At(time, Duration::zero());
+  if (!attitude) return std::nullopt;
+  return WorldFromPlatform(*world_from_body, gimbal->body_from_pivot, *attitude) *
+         true_mount(gimbal->platform_from_camera);
 }
 
 }  // namespace kestrel

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "kestrel/app/evaluation/scene_truth.h"
+#include "kestrel/core/camera/calibration.h"
 #include "kestrel/core/camera/camera_model.h"
+#include "kestrel/core/poses/gimbal_history.h"
 #include "kestrel/core/poses/pose_history.h"
 
 namespace kestrel {
@@ -29,15 +31,16 @@ class FlightTruth {
 
   // True poses; nothing outside of the ground truth and in its gaps.
   std::optional<RigidTransform> WorldFromBody(Time time) const { return poses_.Lookup(time); }
-  std::optional<RigidTransform> WorldFromCamera(Time time) const;
+  std::optional<RigidTransform> WorldFromCamera(Time time) const;  // with the mount's error
 
  private:
   std::string root_;
   std::vector<Time> frames_;
   SceneTruth scene_;
   CameraModel camera_;
-  RigidTransform body_from_camera_;  // includes the mount's error
+  CameraCalibration calibration_;  // nominal
   PoseHistory poses_;
+  GimbalHistory gimbal_;  // empty where the calibration has none
 };
 
 }  // namespace kestrel

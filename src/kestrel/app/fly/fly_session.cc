@@ -8,9 +8,7 @@ namespace kestrel {
 LiveSessionOptions SessionOptions(const KestrelOptions& options, const FlySource& source,
                                   const FlyAutopilot& autopilot) {
   const FlyOptions& fly = options.fly;
-  LiveSessionOptions session{.landing = options.landing,
-                             .hunt = options.hunt,
-                             .flight = fly.flight,
+  LiveSessionOptions session{.flight = fly.flight,
                              .link = fly.link,
                              .autopilot = source.simulated.Asking(fly.autopilot),
                              .recorder = fly.recorder,

@@ -21,10 +21,10 @@ constexpr std::size_t kFramesInTime = 2;
 // The threads that fly have priority.
 constexpr int kNiceness = 10;
 
-std::vector<LiveChannel> ChannelsOf(bool is_hunt) {
+std::vector<LiveChannel> ChannelsOf(const TaskView& view) {
   std::vector<LiveChannel> channels;
   for (const FoxgloveTopicInfo& topic : kObservationTopics) {
-    if (is_hunt && topic.name == kTargetTopic.name) continue;
+    if (topic.name == kTargetTopic.name && !std::holds_alternative<LandingView>(view)) continue;
     channels.push_back({.topic = std::string(topic.name),
                         .encoding = "protobuf",
                         .schema_name = std::string(topic.type),
@@ -77,8 +77,8 @@ class FeedSink : public FoxgloveSink {
 
 class FeedWriter : public SinkWriter {
  public:
-  FeedWriter(ChannelFeed* feed, const CameraIntrinsics& camera,
-             const std::variant<LandingView, HuntView>& view, double max_image_rate_hz)
+  FeedWriter(ChannelFeed* feed, const CameraIntrinsics& camera, const TaskView& view,
+             double max_image_rate_hz)
       : feed_(*feed), sink_(feed, max_image_rate_hz), writer_(&sink_, camera, view) {}
 
   bool IsWanted() const override { return feed_.IsWatched(); }
@@ -100,9 +100,9 @@ class FeedWriter : public SinkWriter {
 
 }  // namespace
 
-FlightLive::FlightLive(const CameraIntrinsics& camera,
-                       const std::variant<LandingView, HuntView>& view, double max_image_rate_hz)
-    : feed_(ChannelsOf(std::holds_alternative<HuntView>(view))),
+FlightLive::FlightLive(const CameraIntrinsics& camera, const TaskView& view,
+                       double max_image_rate_hz)
+    : feed_(ChannelsOf(view)),
       messages_({.thread_name = "foxglove", .frames = kLiveFrames, .niceness = kNiceness},
                 std::make_unique<FeedWriter>(&feed_, camera, view, max_image_rate_hz)) {}
 

@@ -5,8 +5,7 @@
 #include <string>
 #include <variant>
 
-#include "kestrel/app/views/hunt_view.h"
-#include "kestrel/app/views/landing_view.h"
+#include "kestrel/app/views/task_view.h"
 #include "kestrel/app/web_server/channel_feed.h"
 #include "kestrel/flight/session/asynchronous_sink.h"
 
@@ -18,8 +17,7 @@ namespace kestrel {
 class FlightLive : public ObservationSink {
  public:
   // 'max_image_rate_hz': limit for /camera/image; the other messages are made for each frame.
-  FlightLive(const CameraIntrinsics& camera, const std::variant<LandingView, HuntView>& view,
-             double max_image_rate_hz);
+  FlightLive(const CameraIntrinsics& camera, const TaskView& view, double max_image_rate_hz);
 
   // The channels for a WebServer; valid as long as this.
   ChannelFeed* channels() { return &feed_; }

@@ -27,7 +27,8 @@ std::optional<CameraIntrinsics> IntrinsicsOf(const RecordingHead& head) {
 FoxgloveRecording::FoxgloveRecording(const std::string& path, const RecordingHead& head,
                                      bool replace)
     : file_(RequireMcap(path), replace), camera_(&file_, IntrinsicsOf(head)) {
-  if (head.calibration) body_from_camera_ = head.calibration->body_from_camera;
+  if (head.calibration && !head.calibration->gimbal)
+    body_from_camera_ = head.calibration->body_from_camera;
 }
 
 void FoxgloveRecording::AddPose(const PoseSample& pose) {

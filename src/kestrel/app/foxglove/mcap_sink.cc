@@ -10,6 +10,7 @@
 #include "kestrel/app/foxglove/observation_file.h"
 #include "kestrel/app/views/hunt_view.h"
 #include "kestrel/app/views/landing_view.h"
+#include "kestrel/app/views/task_view.h"
 
 namespace kestrel {
 namespace {
@@ -20,8 +21,7 @@ constexpr Duration kFlushPeriod = std::chrono::seconds(1);
 class McapWriter : public SinkWriter {
  public:
   McapWriter(const std::string& path, bool replace, const CameraIntrinsics& camera,
-             const std::variant<LandingView, HuntView>& view,
-             std::function<void(const std::string&)> tell)
+             const TaskView& view, std::function<void(const std::string&)> tell)
       : file_(path, replace, camera, view), tell_(std::move(tell)) {}
 
   void Write(const Observation& observation, std::size_t /*waiting*/) override {
@@ -45,7 +45,7 @@ class McapWriter : public SinkWriter {
 class McapFileSink : public ObservationSink {
  public:
   McapFileSink(const std::string& path, bool replace, const CameraIntrinsics& camera,
-               const std::variant<LandingView, HuntView>& view)
+               const TaskView& view)
       : file_(path, replace, camera, view) {}
 
   void Take(const Observation& observation) override { file_.writer().Write(observation); }
@@ -58,8 +58,8 @@ class McapFileSink : public ObservationSink {
 }  // namespace
 
 std::unique_ptr<AsynchronousSink> OpenMcapSink(const std::string& path, bool replace,
-                                               const CameraIntrinsics& camera,
-                                               const std::variant<LandingView, HuntView>& view,
+                                               const Task& task,
+                                               const CameraCalibration& calibration,
                                                std::function<void(const std::string&)> tell) {
   AsynchronousSinkOptions options{
       .thread_name = "mcap", .frames = kFrames, .patience = kFlushPeriod, .tell = {}};
@@ -67,29 +67,15 @@ std::unique_ptr<AsynchronousSink> OpenMcapSink(const std::string& path, bool rep
     tell(fmt::format("{}: the flight goes on without it", error));
   };
   return std::make_unique<AsynchronousSink>(
-      std::move(options),
-      std::make_unique<McapWriter>(path, replace, camera, view, std::move(tell)));
+      std::move(options), std::make_unique<McapWriter>(path, replace, calibration.intrinsics,
+                                                       ViewOf(task, calibration), std::move(tell)));
 }
 
 std::unique_ptr<ObservationSink> OpenMcapFile(const std::string& path, bool replace,
-                                              const CameraIntrinsics& camera,
-                                              const std::variant<LandingView, HuntView>& view) {
-  return std::make_unique<McapFileSink>(path, replace, camera, view);
-}
-
-std::unique_ptr<AsynchronousSink> OpenLandingMcapSink(
-    const std::string& path, bool replace, const CameraCalibration& calibration,
-    const LandingPipelineOptions& options, std::function<void(const std::string&)> tell) {
-  const std::variant<LandingView, HuntView> view = ViewOf(calibration, options);
-  return OpenMcapSink(path, replace, calibration.intrinsics, view, std::move(tell));
-}
-
-std::unique_ptr<AsynchronousSink> OpenHuntMcapSink(const std::string& path, bool replace,
-                                                   const CameraCalibration& calibration,
-                                                   const ObjectModel& objects,
-                                                   std::function<void(const std::string&)> tell) {
-  const std::variant<LandingView, HuntView> view = HuntView{.model = objects};
-  return OpenMcapSink(path, replace, calibration.intrinsics, view, std::move(tell));
+                                              const Task& task,
+                                              const CameraCalibration& calibration) {
+  return std::make_unique<McapFileSink>(path, replace, calibration.intrinsics,
+                                        ViewOf(task, calibration));
 }
 
 }  // namespace kestrel

@@ -16,6 +16,7 @@
 #include "kestrel/app/views/hunt_view.h"
 #include "kestrel/app/views/landing_view.h"
 #include "kestrel/core/base/test_folder.h"
+#include "kestrel/flight/session/land_task.h"
 #include "kestrel/io/bags/mcap_reader.h"
 
 namespace kestrel {
@@ -28,7 +29,7 @@ TEST(McapSinkTest, WritesAllObservationsAndEvents) {
   const std::string path = folder / "flight.mcap";
   std::vector<std::string> told;
   {
-    const auto mcap = OpenMcapSink(path, false, ObservedCamera(), ObservedView(),
+    const auto mcap = OpenMcapSink(path, false, LandTask({}), ObservedCalibration(),
                                    [&](const std::string& text) { told.push_back(text); });
     mcap->Take(SessionEvent{Now(), EventLevel::kWarning, "the autopilot is gone"});
     for (int i = 0; i < 20; ++i) {
@@ -49,7 +50,7 @@ TEST(McapSinkTest, WritesFrameWithinASecond) {
   const TestFolder folder;
   const std::string path = folder / "flight.mcap";
   const auto mcap =
-      OpenMcapSink(path, false, ObservedCamera(), ObservedView(), [](const std::string&) {});
+      OpenMcapSink(path, false, LandTask({}), ObservedCalibration(), [](const std::string&) {});
   const Frame frame = ObservedFrame(0);
   mcap->Take(Observation{frame, ObservedLanding(frame.time)});
   std::size_t topics = 0;
@@ -65,7 +66,7 @@ TEST(McapSinkTest, ReportsFullDiskAndContinuesFlight) {
   std::mutex mutex;
   std::vector<std::string> told;
   {
-    const auto mcap = OpenMcapSink("/dev/full", true, ObservedCamera(), ObservedView(),
+    const auto mcap = OpenMcapSink("/dev/full", true, LandTask({}), ObservedCalibration(),
                                    [&](const std::string& text) {
                                      const std::lock_guard lock(mutex);
                                      told.push_back(text);

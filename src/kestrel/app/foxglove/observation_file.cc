@@ -19,8 +19,7 @@ void RemoveFile(const std::string& path) {
 }  // namespace
 
 ObservationFile::ObservationFile(const std::string& path, bool replace,
-                                 const CameraIntrinsics& camera,
-                                 std::variant<LandingView, HuntView> view)
+                                 const CameraIntrinsics& camera, TaskView view)
     : path_(path), file_(path, replace), writer_(&file_, camera, std::move(view)) {}
 
 ObservationFile::~ObservationFile() {

@@ -16,7 +16,7 @@ class ObservationFile {
  public:
   // 'view': view of a landing or of a hunt. The file must not exist unless 'replace' is set.
   ObservationFile(const std::string& path, bool replace, const CameraIntrinsics& camera,
-                  std::variant<LandingView, HuntView> view);
+                  TaskView view);
   // Finishes the file as Close does, without errors; a file without messages is removed.
   ~ObservationFile();
   ObservationFile(const ObservationFile&) = delete;

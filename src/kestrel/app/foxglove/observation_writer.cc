@@ -35,7 +35,7 @@ RigidTransform PoseOf(const TargetEstimate& target) {
 }  // namespace
 
 ObservationWriter::ObservationWriter(FoxgloveSink* sink, const CameraIntrinsics& camera,
-                                     std::variant<LandingView, HuntView> view)
+                                     TaskView view)
     : sink_(sink), images_(sink, camera), view_(std::move(view)) {}
 
 void ObservationWriter::Write(const Frame& frame, const LandingObservation& observation,

@@ -10,6 +10,7 @@
 #include "kestrel/app/foxglove/foxglove_sink.h"
 #include "kestrel/app/views/hunt_view.h"
 #include "kestrel/app/views/landing_view.h"
+#include "kestrel/app/views/task_view.h"
 #include "kestrel/app/views/view_data.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/camera_model.h"
@@ -37,8 +38,7 @@ namespace kestrel {
 class ObservationWriter {
  public:
   // 'sink' outlives this. 'view': view of a landing or of a hunt.
-  ObservationWriter(FoxgloveSink* sink, const CameraIntrinsics& camera,
-                    std::variant<LandingView, HuntView> view);
+  ObservationWriter(FoxgloveSink* sink, const CameraIntrinsics& camera, TaskView view);
 
   // The observation must be of the view's kind. 'latency': from capture to the result, in flight.
   void Write(const Frame& frame, const LandingObservation& observation,
@@ -55,7 +55,7 @@ class ObservationWriter {
 
   FoxgloveSink* sink_;
   CameraWriter images_;
-  std::variant<LandingView, HuntView> view_;
+  TaskView view_;
   TrackState track_state_ = TrackState::kSearching;
 };
 

@@ -19,10 +19,14 @@ inline CameraIntrinsics ObservedCamera() {
   return {64, 48, 40, 40, 31.5, 23.5, DistortionModel::kNone, {}};
 }
 
-inline LandingView ObservedView() {
+inline CameraCalibration ObservedCalibration() {
   CameraCalibration calibration;
   calibration.intrinsics = ObservedCamera();
-  return ViewOf(calibration, LandingPipelineOptions());
+  return calibration;
+}
+
+inline LandingView ObservedView() {
+  return ViewOf(ObservedCalibration(), LandingPipelineOptions());
 }
 
 inline Frame ObservedFrame(int index) {

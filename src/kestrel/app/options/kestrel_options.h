@@ -8,23 +8,19 @@
 #include "kestrel/app/web_server/console_options.h"
 #include "kestrel/comms/team/team_link.h"
 #include "kestrel/flight/ros/dds_options.h"
-#include "kestrel/vision/pipeline/hunt_pipeline.h"
-#include "kestrel/vision/pipeline/landing_pipeline.h"
+#include "kestrel/flight/session/task.h"
 
 namespace kestrel {
 
 // The options of all subcommands, as `kestrel config` prints and --config reads them.
-struct KestrelOptions {
-  LandingPipelineOptions landing;
-  HuntPipelineOptions hunt;
+struct KestrelOptions : TaskOptions {
   FlyOptions fly;
   ConsoleOptions console;
   TeamLinkOptions team;
   DdsOptions dds;
 
   static void Visit(auto& self, auto&& visit) {
-    visit.Group("landing", self.landing);
-    visit.Group("hunt", self.hunt);
+    TaskOptions::Visit(self, visit);
     visit.Group("fly", self.fly);
     visit.Group("console", self.console);
     visit.Group("team", self.team);

@@ -15,6 +15,8 @@ namespace kestrel {
 
 // Data that are the same for all frames.
 struct HuntView {
+  using Seen = HuntObservation;
+
   ObjectModel model;
   ObjectDetectorOptions detector = {};
 };

@@ -16,6 +16,8 @@ namespace kestrel {
 
 // Data that are the same for all frames.
 struct LandingView {
+  using Seen = LandingObservation;
+
   CameraModel camera;
   TargetShape shape;
   TurnNoise noise;  // noise of the track's motion

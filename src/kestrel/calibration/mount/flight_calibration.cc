@@ -62,10 +62,38 @@ MountAndClock Applied(const MountAndClock& given, const Parameters& parameters) 
       parameters(kClock)};
 }
 
+// What carries the camera, the body or a gimbal's platform, over a flight.
+class FlightPoses {
+ public:
+  FlightPoses(PoseHistory body, const std::optional<FlownGimbal>& gimbal)
+      : body_(std::move(body)), reports_(gimbal ? gimbal->reports.size() : 0) {
+    if (!gimbal) return;
+    pivot_ = gimbal->body_from_pivot;
+    image_offset_ = DurationFromSeconds(gimbal->image_clock_offset_s);
+    for (const GimbalSample& report : gimbal->reports) reports_.Add(report);
+  }
+
+  // Returns its pose in the world at an image's time; 'offset' leads to the clock of the navigation
+  // or of the gimbal.
+  std::optional<RigidTransform> At(Time image_time, Duration offset) const {
+    if (!pivot_) return body_.Lookup(image_time + offset);
+    const auto world_from_body = body_.Lookup(image_time + image_offset_);
+    const auto attitude = reports_.At(image_time + offset, Duration::zero());
+    if (!world_from_body || !attitude) return std::nullopt;
+    return WorldFromPlatform(*world_from_body, *pivot_, *attitude);
+  }
+
+ private:
+  PoseHistory body_;
+  GimbalHistory reports_;
+  std::optional<RigidTransform> pivot_;  // body from pivot; nothing: no gimbal
+  Duration image_offset_{};
+};
+
 // The residuals of sightings, poses and path as a function of the parameters.
 class FlightFit {
  public:
-  FlightFit(std::vector<TargetSighting> sightings, const PoseHistory* poses,
+  FlightFit(std::vector<TargetSighting> sightings, const FlightPoses* poses,
             const MountAndClock& given, double knot_spacing_s)
       : sightings_(std::move(sightings)),
         poses_(poses),
@@ -81,7 +109,7 @@ class FlightFit {
     const Duration offset = DurationFromSeconds(applied.clock_offset_s);
     Eigen::MatrixX3d positions(sightings_.size(), 3);
     for (std::size_t i = 0; i < sightings_.size(); ++i) {
-      const auto world_from_body = poses_->Lookup(sightings_[i].time + offset);
+      const auto world_from_body = poses_->At(sightings_[i].time, offset);
       positions.row(static_cast<Eigen::Index>(i)) =
           *world_from_body * (applied.body_from_camera *
                               ((1 + parameters(kScale)) * sightings_[i].center_in_camera).eval());
@@ -119,7 +147,7 @@ class FlightFit {
   }
 
   std::vector<TargetSighting> sightings_;
-  const PoseHistory* poses_;
+  const FlightPoses* poses_;
   MountAndClock given_;
   TargetPath path_;
 };
@@ -291,14 +319,14 @@ std::vector<std::string> Warnings(const Parameters& sigmas) {
 }
 
 // Returns how the UAV moved from sighting to sighting.
-FlightMotion MotionOver(const std::vector<TargetSighting>& sightings, const PoseHistory& poses,
+FlightMotion MotionOver(const std::vector<TargetSighting>& sightings, const FlightPoses& poses,
                         double clock_offset_s) {
   FlightMotion motion;
   std::optional<RigidTransform> first;
   double least_turn = 0, most_turn = 0;
   double lowest_m = 0, highest_m = 0;
   for (const TargetSighting& sighting : sightings) {
-    const auto pose = poses.Lookup(sighting.time + DurationFromSeconds(clock_offset_s));
+    const auto pose = poses.At(sighting.time, DurationFromSeconds(clock_offset_s));
     if (!first) first = *pose;
     const double turn =
         std::remainder(HeadingOf(pose->rotation) - HeadingOf(first->rotation), 2 * kPi);
@@ -321,7 +349,7 @@ double RootMeanSquare(const Eigen::VectorXd& values) {
 
 // Returns the sightings that have a pose for each offset within the bounds.
 std::vector<TargetSighting> WithPoses(const std::vector<TargetSighting>& sightings,
-                                      const PoseHistory& poses, const MountAndClock& given,
+                                      const FlightPoses& poses, const MountAndClock& given,
                                       const FlightCalibrationOptions& options) {
   const double step = kSteps(kClock);
   const double low = std::min(options.min_offset_s, given.clock_offset_s) - step;
@@ -330,7 +358,7 @@ std::vector<TargetSighting> WithPoses(const std::vector<TargetSighting>& sightin
   for (const TargetSighting& sighting : sightings) {
     bool has_poses = true;
     for (double offset = low; has_poses && offset <= high + step; offset += step) {
-      has_poses = poses.Has(sighting.time + DurationFromSeconds(offset));
+      has_poses = poses.At(sighting.time, DurationFromSeconds(offset)).has_value();
     }
     if (has_poses) kept.push_back(sighting);
   }
@@ -353,8 +381,9 @@ PoseHistory HistoryOf(const std::vector<PoseSample>& samples) {
 
 FlightCalibration CalibrateFlight(const std::vector<TargetSighting>& sightings,
                                   const std::vector<PoseSample>& poses, const MountAndClock& given,
-                                  const FlightCalibrationOptions& options) {
-  const PoseHistory history = HistoryOf(poses);
+                                  const FlightCalibrationOptions& options,
+                                  const std::optional<FlownGimbal>& gimbal) {
+  const FlightPoses history(HistoryOf(poses), gimbal);
   const auto usable = WithPoses(sightings, history, given, options);
   if (usable.size() < kMinSightings) {
     throw InputError(fmt::format(

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/core/poses/gimbal_history.h"
 #include "kestrel/core/poses/pose_history.h"
 
 namespace kestrel {
@@ -19,10 +21,18 @@ struct TargetSighting {
   double sigma_m;  // standard deviation per axis, positive
 };
 
-// The relation of the camera to the navigation: its mount and the clocks.
+// The relation of the camera to the navigation: its mount and the clocks. Of a camera on a gimbal:
+// its place on the platform, and the clock of the gimbal in place of that of the navigation.
 struct MountAndClock {
   RigidTransform body_from_camera;
   double clock_offset_s = 0;  // t_nav = t_image + clock_offset_s
+};
+
+// The gimbal of a flight.
+struct FlownGimbal {
+  RigidTransform body_from_pivot;
+  std::vector<GimbalSample> reports;
+  double image_clock_offset_s = 0;  // t_nav = t_image + this, which is held
 };
 
 struct FlightCalibrationOptions {
@@ -74,11 +84,12 @@ struct FlightCalibration {
 
 // Returns the mount angles and the clock offset with which the positions of the target in the world
 // fit one path best (paper, section 2.6): a grid search, then least squares over all of them
-// without the sightings that do not fit. Throws InputError when too few sightings have poses around
-// them.
+// without the sightings that do not fit. With a gimbal the attitude is that of its reports. Throws
+// InputError when too few sightings have poses around them.
 FlightCalibration CalibrateFlight(const std::vector<TargetSighting>& sightings,
                                   const std::vector<PoseSample>& poses, const MountAndClock& given,
-                                  const FlightCalibrationOptions& options);
+                                  const FlightCalibrationOptions& options,
+                                  const std::optional<FlownGimbal>& gimbal = std::nullopt);
 
 // Returns why a calibration is not to be used, in words: a quantity that the flight does not
 // determine and what the flight lacks, or positions that agree less than before. Empty: it may be

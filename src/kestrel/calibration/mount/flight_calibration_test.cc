@@ -124,6 +124,42 @@ TEST(CalibrateFlight, WrongPatternSizeDoesNotChangeClock) {
   EXPECT_NEAR(calibration.estimate.clock_offset_s, flight.clock_offset_s, 0.002);
 }
 
+// A gimbal that swings, stamps its reports late and is mounted askew, over a UAV that sways.
+TEST(CalibrateFlight, FindsBiasAndClockOfGimbal) {
+  constexpr double kStampDelay_s = 0.06;
+  const Flight flight{.sway = 0.1};
+  const auto platform = [](double t) {
+    return Turn(0.5 * std::sin(1.3 * t), Eigen::Vector3d::UnitZ()) *
+           Turn(1.2 + 0.3 * std::sin(t), Eigen::Vector3d::UnitY());
+  };
+  const RigidTransform ahead{Eigen::Quaterniond(0.5, -0.5, 0.5, -0.5), {0.02, 0, 0}};
+  const RigidTransform on_platform{
+      flight.TrueMount().rotation * flight.NominalMount().rotation.conjugate() * ahead.rotation,
+      ahead.translation};
+  for (const double rate_hz : {20.0, 5.0}) {
+    FlownGimbal gimbal{
+        {Eigen::Quaterniond::Identity(), {0.1, 0, -0.05}}, {}, flight.clock_offset_s};
+    for (double t = 0; t < 17; t += 1 / rate_hz) {
+      gimbal.reports.push_back(
+          {At(t + flight.clock_offset_s + kStampDelay_s), platform(t), YawFrame::kVehicle});
+    }
+    std::vector<TargetSighting> sightings;
+    for (int i = 0; i < 300; ++i) {
+      const double t = 0.5 + i / 20.0;
+      const RigidTransform camera =
+          WorldFromPlatform(flight.WorldFromBody(t), gimbal.body_from_pivot,
+                            {platform(t), YawFrame::kVehicle}) *
+          on_platform;
+      sightings.push_back({At(t), camera.Inverse() * Eigen::Vector3d(0, 0.2, 0), 0.01});
+    }
+    const FlightCalibration calibration =
+        CalibrateFlight(sightings, flight.Poses(), {ahead, flight.clock_offset_s}, {}, gimbal);
+    EXPECT_LT((calibration.angles - flight.angles).norm(), 0.1 * kDegree) << rate_hz;
+    EXPECT_NEAR(calibration.estimate.clock_offset_s, flight.clock_offset_s + kStampDelay_s, 0.005)
+        << rate_hz;
+  }
+}
+
 TEST(CalibrateFlight, RejectsFalseDetections) {
   const Flight flight{.sway = 0.3};
   std::vector<TargetSighting> sightings = flight.Sightings();

@@ -2,6 +2,7 @@
 #include "kestrel/calibration/mount/flight_sightings.h"
 
 #include <cmath>
+#include <utility>
 
 #include "kestrel/core/base/error.h"
 
@@ -13,13 +14,35 @@ MountAndClock GivenMountAndClock(const CameraCalibration& calibration, const std
                      ": the calibration has no mount, expected T_BS, T_cam_imu or, in a bag, tf to "
                      "start from");
   }
-  return {*calibration.body_from_camera,
-          ToSeconds(calibration.clock_offset.value_or(Duration::zero()))};
+  const Duration image_offset = calibration.clock_offset.value_or(Duration::zero());
+  if (const auto& gimbal = calibration.gimbal) {
+    return {gimbal->platform_from_camera, ToSeconds(image_offset - gimbal->clock_offset)};
+  }
+  return {*calibration.body_from_camera, ToSeconds(image_offset)};
+}
+
+std::optional<FlownGimbal> FlownGimbalOf(const CameraCalibration& calibration,
+                                         std::vector<GimbalSample> reports,
+                                         const std::string& file) {
+  if (!calibration.gimbal) return std::nullopt;
+  if (reports.empty()) {
+    throw InputError(file + ": has no reports of the gimbal, expected gimbal0/data.csv");
+  }
+  const Duration image_offset = calibration.clock_offset.value_or(Duration::zero());
+  return FlownGimbal{calibration.gimbal->body_from_pivot, std::move(reports),
+                     ToSeconds(image_offset)};
 }
 
 void SetMountAndClock(const MountAndClock& estimate, CameraCalibration* calibration) {
+  const Duration offset = DurationFromSeconds(estimate.clock_offset_s);
+  if (auto& gimbal = calibration->gimbal) {
+    gimbal->platform_from_camera = estimate.body_from_camera;
+    gimbal->clock_offset = calibration->clock_offset.value_or(Duration::zero()) - offset;
+    calibration->body_from_camera = gimbal->body_from_pivot * gimbal->platform_from_camera;
+    return;
+  }
   calibration->body_from_camera = estimate.body_from_camera;
-  calibration->clock_offset = DurationFromSeconds(estimate.clock_offset_s);
+  calibration->clock_offset = offset;
 }
 
 FlightSightings::FlightSightings(const CameraIntrinsics& camera,

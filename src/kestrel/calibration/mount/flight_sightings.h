@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,9 +20,14 @@ namespace kestrel {
 // Spacing of the knots for the path of a moving pattern.
 inline constexpr double kMovingKnotSpacing_s = 2;
 
-// Returns mount and clock of a calibration. Throws InputError when it has no mount. 'file': its
-// name, for the error.
+// Returns mount and clock of a calibration, of its gimbal if it has one. Throws InputError when it
+// has no mount. 'file': its name, for the error.
 MountAndClock GivenMountAndClock(const CameraCalibration& calibration, const std::string& file);
+// Returns the gimbal of a flight; nothing when the camera is on none. Throws InputError when the
+// source has no reports of it.
+std::optional<FlownGimbal> FlownGimbalOf(const CameraCalibration& calibration,
+                                         std::vector<GimbalSample> reports,
+                                         const std::string& file);
 // Replaces mount and clock of a calibration by an estimate.
 void SetMountAndClock(const MountAndClock& estimate, CameraCalibration* calibration);
 

@@ -16,6 +16,7 @@ namespace {
 // Rates that are requested beside those below.
 constexpr double kLandedRate_hz = 5;
 constexpr double kRangeRate_hz = 20;
+constexpr double kGimbalRate_hz = 50;
 constexpr double kStatusRate_hz = 2;
 constexpr double kTruePoseRate_hz = 100;
 // After so long without a heartbeat the autopilot is away.
@@ -56,6 +57,7 @@ Autopilot::Autopilot(const AutopilotOptions& options, Connection* connection,
       listener_(std::move(listener)),
       poses_(kPositionAge_s) {
   RequireValid(options);
+  if (options.gimbal_device_id) gimbal_.emplace(*options.gimbal_device_id);
 }
 
 bool Autopilot::is_armed() const { return IsArmed(heartbeat_); }
@@ -105,7 +107,17 @@ void Autopilot::Handle(const mavlink::Packet& packet, Time received) {
     });
     return;
   }
+  HandleGimbal(packet, received);
   if (IsFromAutopilot(packet)) HandleFromAutopilot(packet, received);
+}
+
+// A gimbal is the autopilot's own, or another component of the vehicle.
+void Autopilot::HandleGimbal(const mavlink::Packet& packet, Time received) {
+  if (!gimbal_ || system_ == 0 || packet.system != system_) return;
+  const auto sample = gimbal_->Handle(packet, received, component_, clock_.sync());
+  if (!sample) return;
+  if (packet.component != component_) streams_.Count(packet.id);
+  if (listener_.gimbal) listener_.gimbal(*sample);
 }
 
 bool Autopilot::IsFromAutopilot(const mavlink::Packet& packet) {
@@ -387,6 +399,7 @@ void Autopilot::WantStreams() {
   streams_.Want(mavlink::ExtendedSysState::kId, kLandedRate_hz);
   // Not every vehicle has a range sensor.
   streams_.WantIfThere(mavlink::DistanceSensor::kId, kRangeRate_hz);
+  if (gimbal_) streams_.WantIfThere(mavlink::GimbalDeviceAttitudeStatus::kId, kGimbalRate_hz);
   const bool is_px4 = kind_ == AutopilotKind::kPx4;
   streams_.WantIfThere(is_px4 ? mavlink::CurrentMode::kId : mavlink::Heartbeat::kId,
                        options_.mode_rate_hz);

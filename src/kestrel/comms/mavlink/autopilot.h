@@ -14,6 +14,7 @@
 #include "kestrel/comms/mavlink/clock_exchange.h"
 #include "kestrel/comms/mavlink/command_requests.h"
 #include "kestrel/comms/mavlink/connection.h"
+#include "kestrel/comms/mavlink/gimbal_reports.h"
 #include "kestrel/comms/mavlink/global_position.h"
 #include "kestrel/comms/mavlink/messages.h"
 #include "kestrel/comms/mavlink/parameter_reader.h"
@@ -21,6 +22,7 @@
 #include "kestrel/comms/mavlink/stream_requests.h"
 #include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/time.h"
+#include "kestrel/core/poses/gimbal_history.h"
 #include "kestrel/core/poses/pose_history.h"
 
 namespace kestrel {
@@ -32,7 +34,8 @@ struct AutopilotOptions {
   // Set-points depend on the mode, which must then come more often than once a second with the
   // heartbeat: by more heartbeats, and by CURRENT_MODE, which PX4 sends as soon as it changes.
   double mode_rate_hz = 0;
-  bool wants_true_pose = false;  // which only simulated vehicles know
+  bool wants_true_pose = false;                        // which only simulated vehicles know
+  std::optional<int> gimbal_device_id = std::nullopt;  // see GimbalReports; nothing: no gimbal
   bool poses_as_ground_station = false;
 
   static void Visit(auto& self, auto&& visit) {
@@ -97,6 +100,7 @@ struct AutopilotListener {
   std::function<void(const PoseSample&)> true_pose;  // as above, from a simulated vehicle
   std::function<void(const AutopilotEvent&)> event;
   std::function<void(std::uint8_t severity, std::string_view text)> text;  // STATUSTEXT
+  std::function<void(const GimbalSample&)> gimbal;                         // on the local clock
 };
 
 // The autopilot at the other end of a connection: finds it, follows its state, requests what is
@@ -182,6 +186,7 @@ class Autopilot {
   void Adopt(const mavlink::Packet& packet, const mavlink::Heartbeat& heartbeat);
   void ReportChange(const mavlink::Heartbeat& before);
   void HandleFromAutopilot(const mavlink::Packet& packet, Time received);
+  void HandleGimbal(const mavlink::Packet& packet, Time received);
   bool HandlePose(const mavlink::Packet& packet, Time received);
   bool HandleTruePose(const mavlink::Packet& packet, Time received);
   void ReportPose(PoseFate fate, const char* what, const PoseSample& pose);
@@ -229,6 +234,7 @@ class Autopilot {
   int jumps_ = 0;  // number of jumps of the clock that were seen
   AutopilotStatus status_;
   AutopilotPoses poses_;
+  std::optional<GimbalReports> gimbal_;
   std::optional<Time> newest_pose_;
   StreamRequests streams_;
   CommandRequests commands_;

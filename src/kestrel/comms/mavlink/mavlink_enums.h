@@ -33,6 +33,11 @@ inline constexpr std::uint8_t kAutopilotPx4 = 12;
 inline constexpr std::uint8_t kComponentAutopilot = 1;
 inline constexpr std::uint8_t kComponentOnboardComputer = 191;
 
+// GIMBAL_DEVICE_FLAGS
+inline constexpr std::uint16_t kGimbalYawLock = 16;
+inline constexpr std::uint16_t kGimbalYawInVehicleFrame = 32;
+inline constexpr std::uint16_t kGimbalYawInEarthFrame = 64;
+
 // MAV_MODE_FLAG
 inline constexpr std::uint8_t kModeFlagCustom = 1;
 inline constexpr std::uint8_t kModeFlagArmed = 128;

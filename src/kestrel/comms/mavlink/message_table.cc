@@ -23,7 +23,8 @@ constexpr auto kTable =
               CommandAck, SetAttitudeTarget, SetPositionTargetLocalNed, SimState, Timesync,
               HilStateQuaternion, DistanceSensor, FollowTarget, AutopilotVersion, LandingTarget,
               EkfStatusReport, EstimatorStatus, HomePosition, MessageInterval, ExtendedSysState,
-              Statustext, CurrentMode, TargetRelative>();
+              Statustext, MountOrientation, GimbalDeviceAttitudeStatus, CurrentMode,
+              TargetRelative>();
 
 constexpr bool IsSortedById() {
   return std::is_sorted(kTable.begin(), kTable.end(),
@@ -72,6 +73,8 @@ static_assert(Is<HomePosition>(104, 52, 60));
 static_assert(Is<MessageInterval>(95, 6, 6));
 static_assert(Is<ExtendedSysState>(130, 2, 2));
 static_assert(Is<Statustext>(83, 51, 54));
+static_assert(Is<MountOrientation>(26, 16, 20));
+static_assert(Is<GimbalDeviceAttitudeStatus>(137, 40, 49));
 static_assert(Is<CurrentMode>(193, 9, 9));
 static_assert(Is<TargetRelative>(28, 71, 71));
 

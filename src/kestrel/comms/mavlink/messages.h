@@ -883,6 +883,59 @@ struct Statustext {
   }
 };
 
+// The old report of a gimbal: roll and pitch against the horizon, yaw against the vehicle.
+struct MountOrientation {
+  static constexpr std::uint32_t kId = 265;
+  static constexpr std::string_view kName = "MOUNT_ORIENTATION";
+  std::uint32_t time_boot_ms = 0;
+  float roll = 0;
+  float pitch = 0;
+  float yaw = 0;
+  float yaw_absolute = 0;
+
+  static constexpr void Visit(auto& self, auto&& visitor) {
+    visitor("time_boot_ms", self.time_boot_ms, "ms");
+    visitor("roll", self.roll, "deg");
+    visitor("pitch", self.pitch, "deg");
+    visitor("yaw", self.yaw, "deg");
+    visitor.Extensions();
+    visitor("yaw_absolute", self.yaw_absolute, "deg");
+  }
+};
+
+struct GimbalDeviceAttitudeStatus {
+  static constexpr std::uint32_t kId = 285;
+  static constexpr std::string_view kName = "GIMBAL_DEVICE_ATTITUDE_STATUS";
+  std::uint8_t target_system = 0;
+  std::uint8_t target_component = 0;
+  std::uint32_t time_boot_ms = 0;
+  std::uint16_t flags = 0;
+  std::array<float, 4> q{};
+  float angular_velocity_x = 0;
+  float angular_velocity_y = 0;
+  float angular_velocity_z = 0;
+  std::uint32_t failure_flags = 0;
+  float delta_yaw = 0;
+  float delta_yaw_velocity = 0;
+  std::uint8_t gimbal_device_id = 0;
+
+  static constexpr void Visit(auto& self, auto&& visitor) {
+    visitor("target_system", self.target_system, "");
+    visitor("target_component", self.target_component, "");
+    visitor("time_boot_ms", self.time_boot_ms, "ms");
+    visitor("flags", self.flags, "");
+    visitor("q", self.q, "");
+    visitor("angular_velocity_x", self.angular_velocity_x, "rad/s");
+    visitor("angular_velocity_y", self.angular_velocity_y, "rad/s");
+    visitor("angular_velocity_z", self.angular_velocity_z, "rad/s");
+    visitor("failure_flags", self.failure_flags, "");
+    visitor.Extensions();
+    visitor("delta_yaw", self.delta_yaw, "rad");
+    visitor("delta_yaw_velocity", self.delta_yaw_velocity, "rad/s");
+    visitor("gimbal_device_id", self.gimbal_device_id, "");
+  }
+};
+
 struct CurrentMode {
   static constexpr std::uint32_t kId = 436;
   static constexpr std::string_view kName = "CURRENT_MODE";

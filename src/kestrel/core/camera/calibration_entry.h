@@ -28,6 +28,7 @@ class CalibrationEntry {
 
   const YAML::Node& node() const { return node_; }
   const std::string& key() const { return key_; }
+  const std::string& file() const { return file_->name; }
 
   // 'what' continues the sentence that begins with the key.
   [[noreturn]] void Fail(const std::string& what) const;

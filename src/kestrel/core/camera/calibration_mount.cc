@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,11 +15,15 @@
 #include <Eigen/LU>
 #include <fmt/format.h>
 
+#include "kestrel/core/base/load_yaml.h"
+#include "kestrel/core/base/read_file.h"
+
 namespace kestrel {
 namespace {
 
 constexpr double kMaxClockOffset_s = 4e9;    // fits into a Duration and spans two epochs
 constexpr double kRotationTolerance = 1e-3;  // error of matrices typed with four digits
+constexpr int kMaxDevice = 255;              // largest gimbal_device_id of MAVLink
 
 RigidTransform RigidOf(const CalibrationEntry& entry, const Eigen::Matrix3d& rotation,
                        const Eigen::Vector3d& translation) {
@@ -107,6 +112,56 @@ bool Agree(const RigidTransform& a, const RigidTransform& b) {
          (a.translation - b.translation).norm() < 10 * kRotationTolerance;
 }
 
+double ClockOffsetOf(const CalibrationEntry& entry) {
+  const double offset_s = entry.Number();
+  if (std::abs(offset_s) > kMaxClockOffset_s) {
+    entry.Fail(
+        fmt::format("is {} s, expected at most {} s either way", offset_s, kMaxClockOffset_s));
+  }
+  return offset_s;
+}
+
+// Returns the description of the gimbal: the map itself, or sensor.yaml of the folder that it
+// names, which stands beside the camera's folder.
+CalibrationEntry DescriptionOf(const CalibrationEntry& gimbal) {
+  if (gimbal.node().IsMap()) return gimbal;
+  const std::string name = gimbal.Text();
+  if (name.empty() || name.find('/') != std::string::npos || name == "." || name == "..") {
+    gimbal.Fail(fmt::format("is '{}', expected the name of a folder, as gimbal0, or a map", name));
+  }
+  const std::filesystem::path camera_folder = std::filesystem::path(gimbal.file()).parent_path();
+  const std::string file = (camera_folder / ".." / name / "sensor.yaml").lexically_normal();
+  return {LoadYaml(ReadFile(file), file), file};
+}
+
+// A camera on a gimbal has T_GS, its place on the platform, in place of a mount on the body.
+void SetGimbal(const CalibrationEntry& camera, CameraCalibration* calibration) {
+  const auto gimbal = camera.Find({"gimbal"});
+  const auto on_platform = camera.Find({"T_GS"});
+  if (!gimbal && !on_platform) return;
+  if (!gimbal) on_platform->Fail("is on a gimbal, expected a key 'gimbal' with its name, too");
+  if (!on_platform) gimbal->Fail("has a camera without 'T_GS', expected camera to platform");
+  if (calibration->body_from_camera) {
+    on_platform->Fail("stands beside a mount on the body, expected one of them");
+  }
+  const CalibrationEntry description = DescriptionOf(*gimbal);
+  GimbalMount mount;
+  mount.platform_from_camera = TransformOf(*on_platform);
+  mount.body_from_pivot =
+      TransformOf(description.Get({"T_BG"}, "the gimbal's platform, level and ahead, to body"));
+  if (const auto offset = description.Find({"time_offset_s"})) {
+    mount.clock_offset = DurationFromSeconds(ClockOffsetOf(*offset));
+  }
+  if (const auto id = description.Find({"device_id"})) {
+    mount.device_id = id->Integer();
+    if (mount.device_id < 0 || mount.device_id > kMaxDevice) {
+      id->Fail(fmt::format("is {}, expected 0 to {}", mount.device_id, kMaxDevice));
+    }
+  }
+  calibration->body_from_camera = mount.body_from_pivot * mount.platform_from_camera;
+  calibration->gimbal = mount;
+}
+
 void SetMount(const CalibrationEntry& camera, CameraCalibration* calibration) {
   const std::vector<Mount> mounts = MountsOf(camera);
   if (mounts.empty()) return;
@@ -123,14 +178,10 @@ void SetMount(const CalibrationEntry& camera, CameraCalibration* calibration) {
 
 void ReadMountAndClock(const CalibrationEntry& camera, CameraCalibration* calibration) {
   SetMount(camera, calibration);
-  const auto shift = camera.Find({"timeshift_cam_imu", "td"});  // Kalibr, VINS: the same sign
-  if (!shift) return;
-  const double shift_s = shift->Number();
-  if (std::abs(shift_s) > kMaxClockOffset_s) {
-    shift->Fail(
-        fmt::format("is {} s, expected at most {} s either way", shift_s, kMaxClockOffset_s));
-  }
-  calibration->clock_offset = DurationFromSeconds(shift_s);
+  SetGimbal(camera, calibration);
+  // Kalibr, VINS (the same sign), and the cameras of a recording with several of them.
+  const auto shift = camera.Find({"timeshift_cam_imu", "td", "time_offset_s"});
+  if (shift) calibration->clock_offset = DurationFromSeconds(ClockOffsetOf(*shift));
 }
 
 }  // namespace kestrel

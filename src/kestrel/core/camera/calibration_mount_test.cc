@@ -48,9 +48,52 @@ TEST(CalibrationMount, ReadsEveryNameOfMount) {
 
 // A camera of another number, another camera, another sensor.
 TEST(CalibrationMount, IgnoresOtherTransforms) {
-  for (const char* name : {"body_T_cam1", "T_cn_cnm1", "T_imu_body", "T_BX", "T_WB", "T_GS"}) {
+  for (const char* name : {"body_T_cam1", "T_cn_cnm1", "T_imu_body", "T_BX", "T_WB"}) {
     EXPECT_FALSE(Read(fmt::format("{}: {}\n", name, kBodyFromCamera)).body_from_camera) << name;
   }
+}
+
+constexpr const char* kPivot = "[[1, 0, 0, 0.2], [0, 1, 0, 0], [0, 0, 1, -0.1], [0, 0, 0, 1]]";
+constexpr const char* kOnPlatform = "[[0, 0, 1, 0.03], [-1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]]";
+
+TEST(CalibrationMount, ReadsCameraOnGimbal) {
+  const CameraCalibration read = Read(fmt::format(
+      "T_GS: {}\ngimbal: {{T_BG: {}, time_offset_s: -0.12, device_id: 2}}\n", kOnPlatform, kPivot));
+  ASSERT_TRUE(read.gimbal);
+  EXPECT_EQ(read.gimbal->clock_offset, DurationFromSeconds(-0.12));
+  EXPECT_EQ(read.gimbal->device_id, 2);
+  EXPECT_TRUE(read.gimbal->body_from_pivot.translation.isApprox(Eigen::Vector3d(0.2, 0, -0.1)));
+  // Level, the optical axis looks ahead.
+  ASSERT_TRUE(read.body_from_camera);
+  EXPECT_TRUE((*read.body_from_camera * Eigen::Vector3d(0, 0, 1))
+                  .isApprox(Eigen::Vector3d(1.23, 0, -0.1), 1e-9));
+}
+
+TEST(CalibrationMount, ReadsGimbalFromItsFolder) {
+  const TestFolder folder;
+  folder.Write("mav0/gimbal0/sensor.yaml",
+               fmt::format("sensor_type: gimbal\nT_BG: {}\nyaw_frame: vehicle\n", kPivot));
+  const std::string file = folder / "mav0/cam0/sensor.yaml";
+  CameraCalibration calibration;
+  const std::string text = fmt::format("T_GS: {}\ngimbal: gimbal0\n", kOnPlatform);
+  ReadMountAndClock(CalibrationEntry(LoadYaml(text, file), file), &calibration);
+  ASSERT_TRUE(calibration.gimbal);
+  EXPECT_EQ(calibration.gimbal->body_from_pivot.translation.x(), 0.2);
+}
+
+TEST(CalibrationMount, RefusesIncompleteGimbals) {
+  const auto error_of = [](const std::string& yaml) { return InputErrorOf([&] { Read(yaml); }); };
+  EXPECT_THAT(error_of(fmt::format("T_GS: {}\n", kOnPlatform)),
+              HasSubstr("lens.yaml:1: 'T_GS' is on a gimbal, expected a key 'gimbal'"));
+  EXPECT_THAT(error_of("gimbal: gimbal0\n"), HasSubstr("'gimbal' has a camera without 'T_GS'"));
+  EXPECT_THAT(error_of(fmt::format("T_GS: {}\ngimbal: ../../etc\n", kOnPlatform)),
+              HasSubstr("expected the name of a folder"));
+  EXPECT_THAT(error_of(fmt::format("T_GS: {}\ngimbal: {{device_id: 1}}\n", kOnPlatform)),
+              HasSubstr("'gimbal.T_BG'"));
+  EXPECT_THAT(error_of(fmt::format("T_BS: {0}\nT_GS: {0}\ngimbal: {{T_BG: {0}}}\n", kPivot)),
+              HasSubstr("stands beside a mount on the body"));
+  EXPECT_THAT(error_of(fmt::format("T_GS: {0}\ngimbal: {{T_BG: {0}, device_id: 300}}\n", kPivot)),
+              HasSubstr("is 300, expected 0 to 255"));
 }
 
 TEST(CalibrationMount, RefusesContradictoryMounts) {

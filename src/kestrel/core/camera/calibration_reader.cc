@@ -338,7 +338,7 @@ std::optional<CameraCalibration> ReadLens(const Entry& camera) {
 bool IsIrrelevant(const std::string& key) {
   static const std::set<std::string> kKeys{
       // Kestrel, EuRoC
-      "sensortype", "comment", "ratehz", "timeoffsets", "tgs", "gimbal", "sensorname", "sensorid",
+      "sensortype", "comment", "ratehz", "sensorname", "sensorid",
       // Kalibr
       "cameramodel", "camoverlaps", "rostopic", "tcncnm1", "linedelay",
       // ROS; the rectified image's matrices are not the camera's

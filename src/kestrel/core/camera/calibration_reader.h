@@ -23,9 +23,11 @@ namespace kestrel {
 // 'fisheye_model' (0 or 1) or 'distortion_model' does. Without either, 5 or 8 coefficients are
 // radial-tangential, and 4 are refused because they are ambiguous. In any of the formats, the mount
 // comes from T_BS, T_imu_cam, T_BC, body_T_cam0 (body_from_camera), T_cam_imu, T_CB (its inverse)
-// or extrinsicRotation with extrinsicTranslation, and the clock offset from timeshift_cam_imu or td
-// (s, t_imu = t_cam + shift). 'tell' is called with the keys that are not known, a line for the
-// user.
+// or extrinsicRotation with extrinsicTranslation, and the clock offset from timeshift_cam_imu, td
+// or time_offset_s (s, t_imu = t_cam + shift). A camera on a gimbal has T_GS (platform_from_camera)
+// and 'gimbal': a map with T_BG (body_from_pivot), time_offset_s and device_id, or the name of the
+// folder whose sensor.yaml has these. 'tell' is called with the keys that are not known, a line for
+// the user.
 //
 // Throws InputError with file, line, key and what was expected: file missing, not YAML or
 // truncated, key missing or of the wrong type, two keys that contradict each other, NaN, wrong

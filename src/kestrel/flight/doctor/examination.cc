@@ -78,6 +78,10 @@ void Examination::Capture() {
       events_.Push(*pose);
       continue;
     }
+    if (const auto* report = std::get_if<GimbalSample>(&*event)) {
+      events_.Push(*report);
+      continue;
+    }
     auto& frame = std::get<Frame>(*event);
     frames_.push_back({frame.time, Now()});
     width_px_ = frame.image.cols;
@@ -94,6 +98,8 @@ void Examination::See() {
     if (std::holds_alternative<EndOfStream>(event)) return;
     if (const auto* pose = std::get_if<PoseSample>(&event)) {
       poses_.Add(*pose);
+    } else if (const auto* report = std::get_if<GimbalSample>(&event)) {
+      pipeline_->AddGimbal(*report);
     } else {
       Look(std::get<Frame>(event));
     }

@@ -55,9 +55,8 @@ void FlightExamination::Look(const LandingObservation& observation) {
   if (!detection) return;
   PatternSample sample = PatternSampleOf(*detection);
   sample.time = observation.time + calibration_.clock_offset.value_or(Duration::zero());
-  if (observation.world_from_camera && calibration_.body_from_camera) {
-    sample.world_from_body =
-        *observation.world_from_camera * calibration_.body_from_camera->Inverse();
+  if (observation.world_from_camera && observation.camera_from_body) {
+    sample.world_from_body = *observation.world_from_camera * *observation.camera_from_body;
   }
   AddNewest(sample, kSamples, &patterns_);
 }

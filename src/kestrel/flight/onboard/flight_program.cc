@@ -20,8 +20,7 @@ namespace {
 
 constexpr Duration kPatience = std::chrono::milliseconds(100);  // longest wait of a thread
 constexpr Duration kLinkPatience = std::chrono::milliseconds(2);
-constexpr int kLinkPriority = 24;  // with a guard, whose own is 25
-constexpr Duration kOutputPeriod = std::chrono::milliseconds(50);
+constexpr int kLinkPriority = 24;    // with a guard, whose own is 25
 constexpr std::size_t kPoses = 512;  // from the link: some seconds
 constexpr Duration kPoseGap = std::chrono::milliseconds(500);
 constexpr Duration kLandingPeriod = std::chrono::milliseconds(20);
@@ -31,8 +30,8 @@ constexpr char kNoImageYet[] = "waits for the camera: no image yet";
 
 }  // namespace
 
-FlightProgram::FlightProgram(const FlightOptions& options, const TargetTrackerOptions& tracker,
-                             const FlightParts& parts, std::function<void(const std::string&)> say)
+FlightProgram::FlightProgram(const FlightOptions& options, const FlightParts& parts,
+                             std::function<void(const std::string&)> say)
     : options_(Checked(options)),
       parts_(parts),
       say_(std::move(say)),
@@ -40,14 +39,15 @@ FlightProgram::FlightProgram(const FlightOptions& options, const TargetTrackerOp
       poses_(kPoses, kPoseGap),
       latency_({"capture to arrival", "capture to vision", "detection", "capture to message",
                 "capture to set-point"}),
-      noise_(tracker.Noise()),
-      landing_(parts.pattern_size_m / 2) {
+      pad_(parts.vision->pad().value_or(PadInSight())),
+      noise_(pad_.tracker.Noise()),
+      landing_(pad_.size_m / 2) {
   if (parts.connection == nullptr) return;
-  sender_.emplace(options, tracker, parts.profile, parts.pattern_size_m, parts.sight_range_m,
-                  parts.guides, parts.autopilot, parts.connection, say_);
+  sender_.emplace(options, pad_.tracker, parts.profile, pad_.size_m, pad_.range_m, parts.guides,
+                  parts.autopilot, parts.connection, say_);
   if (parts.guides) {
-    guided_.emplace(options, tracker, !parts.source_has_poses, parts.autopilot, parts.connection,
-                    say_);
+    guided_.emplace(options, pad_.tracker, !parts.source_has_poses, parts.autopilot,
+                    parts.connection, say_);
   }
   if (parts.guard != nullptr) {
     guard_.emplace(parts.guard, parts.autopilot, parts.connection, options.guard, say_);
@@ -58,7 +58,6 @@ FlightEnd FlightProgram::Run(const std::function<bool()>& is_stopped) {
   std::vector<std::thread> threads;
   threads.emplace_back([this] { See(); });
   threads.emplace_back([this] { Capture(); });
-  threads.emplace_back([this] { WriteResults(); });
   if (parts_.connection != nullptr) threads.emplace_back([this] { Communicate(); });
   std::exception_ptr error;
   try {
@@ -69,7 +68,6 @@ FlightEnd FlightProgram::Run(const std::function<bool()>& is_stopped) {
   }
   events_.Close();
   for (std::thread& thread : threads) thread.join();
-  parts_.vision->WriteResults();  // rows of the last frames
   TellEnd();
   if (error) std::rethrow_exception(error);
   return end_;
@@ -163,6 +161,7 @@ void FlightProgram::Take(Event event) {
     source_pose_.Set(*pose);
     return TakePose(*pose);
   }
+  if (const auto* report = std::get_if<GimbalSample>(&event)) return TakeGimbal(*report);
   auto& frame = std::get<Frame>(event);
   latency_.step(kArrival).Add(Now() - frame.time);
   if (const auto recorder = Recorder()) {
@@ -174,6 +173,11 @@ void FlightProgram::Take(Event event) {
 void FlightProgram::TakePose(const PoseSample& pose) {
   events_.Push(pose);
   if (const auto recorder = Recorder()) recorder->AddPose(pose);
+}
+
+void FlightProgram::TakeGimbal(const GimbalSample& report) {
+  events_.Push(report);
+  if (const auto recorder = Recorder()) recorder->AddGimbal(report);
 }
 
 // --- The vision thread ---
@@ -193,10 +197,14 @@ void FlightProgram::See() {
       parts_.vision->AddPose(*pose);
       continue;
     }
+    if (const auto* report = std::get_if<GimbalSample>(&event)) {
+      parts_.vision->AddGimbal(*report);
+      continue;
+    }
     const auto& frame = std::get<Frame>(event);
     if (!parts_.sees_repeated && IsFrozen(frame)) continue;
     latency_.step(kVision).Add(Now() - frame.time);
-    const TrackSnapshot snapshot = parts_.vision->Process(frame, parts_.sink);
+    const TrackSnapshot snapshot = See(frame);
     latency_.step(kDetection).Add(snapshot.detect_time);
     frames_ = snapshot.frames;
     detections_ = snapshot.detections;
@@ -208,6 +216,19 @@ void FlightProgram::See() {
     if (parts_.connection != nullptr) parts_.connection->Wake();
     WarnOnce();
   }
+}
+
+TrackSnapshot FlightProgram::See(const Frame& frame) {
+  Observation observation = parts_.vision->Process(frame);
+  observation.latency = Now() - frame.time;
+  TrackSnapshot snapshot = parts_.vision->snapshot();
+  if (parts_.exposure != nullptr) parts_.exposure->Update(frame.image, snapshot.area);
+  // Without pixels many frames can wait for the disk.
+  if (parts_.tables != nullptr) {
+    parts_.tables->Take({{frame.name, frame.time, {}}, observation.seen, observation.latency});
+  }
+  if (parts_.sink != nullptr && parts_.sink->IsWanted()) parts_.sink->Take(observation);
+  return snapshot;
 }
 
 void FlightProgram::BetweenFrames(const std::function<void()>& action) {
@@ -234,19 +255,6 @@ bool FlightProgram::IsFrozen(const Frame& frame) {
   if (repeated_image_.in_a_row() == kFrozen) say_("the camera repeats its image");
   if (was_frozen && !is_repeated) say_("the camera's images move again");
   return is_repeated;
-}
-
-// --- The output thread ---
-
-void FlightProgram::WriteResults() {
-  SetUpThisThread("output", {});
-  bool is_written = true;
-  while (!is_over_) {
-    std::this_thread::sleep_for(kOutputPeriod);
-    if (parts_.vision->WriteResults() || !is_written) continue;
-    is_written = false;
-    say_("the results cannot be written any more: is the disk full? The flight goes on");
-  }
 }
 
 // --- The link thread ---

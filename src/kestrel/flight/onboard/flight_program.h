@@ -16,8 +16,8 @@
 #include "kestrel/core/base/service_manager.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/poses/pose_history.h"
+#include "kestrel/flight/onboard/exposure_drive.h"
 #include "kestrel/flight/onboard/flight_options.h"
-#include "kestrel/flight/onboard/flight_vision.h"
 #include "kestrel/flight/onboard/guard_watch.h"
 #include "kestrel/flight/onboard/guided_flight.h"
 #include "kestrel/flight/onboard/landing_watch.h"
@@ -30,6 +30,8 @@
 #include "kestrel/flight/session/live_events.h"
 #include "kestrel/flight/session/live_source.h"
 #include "kestrel/flight/session/observation_sink.h"
+#include "kestrel/flight/session/track_snapshot.h"
+#include "kestrel/flight/session/vision.h"
 #include "kestrel/io/recording/euroc/truth_rows.h"
 
 namespace kestrel {
@@ -37,11 +39,13 @@ namespace kestrel {
 // The parts of a flight; all outlive the program. Null where there is none.
 struct FlightParts {
   LiveSource* source = nullptr;
-  FlightVision* vision = nullptr;
+  Vision* vision = nullptr;
+  ExposureDrive* exposure = nullptr;  // keeps the target's white right
   Connection* connection = nullptr;
   Autopilot* autopilot = nullptr;  // on the connection
   GuardLink* guard = nullptr;      // below the connection
   RecordingSwitch* recording = nullptr;
+  ObservationSink* tables = nullptr;
   ObservationSink* sink = nullptr;
   bool guides = false;                 // flies by set-points when the pilot gives the mode
   bool source_has_poses = false;       // the autopilot's poses are then not used
@@ -51,19 +55,17 @@ struct FlightParts {
   std::function<std::optional<TruePattern>(const Frame&)> truth;
   // Returns the true offset of the touch-down, in a simulation that knows it, see FlightEnd.
   std::function<std::optional<double>()> true_offset_m;
-  double pattern_size_m = 1;  // outer diameter of the pattern; 0: it looks for none
-  double sight_range_m = 0;   // from which the camera sees it at most; 0: not known
 };
 
-// The program that flies: capture, vision, link and output have a thread each. Nobody waits at the
+// The program that flies: capture, vision and link have a thread each. Nobody waits at the
 // hand-overs between them: late frames are dropped, and only the newest track and the newest pose
 // count.
 class FlightProgram {
  public:
-  // 'tracker': options of the vision's track. 'say': receives lines for the user, from any thread.
-  // Throws InputError when the options are not valid.
-  FlightProgram(const FlightOptions& options, const TargetTrackerOptions& tracker,
-                const FlightParts& parts, std::function<void(const std::string&)> say);
+  // 'say': receives lines for the user, from any thread. Throws InputError when the options are not
+  // valid.
+  FlightProgram(const FlightOptions& options, const FlightParts& parts,
+                std::function<void(const std::string&)> say);
 
   // Flies until the UAV has landed, the source ends or 'is_stopped', which is called ten times a
   // second, returns true. The end is also said to the user, the ground station and the sink. Throws
@@ -85,6 +87,8 @@ class FlightProgram {
   // Takes a pose of the autopilot, on the local clock, from its listener. Called by the thread in
   // which Run lets the connection receive.
   void TakeAutopilotPose(const PoseSample& pose);
+  // Takes a report of the gimbal, as above.
+  void TakeGimbal(const GimbalSample& report);
 
  private:
   // The steps whose latency is measured.
@@ -94,8 +98,8 @@ class FlightProgram {
   void TellServiceManager(Time now);
   void Capture();
   void See();
+  TrackSnapshot See(const Frame& frame);
   void Communicate();
-  void WriteResults();
 
   bool IsFrozen(const Frame& frame);
   void WarnOnce();
@@ -130,6 +134,7 @@ class FlightProgram {
   FlightEnd end_;  // valid once the flight is over
 
   // Used by the link's thread only.
+  PadInSight pad_;
   std::optional<TargetSender> sender_;
   std::optional<GuidedFlight> guided_;
   TurnNoise noise_;  // of the predicted track

@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kRecords = 4096;  // several seconds of any autopilot
 constexpr double kPoseRate_hz = 50;     // as requested from the autopilot
+constexpr double kGimbalRate_hz = 50;   // requested; the rows have their own times
 
 void RequireDone(const std::error_code& error, const fs::path& folder) {
   if (!error) return;
@@ -61,6 +62,7 @@ FlightRecorder::FlightRecorder(const fs::path& folder, bool replace,
       lock_(folder_.string()),
       tell_(std::move(tell)),
       utc_offset_(UtcOffset()),
+      gimbal_(calibration.gimbal),
       writer_(Emptied(folder_), kEurocTables),
       images_(static_cast<std::size_t>(options.queue_frames)),
       records_(kRecords) {
@@ -99,6 +101,10 @@ void FlightRecorder::Drop(Time time, const char* reason) {
 
 void FlightRecorder::AddPose(const PoseSample& pose) {
   if (records_.Push(pose)) lost_count_.fetch_add(1, std::memory_order_relaxed);
+}
+
+void FlightRecorder::AddGimbal(const GimbalSample& report) {
+  if (records_.Push(report)) lost_count_.fetch_add(1, std::memory_order_relaxed);
 }
 
 void FlightRecorder::AddTruePose(const PoseSample& pose) {
@@ -218,6 +224,16 @@ bool FlightRecorder::IsNext(Kind kind, Time time) {
 
 void FlightRecorder::WriteRecord(const PoseSample& pose) {
   if (IsNext(kPoses, pose.time)) writer_.AddPose(pose);
+}
+
+// The first report says in which frame its yaw is; a recording keeps to that.
+void FlightRecorder::WriteRecord(const GimbalSample& report) {
+  if (!gimbal_ || !IsNext(kGimbal, report.time)) return;
+  if (!yaw_frame_) {
+    yaw_frame_ = report.yaw_frame;
+    writer_.WriteGimbalSensor(*gimbal_, *yaw_frame_, kGimbalRate_hz);
+  }
+  if (report.yaw_frame == *yaw_frame_) writer_.AddGimbal(report);
 }
 
 void FlightRecorder::WriteRecord(const TruePose& truth) {

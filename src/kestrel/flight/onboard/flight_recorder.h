@@ -61,6 +61,7 @@ struct FlightRecorderOptions {
 //   mav0/cam0/exposure.csv                        timestamp, exposure (s) from that image on
 //   mav0/cam0/dropped.csv                         timestamp, reason: images that are not there
 //   mav0/nav0/data.csv                            poses as the autopilot reported them
+//   mav0/gimbal0/data.csv, sensor.yaml            reports of the gimbal on which the camera is
 //   mav0/state_groundtruth_estimate0/data.csv     true poses, where a simulation has them
 //   mav0/landing_pattern0/data.csv                the pattern's truth, of images that are there
 //   mavlink.tlog                                  sent and received packets (us of UTC, bytes)
@@ -86,6 +87,7 @@ class FlightRecorder {
   // the frame's time. Nobody may write into the frame's pixels any more.
   void AddFrame(const Frame& frame, const std::optional<TruePattern>& truth = std::nullopt);
   void AddPose(const PoseSample& pose);
+  void AddGimbal(const GimbalSample& report);
   void AddTruePose(const PoseSample& pose);
   void AddExposure(Time from, double exposure_s);
   // Takes a MAVLink packet as it was on the wire; longer ones than 280 bytes are left out.
@@ -97,7 +99,7 @@ class FlightRecorder {
 
  private:
   // Kinds of records; those of one kind must come in order of time.
-  enum Kind : std::size_t { kImages, kExposures, kPoses, kTruePoses, kKindCount };
+  enum Kind : std::size_t { kImages, kExposures, kPoses, kGimbal, kTruePoses, kKindCount };
   struct RecordedImage {
     Frame frame;
     std::optional<TruePattern> truth;
@@ -119,7 +121,7 @@ class FlightRecorder {
     std::size_t size;
     std::array<std::uint8_t, kMaxSize> bytes;
   };
-  using Record = std::variant<PoseSample, TruePose, Exposure, Dropped, Packet>;
+  using Record = std::variant<PoseSample, GimbalSample, TruePose, Exposure, Dropped, Packet>;
 
   void RunWriter();
   void RunCommitter();
@@ -135,6 +137,7 @@ class FlightRecorder {
   void WriteRecords();
   bool IsNext(Kind kind, Time time);
   void WriteRecord(const PoseSample& pose);
+  void WriteRecord(const GimbalSample& report);
   void WriteRecord(const TruePose& truth);
   void WriteRecord(const Exposure& exposure);
   void WriteRecord(const Dropped& dropped);
@@ -146,12 +149,14 @@ class FlightRecorder {
   Tell tell_;
   std::optional<JpegEncoder> jpeg_encoder_;  // for images that are not PNG
   Duration utc_offset_;                      // UTC minus Now()
+  std::optional<GimbalMount> gimbal_;        // of the calibration
   EurocWriter writer_;
   BoundedQueue<RecordedImage> images_;
   BoundedQueue<Record> records_;
 
   // Used by the writer's thread only.
   std::array<std::optional<Time>, kKindCount> last_times_;
+  std::optional<YawFrame> yaw_frame_;  // of the recorded reports
   std::string encoded_;
   Time next_attempt_;  // of writing, after a failure
 

@@ -17,15 +17,14 @@
 #include "kestrel/core/base/write_file.h"
 #include "kestrel/flight/onboard/exposure_drive.h"
 #include "kestrel/flight/onboard/flight_program.h"
-#include "kestrel/flight/onboard/hunt_vision.h"
-#include "kestrel/flight/onboard/landing_vision.h"
 #include "kestrel/flight/onboard/live_session_options.h"
 #include "kestrel/flight/onboard/recording_switch.h"
+#include "kestrel/flight/session/asynchronous_sink.h"
 #include "kestrel/flight/session/autopilot_report.h"
 #include "kestrel/flight/session/observation_sinks.h"
+#include "kestrel/flight/session/task.h"
 #include "kestrel/io/recording/euroc/truth_rows.h"
 #include "kestrel/io/recording/output_folder.h"
-#include "kestrel/vision/objects/color/color_grid.h"
 
 namespace kestrel {
 namespace {
@@ -47,6 +46,36 @@ class RecordedActuator : public ExposureActuator {
   const RecordingSwitch* recording_;
 };
 
+// Writes the tables. The rows after one that the disk does not take are tried all the same.
+class TableWriter : public SinkWriter {
+ public:
+  // 'tell' is called for the first such row.
+  TableWriter(std::unique_ptr<ObservationSink> tables, std::function<void(const std::string&)> tell)
+      : tables_(std::move(tables)), tell_(std::move(tell)) {}
+
+  void Write(const Observation& observation, std::size_t /*waiting*/) override {
+    Try([&] { tables_->Take(observation); });
+  }
+  void Finish(std::size_t /*dropped*/) override {
+    Try([&] { tables_->Finish(); });
+  }
+
+ private:
+  template <class Action>
+  void Try(const Action& action) {
+    try {
+      action();
+    } catch (const InputError&) {
+      if (std::exchange(has_failed_, true)) return;
+      tell_("the results cannot be written any more: is the disk full? The flight goes on");
+    }
+  }
+
+  std::unique_ptr<ObservationSink> tables_;
+  std::function<void(const std::string&)> tell_;
+  bool has_failed_ = false;
+};
+
 // The options by the names that `kestrel config` gives them.
 struct FlyFields {
   LiveSessionOptions& options;
@@ -59,32 +88,31 @@ struct FlyFields {
   }
 };
 struct SessionFields {
+  TaskOptions tasks;
   LiveSessionOptions options;
 
   static void Visit(auto& self, auto&& visit) {
     FlyFields fly{self.options};
-    visit.Group("landing", self.options.landing);
-    visit.Group("hunt", self.options.hunt);
+    TaskOptions::Visit(self.tasks, visit);
     visit.Group("fly", fly);
   }
 };
 
-LiveSessionOptions OptionsOf(const std::vector<std::string>& settings) {
+SessionFields FieldsOf(const std::vector<std::string>& settings) {
   SessionFields fields;
   for (const std::string& setting : settings) SetOption(setting, &fields);
-  return fields.options;
+  return fields;
 }
 
-// Options that only a flight needs, where they are not set: it may not have the pose after a frame,
-// as a recording does, and guidance must stop as soon as the mode changes, for which the
-// autopilot's one report a second is too few.
+LiveSessionParts WithTask(LiveSessionParts parts, const TaskOptions& options) {
+  if (!parts.task) parts.task = MakeTask("land", options);
+  return parts;
+}
+
+// Guidance must stop as soon as the mode changes, for which the autopilot's one report a second is
+// too few.
 LiveSessionOptions ForFlight(LiveSessionOptions options, bool guides) {
-  constexpr double kLongestPrediction_s = 0.2;
   constexpr double kMode_hz = 20;
-  for (double* const ahead_s :
-       {&options.landing.pose_extrapolation_s, &options.hunt.pose_extrapolation_s}) {
-    if (*ahead_s == 0) *ahead_s = kLongestPrediction_s;
-  }
   double& mode_hz = options.autopilot.mode_rate_hz;
   if (guides && mode_hz == 0) mode_hz = kMode_hz;
   return options;
@@ -101,21 +129,20 @@ class LiveSession::Impl {
 
   FlightEnd Run(const std::function<bool()>& is_stopped);
   RecordingSwitch& recording() { return recording_; }
-  HuntVision* hunt() { return hunt_; }
-  const OutputFolder* output() const { return output_ ? &*output_ : nullptr; }
+  const Vision& vision() const { return *vision_; }
   std::string State() const { return program_->State(); }
   FlightReport Report() const { return program_->Report(); }
   std::string Summary() const;
-  void Change(const LiveSessionOptions& options);
+  void Change(const TaskOptions& options, std::optional<double> altitude_m);
   void BetweenFrames(const std::function<void()>& action) { program_->BetweenFrames(action); }
 
  private:
   bool HasWorld() const;
   void OpenVision();
-  double SightRange() const;
-  void StayWithinSight();
+  void OpenTables();
+  void OpenExposure();
+  void StayWithinSight(double range_m);
   void OpenAutopilot();
-  std::optional<ExposureDrive> Exposure();
   std::unique_ptr<FlightRecorder> OpenRecorder(const std::filesystem::path& folder, bool replace);
   FlightParts ProgramParts();
   void Say(const std::string& text, EventLevel level = EventLevel::kInfo);
@@ -127,12 +154,11 @@ class LiveSession::Impl {
   std::optional<GuardedSink> sink_;
   std::string sink_error_;  // what the sink has thrown; read after Run only
   RecordingSwitch recording_;
-  std::optional<OutputFolder> output_;
-  std::filesystem::path end_file_;
+  std::filesystem::path end_file_;  // empty: none
   std::unique_ptr<ExposureActuator> actuator_;
-  std::unique_ptr<FlightVision> vision_;
-  LandingVision* landing_ = nullptr;  // one of these is the vision
-  HuntVision* hunt_ = nullptr;
+  std::optional<ExposureDrive> exposure_;
+  std::unique_ptr<Vision> vision_;
+  std::optional<AsynchronousSink> tables_;
   GuardLink* guard_ = nullptr;  // of the connection; null: none
   std::optional<Connection> connection_;
   std::optional<Autopilot> autopilot_;
@@ -152,10 +178,11 @@ LiveSession::Impl::Impl(LiveSessionParts parts, LiveSessionOptions options)
   if (parts_.autopilot.empty() && !parts_.has_poses) options_.flight.events.pose_wait_s = 0;
   if (!parts_.record.empty()) recording_.Start(parts_.record, parts_.replace);
   OpenVision();
-  if (!parts_.autopilot.empty() && landing_ != nullptr) StayWithinSight();
+  const auto pad = vision_->pad();
+  if (pad && options_.exposure) OpenExposure();
+  if (!parts_.autopilot.empty() && pad) StayWithinSight(pad->range_m);
   if (!parts_.autopilot.empty()) OpenAutopilot();
-  program_.emplace(options_.flight, options_.landing.tracker, ProgramParts(),
-                   [this](const std::string& text) { Say(text); });
+  program_.emplace(options_.flight, ProgramParts(), [this](const std::string& text) { Say(text); });
 }
 
 // The recorder may still give events to the sink, which outlives the session.
@@ -164,8 +191,8 @@ LiveSession::Impl::~Impl() { recording_.Close(); }
 FlightEnd LiveSession::Impl::Run(const std::function<bool()>& is_stopped) {
   FlightEnd end = program_->Run(is_stopped);
   recording_.Close();
-  if (hunt_ != nullptr && output_ && HasWorld() && !options_.hunt.still) hunt_->WriteMap(*output_);
-  if (output_) WriteFile(end_file_.string(), FlightEndCsv(end));
+  if (tables_) tables_->Finish();
+  if (!end_file_.empty()) WriteFile(end_file_.string(), FlightEndCsv(end));
   return end;
 }
 
@@ -181,13 +208,8 @@ void LiveSession::Impl::Say(const std::string& text, EventLevel level) {
   if (sink_) sink_->Take(SessionEvent{Now(), level, text});
 }
 
-void LiveSession::Impl::Change(const LiveSessionOptions& changed) {
-  const LiveSessionOptions options = ForFlight(changed, parts_.guides);
-  BetweenFrames([&] {
-    if (hunt_ != nullptr) hunt_->ChangeOptions(options.hunt);
-    if (landing_ != nullptr) landing_->ChangeOptions(options.landing);
-    vision_->SetAltitude(options.altitude_m);
-  });
+void LiveSession::Impl::Change(const TaskOptions& options, std::optional<double> altitude_m) {
+  BetweenFrames([&] { vision_->Change(options, altitude_m); });
 }
 
 // Results have places in the world: there is a mount, and somebody has poses.
@@ -196,37 +218,27 @@ bool LiveSession::Impl::HasWorld() const {
 }
 
 void LiveSession::Impl::OpenVision() {
-  if (!parts_.output.empty()) {
-    output_.emplace(parts_.output, parts_.replace);
-    // That of an earlier flight would be taken for this one's, should this one not come to its end.
-    end_file_ = output_->NewFile("flight_end.csv");
-    std::filesystem::remove(end_file_);
-  }
-  if (parts_.objects) {
-    const ObjectModel& model = *parts_.objects;
-    auto hunt = std::make_unique<HuntVision>(parts_.calibration, model,
-                                             parts_.grid ? *parts_.grid : ColorGrid(model.colors),
-                                             options_.hunt, output());
-    hunt_ = hunt.get();
-    vision_ = std::move(hunt);
-  } else {
-    auto landing =
-        std::make_unique<LandingVision>(parts_.calibration, options_.landing, output(),
-                                        HasWorld() && !options_.landing.still, Exposure());
-    landing_ = landing.get();
-    vision_ = std::move(landing);
-  }
-  vision_->SetAltitude(options_.altitude_m);
+  vision_ = parts_.task->MakeVision({.calibration = parts_.calibration,
+                                     .altitude_m = options_.altitude_m,
+                                     .has_world = HasWorld(),
+                                     .is_live = true});
+  if (!parts_.output.empty()) OpenTables();
 }
 
-double LiveSession::Impl::SightRange() const {
-  return ShapeOfTarget(options_.landing.target, options_.landing.detector)
-      .SightRange(parts_.calibration.intrinsics);
+void LiveSession::Impl::OpenTables() {
+  // That of an earlier flight would be taken for this one's, should this one not come to its end.
+  end_file_ = OutputFolder(parts_.output, parts_.replace).NewFile("flight_end.csv");
+  std::filesystem::remove(end_file_);
+  auto tables = vision_->MakeTables({.folder = parts_.output, .force = parts_.replace});
+  if (!tables) return;
+  constexpr std::size_t kFrames = 256;  // that may wait for the disk
+  tables_.emplace(AsynchronousSinkOptions{.thread_name = "output", .frames = kFrames, .tell = {}},
+                  std::make_unique<TableWriter>(std::move(tables),
+                                                [this](const std::string& text) { Say(text); }));
 }
 
 // A small pad, or a coarse image, shows nothing from the search altitude.
-void LiveSession::Impl::StayWithinSight() {
-  const double range_m = SightRange();
+void LiveSession::Impl::StayWithinSight(double range_m) {
   if (!parts_.guides) {
     return Say(fmt::format(
         "this camera sees the pad from {:.1f} m at most: begin the autopilot's landing below that",
@@ -247,13 +259,12 @@ void LiveSession::Impl::StayWithinSight() {
   }
 }
 
-std::optional<ExposureDrive> LiveSession::Impl::Exposure() {
-  if (!options_.exposure) return std::nullopt;
+void LiveSession::Impl::OpenExposure() {
   if (parts_.camera == nullptr) {
     throw InputError("fly.control_exposure: the source is no camera whose exposure can be set");
   }
   actuator_ = std::make_unique<RecordedActuator>(parts_.camera, &recording_);
-  return ExposureDrive(*options_.exposure, options_.exposure->max_exposure_s, actuator_.get());
+  exposure_.emplace(*options_.exposure, options_.exposure->max_exposure_s, actuator_.get());
 }
 
 std::unique_ptr<FlightRecorder> LiveSession::Impl::OpenRecorder(const std::filesystem::path& folder,
@@ -273,6 +284,9 @@ void LiveSession::Impl::OpenAutopilot() {
                                         options_.link.signing_key);
   }
   guard_ = guard.get();
+  if (const auto& gimbal = parts_.calibration.gimbal) {
+    options_.autopilot.gimbal_device_id = gimbal->device_id;
+  }
   connection_.emplace(parts_.autopilot, options_.link, tap, std::move(guard));
   autopilot_.emplace(
       options_.autopilot, &*connection_,
@@ -282,28 +296,26 @@ void LiveSession::Impl::OpenAutopilot() {
           .event = [this](const AutopilotEvent& e) { Say(e.text); },
           .text = [this](std::uint8_t severity,
                          std::string_view text) { Say(WordsOfAutopilot(text), LevelOf(severity)); },
+          .gimbal = [this](const GimbalSample& report) { program_->TakeGimbal(report); },
       });
 }
 
 FlightParts LiveSession::Impl::ProgramParts() {
   return {.source = parts_.source,
           .vision = vision_.get(),
+          .exposure = exposure_ ? &*exposure_ : nullptr,
           .connection = connection_ ? &*connection_ : nullptr,
           .autopilot = autopilot_ ? &*autopilot_ : nullptr,
           .guard = guard_,
           .recording = &recording_,
+          .tables = tables_ ? &*tables_ : nullptr,
           .sink = sink_ ? &*sink_ : nullptr,
           .guides = parts_.guides,
           .source_has_poses = parts_.has_poses,
           .sees_repeated = parts_.sees_repeated,
           .profile = parts_.profile,
           .truth = parts_.truth,
-          .true_offset_m = parts_.true_offset_m,
-          .pattern_size_m =
-              hunt_ != nullptr
-                  ? 0
-                  : ShapeOfTarget(options_.landing.target, options_.landing.detector).diameter_m,
-          .sight_range_m = hunt_ != nullptr ? 0 : SightRange()};
+          .true_offset_m = parts_.true_offset_m};
 }
 
 void LiveSession::Impl::TakePose(const PoseSample& pose) {
@@ -317,21 +329,23 @@ void LiveSession::Impl::TakeTruePose(const PoseSample& pose) {
 }
 
 LiveSession::LiveSession(LiveSessionParts parts, const std::vector<std::string>& settings)
-    : LiveSession(std::move(parts), OptionsOf(settings)) {}
+    : LiveSession(WithTask(std::move(parts), FieldsOf(settings).tasks),
+                  FieldsOf(settings).options) {}
 LiveSession::LiveSession(LiveSessionParts parts, LiveSessionOptions options)
-    : impl_(std::make_unique<Impl>(std::move(parts), std::move(options))) {}
+    : impl_(std::make_unique<Impl>(WithTask(std::move(parts), {}), std::move(options))) {}
 LiveSession::~LiveSession() = default;
 
 FlightEnd LiveSession::Run(const std::function<bool()>& is_stopped) {
   return impl_->Run(is_stopped);
 }
 RecordingSwitch& LiveSession::recording() { return impl_->recording(); }
-HuntVision* LiveSession::hunt() { return impl_->hunt(); }
-const OutputFolder* LiveSession::output() const { return impl_->output(); }
+const Vision& LiveSession::vision() const { return impl_->vision(); }
 std::string LiveSession::State() const { return impl_->State(); }
 std::string LiveSession::Summary() const { return impl_->Summary(); }
 FlightReport LiveSession::Report() const { return impl_->Report(); }
-void LiveSession::Change(const LiveSessionOptions& options) { impl_->Change(options); }
+void LiveSession::Change(const TaskOptions& options, std::optional<double> altitude_m) {
+  impl_->Change(options, altitude_m);
+}
 void LiveSession::BetweenFrames(const std::function<void()>& action) {
   impl_->BetweenFrames(action);
 }

@@ -13,18 +13,16 @@
 #include "kestrel/flight/session/flight_report.h"
 #include "kestrel/flight/session/live_source.h"
 #include "kestrel/flight/session/observation_sink.h"
+#include "kestrel/flight/session/task.h"
 #include "kestrel/io/recording/frame.h"
-#include "kestrel/vision/objects/color/color_grid.h"
-#include "kestrel/vision/objects/object_model.h"
 
 namespace kestrel {
 
 class ExposureActuator;
-class HuntVision;
-class OutputFolder;
 class RecordingSwitch;
 enum class LinkProfile;
 struct LiveSessionOptions;
+struct TaskOptions;
 struct TruePattern;
 
 // Parts of a session. The objects that pointers name must outlive it.
@@ -38,9 +36,8 @@ struct LiveSessionParts {
   // Processes images that equal the one before. False: a camera that repeats its image is frozen.
   bool sees_repeated = false;
 
-  std::optional<ObjectModel> objects;  // hunts for these; nothing: looks for the landing pattern
-  std::optional<ColorGrid> grid;       // of the objects' colours; nothing: the model's own
-  ObservationSink* sink = nullptr;     // takes all results and events; null: nobody
+  std::shared_ptr<const Task> task;  // null: looks for the pad, with the default options
+  ObservationSink* sink = nullptr;   // takes all results and events; null: nobody
 
   std::string autopilot;               // URL as of Connection; empty: none
   std::optional<LinkProfile> profile;  // nothing: by the autopilot's heartbeat
@@ -67,9 +64,9 @@ struct LiveSessionParts {
 class LiveSession {
  public:
   // Opens the files and the connection. 'settings' change the defaults of the options that `kestrel
-  // config` prints as landing, hunt and fly: "landing.detector.pattern.outer_diameter_m=0.6",
-  // "fly.rate_hz=20". Throws InputError when parts or settings are not valid, or something cannot
-  // be opened.
+  // config` prints as fly and, where the parts have no task, as landing:
+  // "landing.detector.pattern.outer_diameter_m=0.6", "fly.rate_hz=20". Throws InputError when parts
+  // or settings are not valid, or something cannot be opened.
   explicit LiveSession(LiveSessionParts parts, const std::vector<std::string>& settings = {});
   LiveSession(LiveSessionParts parts, LiveSessionOptions options);
   // Ends a recording that is on.
@@ -81,18 +78,15 @@ class LiveSession {
   // by this thread, says so. Then all tables and the recording are written. Once only.
   FlightEnd Run(const std::function<bool()>& is_stopped);
 
-  // Continues with the options of the pipeline and the altitude in 'options', see ChangeOptions of
-  // the pipelines. Track, map and all other options stay. By any thread.
-  void Change(const LiveSessionOptions& options);
+  // Continues with these options of the task, and the altitude, see Vision::Change. By any thread.
+  void Change(const TaskOptions& options, std::optional<double> altitude_m = std::nullopt);
   // Calls 'action' between two frames: the vision waits for it. By any thread.
   void BetweenFrames(const std::function<void()>& action);
 
   // Starts and stops recordings. By any thread.
   RecordingSwitch& recording();
-  // The hunt; null: it looks for the landing pattern.
-  HuntVision* hunt();
-  // The folder of the tables; null: none.
-  const OutputFolder* output() const;
+  // The vision, for what changes between two frames only.
+  const Vision& vision() const;
 
   // The state as the sinks get it. By any thread.
   FlightReport Report() const;

@@ -8,15 +8,11 @@
 #include "kestrel/core/camera/exposure_controller.h"
 #include "kestrel/flight/onboard/flight_options.h"
 #include "kestrel/flight/onboard/flight_recorder.h"
-#include "kestrel/vision/pipeline/hunt_pipeline.h"
-#include "kestrel/vision/pipeline/landing_pipeline.h"
 
 namespace kestrel {
 
-// All options of a LiveSession.
+// All options of a LiveSession but those of its task.
 struct LiveSessionOptions {
-  LandingPipelineOptions landing;
-  HuntPipelineOptions hunt;
   FlightOptions flight;
   ConnectionOptions link;
   AutopilotOptions autopilot;

@@ -24,6 +24,8 @@ RealtimeReplay::RealtimeReplay(Open open, Duration clock_offset, bool is_looped)
 void RealtimeReplay::Begin() {
   source_ = open_();
   poses_ = source_->poses();
+  gimbal_ = source_->gimbal();
+  next_gimbal_ = 0;
   if (!ReadFrame()) return;
   const auto is_early = [this](const PoseSample& pose) {
     return pose.time - clock_offset_ < frame_->time - kPosesAhead;
@@ -50,6 +52,7 @@ std::optional<Event> RealtimeReplay::Next(Duration timeout) {
   const Time now = Now();
   if (!std::exchange(is_started_, true)) shift_ = now + kPosesAhead - frame_->time;
   const Time due = IsPoseNext() ? DueOf(poses_[next_pose_]) : DueOf(*frame_);
+  if (IsGimbalNext(std::min(due, now))) return TakeGimbal();
   if (due > now + timeout) {
     std::this_thread::sleep_for(timeout);
     return std::nullopt;
@@ -68,6 +71,16 @@ bool RealtimeReplay::IsPoseNext() const {
   if (frame_) return due <= DueOf(*frame_);
   const bool has_pose_after = last_pose_ && *last_pose_ >= *last_frame_ + clock_offset_;
   return !has_pose_after && due <= *last_frame_ + DurationFromSeconds(1 / source_->rate_hz());
+}
+
+bool RealtimeReplay::IsGimbalNext(Time due) const {
+  return next_gimbal_ < gimbal_.size() && DueOf(gimbal_[next_gimbal_]) <= due;
+}
+
+Event RealtimeReplay::TakeGimbal() {
+  GimbalSample report = gimbal_[next_gimbal_++];
+  report.time += shift_;
+  return report;
 }
 
 // In a further round the first poses may be earlier than the last one of the round before.

@@ -36,9 +36,12 @@ class RealtimeReplay : public LiveSource {
   bool ReadFrame();
   Time DueOf(const Frame& frame) const { return frame.time + shift_; }
   Time DueOf(const PoseSample& pose) const { return pose.time - clock_offset_ + shift_; }
+  Time DueOf(const GimbalSample& report) const { return report.time - clock_offset_ + shift_; }
   bool IsPoseNext() const;
+  bool IsGimbalNext(Time due) const;
   bool IsRoundOver() const { return !frame_ && !IsPoseNext(); }
   std::optional<Event> TakePose();
+  Event TakeGimbal();
   Event TakeFrame();
   void BeginAgainOrEnd();
   template <class Step>
@@ -50,6 +53,8 @@ class RealtimeReplay : public LiveSource {
   std::unique_ptr<FrameSource> source_;
   std::vector<PoseSample> poses_;
   std::size_t next_pose_ = 0;
+  std::vector<GimbalSample> gimbal_;
+  std::size_t next_gimbal_ = 0;
   std::optional<Frame> frame_;      // the next one; nothing after the last
   std::optional<Time> last_frame_;  // times last given out, of a frame and of a pose
   std::optional<Time> last_pose_;

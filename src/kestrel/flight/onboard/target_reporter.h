@@ -9,34 +9,13 @@
 #include "kestrel/comms/mavlink/target_profile.h"
 #include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/time.h"
-#include "kestrel/core/geometry/rigid_transform.h"
 #include "kestrel/core/poses/pose_history.h"
 #include "kestrel/flight/guidance/contact_detector.h"
 #include "kestrel/flight/session/flight_report.h"
-#include "kestrel/vision/pipeline/landing_pipeline.h"
+#include "kestrel/flight/session/track_snapshot.h"
 #include "kestrel/vision/tracking/target_tracker.h"
 
 namespace kestrel {
-
-// The vision's knowledge of the target after a frame. Times are on the navigation's clock.
-struct TrackSnapshot {
-  Time captured;             // time of the frame's exposure
-  std::optional<Time> seen;  // the newest frame that showed the target where the track expects it
-  TrackState state = TrackState::kSearching;
-  std::optional<TargetEstimate> target;  // at 'captured', in the world
-  // The target in this frame alone, seen from the UAV's pose at that time.
-  std::optional<TargetReport> sighting;
-  // The newest frame that showed the target, without any pose: where the UAV's body was then.
-  struct Sight {
-    Time time;
-    RigidTransform target_from_body;
-  };
-  std::optional<Sight> sight;
-  Duration detect_time{};
-  int frames = 0;                          // so far
-  int detections = 0;                      // frames that showed the target
-  std::optional<OtherTag> other_tag = {};  // as LandingObservation's
-};
 
 struct TargetReporterOptions {
   // Longest time from the last pose to the time of a report.

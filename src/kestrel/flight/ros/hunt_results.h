@@ -6,8 +6,8 @@
 
 #include <opencv2/core.hpp>
 
-#include "kestrel/flight/ros/result_connection.h"
 #include "kestrel/flight/session/flight_report.h"
+#include "kestrel/flight/session/result_connection.h"
 #include "kestrel/io/ros_messages/serialization.h"
 #include "kestrel/vision/objects/object_model.h"
 #include "kestrel/vision/pipeline/hunt_pipeline.h"

@@ -8,7 +8,7 @@
 
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/camera_model.h"
-#include "kestrel/flight/ros/result_connection.h"
+#include "kestrel/flight/session/result_connection.h"
 #include "kestrel/io/ros_messages/serialization.h"
 #include "kestrel/vision/pipeline/landing_pipeline.h"
 #include "kestrel/vision/target/target_shape.h"

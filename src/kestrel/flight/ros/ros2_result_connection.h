@@ -7,7 +7,7 @@
 #include <string>
 
 #include "kestrel/comms/dds/ros2_node.h"
-#include "kestrel/flight/ros/result_connection.h"
+#include "kestrel/flight/session/result_connection.h"
 
 namespace kestrel {
 

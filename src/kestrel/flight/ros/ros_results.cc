@@ -41,6 +41,7 @@ RosResults::RosResults(std::shared_ptr<ResultConnection> connection, const DdsOp
       publish_tf_(options.publish_tf),
       frames_(frames),
       body_from_camera_(calibration.body_from_camera),
+      has_gimbal_(calibration.gimbal.has_value()),
       camera_(calibration.intrinsics),
       connection_(std::move(connection)),
       landing_(ResultsOf(options, frames, landing), connection_.get()),
@@ -60,17 +61,24 @@ std::string RosResults::TransformBytes(Time stamp, const std::string& parent,
 }
 
 void RosResults::PublishMount() {
-  if (!body_from_camera_) return;
+  if (!body_from_camera_ || has_gimbal_) return;
   connection_->Publish(ResultTopic::kStaticTransforms,
                        TransformBytes(Time(), *frames_.body, frames_.camera, *body_from_camera_));
 }
 
-void RosResults::PublishBody(const std::optional<RigidTransform>& world_from_camera, Time stamp) {
-  if (!publish_tf_ || !frames_.body || !frames_.world) return;
-  if (!world_from_camera || !body_from_camera_) return;
-  connection_->Publish(ResultTopic::kTransforms,
-                       TransformBytes(stamp, *frames_.world, *frames_.body,
-                                      *world_from_camera * body_from_camera_->Inverse()));
+// The body in the world, and the camera on the body where a gimbal turns it.
+template <class Observation>
+void RosResults::PublishTransforms(const Observation& observation) {
+  const auto& world_from_camera = observation.world_from_camera;
+  const auto& camera_from_body = observation.camera_from_body;
+  if (!publish_tf_ || !frames_.body || !world_from_camera || !camera_from_body) return;
+  const auto publish = [&](const std::string& parent, const std::string& child,
+                           const RigidTransform& parent_from_child) {
+    connection_->Publish(ResultTopic::kTransforms,
+                         TransformBytes(observation.time, parent, child, parent_from_child));
+  };
+  if (frames_.world) publish(*frames_.world, *frames_.body, *world_from_camera * *camera_from_body);
+  if (has_gimbal_) publish(*frames_.body, frames_.camera, camera_from_body->Inverse());
 }
 
 void RosResults::WaitForSubscribers(Duration timeout) const {
@@ -89,7 +97,7 @@ void RosResults::Publish(const Frame& frame, const LandingObservation& observati
   LandingObservation stamped = observation;
   stamped.time += frames_.to_stamps;
   if (stamped.target) stamped.target->time += frames_.to_stamps;
-  PublishBody(stamped.world_from_camera, stamped.time);
+  PublishTransforms(stamped);
   landing_.PublishDetection(camera_, stamped);
   Count(observation.report.detection.has_value(), frame.time, observation.detect_time);
   landing_.PublishTrack(stamped);
@@ -100,7 +108,7 @@ void RosResults::Publish(const Frame& frame, const HuntObservation& observation)
   const std::lock_guard lock(mutex_);
   HuntObservation stamped = observation;
   stamped.time += frames_.to_stamps;
-  PublishBody(stamped.world_from_camera, stamped.time);
+  PublishTransforms(stamped);
   hunt_.PublishDetections(stamped);
   Count(!observation.report.detections.empty(), frame.time, observation.detect_time);
   hunt_.PublishMarkers(stamped);

@@ -14,8 +14,8 @@
 #include "kestrel/flight/ros/flight_diagnostics.h"
 #include "kestrel/flight/ros/hunt_results.h"
 #include "kestrel/flight/ros/landing_results.h"
-#include "kestrel/flight/ros/result_connection.h"
 #include "kestrel/flight/session/flight_report.h"
+#include "kestrel/flight/session/result_connection.h"
 #include "kestrel/io/recording/frame.h"
 #include "kestrel/vision/objects/object_model.h"
 #include "kestrel/vision/pipeline/hunt_pipeline.h"
@@ -61,13 +61,15 @@ class RosResults {
                              const RigidTransform& parent_from_child) const;
   void PublishMount();
   void Count(bool found, Time time, Duration detect_time);
-  void PublishBody(const std::optional<RigidTransform>& world_from_camera, Time stamp);
+  template <class Observation>
+  void PublishTransforms(const Observation& observation);
 
   std::mutex mutex_;  // guards all but the connection
   std::string name_;  // node name
   bool publish_tf_;
   RosFrames frames_;
   std::optional<RigidTransform> body_from_camera_;
+  bool has_gimbal_;
   CameraModel camera_;
   std::shared_ptr<ResultConnection> connection_;
   LandingResults landing_;

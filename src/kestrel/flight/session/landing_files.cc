@@ -54,7 +54,7 @@ LandingFiles::LandingFiles(const OutputOptions& output, const LandingPipeline* p
                            bool has_track, const std::vector<double>& predict_s)
     : pipeline_(pipeline),
       only_in_image_(output.only_in_image),
-      results_(output, "landing_detections.csv", LandingCsvHeader()) {
+      results_(output, kLandingTable, LandingCsvHeader()) {
   if (has_track && results_.folder()) track_.emplace(*results_.folder(), predict_s);
 }
 

@@ -26,11 +26,12 @@ class TrackFiles {
 };
 
 // Writes the results of a landing: detections, track, predictions and annotated frames. Waits for
-// the disk; for sessions over recordings. Throws InputError when it cannot write.
+// the disk. Throws InputError when it cannot write.
 class LandingFiles : public ObservationSink {
  public:
-  // 'pipeline': the one that gives the observations; outlives this. 'has_track': the target can be
-  // tracked. 'predict_s': horizons of the predictions.
+  // 'pipeline': the one that gives the observations; outlives this. Predictions and annotated
+  // frames are of its present state. 'has_track': the target can be tracked. 'predict_s': horizons
+  // of the predictions.
   LandingFiles(const OutputOptions& output, const LandingPipeline* pipeline, bool has_track,
                const std::vector<double>& predict_s);
 

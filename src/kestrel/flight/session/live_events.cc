@@ -10,10 +10,10 @@
 namespace kestrel {
 namespace {
 
-constexpr std::size_t kWaitingPoses = 256;  // several seconds of poses of any autopilot
-constexpr std::size_t kWaitingFrames = 10;  // of 30 per second, for poses as late as below
-constexpr double kDelayMemory_s = 5;        // a large delay of a pose counts for so long
-constexpr double kLongestDelay_s = 0.3;     // a pose that is later is of no use
+constexpr std::size_t kWaitingSamples = 256;  // several seconds of poses of any autopilot
+constexpr std::size_t kWaitingFrames = 10;    // of 30 per second, for poses as late as below
+constexpr double kDelayMemory_s = 5;          // a large delay of a pose counts for so long
+constexpr double kLongestDelay_s = 0.3;       // a pose that is later is of no use
 
 Duration PoseWaitOf(const LiveEventsOptions& options) {
   RequireValid(options);
@@ -23,7 +23,7 @@ Duration PoseWaitOf(const LiveEventsOptions& options) {
 }  // namespace
 
 LiveEvents::LiveEvents(const LiveEventsOptions& options, Duration lead)
-    : pose_wait_(PoseWaitOf(options)), lead_(lead), poses_(kWaitingPoses) {
+    : pose_wait_(PoseWaitOf(options)), lead_(lead), samples_(kWaitingSamples) {
   frames_.reserve(kWaitingFrames);
 }
 
@@ -62,16 +62,28 @@ void LiveEvents::Push(const PoseSample& pose) {
   {
     const std::lock_guard lock(mutex_);
     LearnDelay(pose, Now());
-    if (pose_count_ == poses_.size()) {
-      first_pose_ = (first_pose_ + 1) % poses_.size();
-      --pose_count_;
-      ++counters_.dropped_poses;
-    }
-    poses_[(first_pose_ + pose_count_++) % poses_.size()] = pose;
+    Queue(pose);
     newest_pose_ = pose.time;
     for (WaitingFrame& waiting : frames_) TakePoseInto(&waiting);
   }
   changed_.notify_one();
+}
+
+void LiveEvents::Push(const GimbalSample& report) {
+  {
+    const std::lock_guard lock(mutex_);
+    Queue(report);
+  }
+  changed_.notify_one();
+}
+
+void LiveEvents::Queue(const Event& sample) {
+  if (sample_count_ == samples_.size()) {
+    first_sample_ = (first_sample_ + 1) % samples_.size();
+    --sample_count_;
+    ++counters_.dropped_poses;
+  }
+  samples_[(first_sample_ + sample_count_++) % samples_.size()] = sample;
 }
 
 void LiveEvents::Close() {
@@ -102,11 +114,11 @@ void LiveEvents::DropMissed(Time now) {
   }
 }
 
-Event LiveEvents::TakePose() {
-  const PoseSample pose = poses_[first_pose_];
-  first_pose_ = (first_pose_ + 1) % poses_.size();
-  --pose_count_;
-  return pose;
+Event LiveEvents::TakeSample() {
+  Event sample = samples_[first_sample_];
+  first_sample_ = (first_sample_ + 1) % samples_.size();
+  --sample_count_;
+  return sample;
 }
 
 Event LiveEvents::TakeFrame() {
@@ -123,7 +135,7 @@ Event LiveEvents::Next() {
   is_reader_busy_ = false;
   for (;;) {
     if (is_closed_) return EndOfStream{};
-    if (pose_count_ > 0) return TakePose();
+    if (sample_count_ > 0) return TakeSample();
     if (frames_.empty()) {
       changed_.wait(lock);
       continue;

@@ -10,6 +10,7 @@
 
 #include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/time.h"
+#include "kestrel/core/poses/gimbal_history.h"
 #include "kestrel/core/poses/pose_history.h"
 #include "kestrel/flight/session/live_source.h"
 #include "kestrel/io/recording/event_source.h"
@@ -37,11 +38,12 @@ class LiveEvents : public EventSource {
 
   void Push(Frame frame);
   void Push(const PoseSample& pose);
+  void Push(const GimbalSample& report);  // no frame waits for it
   // Ends the stream: Next returns EndOfStream and waits no more.
   void Close();
 
-  // Waits for an event and returns it: a pose at once; a frame when the pose after it has been
-  // given out, or when the wait for it has ended.
+  // Waits for an event and returns it: a pose or a report at once; a frame when the pose after it
+  // has been given out, or when the wait for it has ended.
   Event Next() override;
 
   using Counters = LiveEventCounters;
@@ -59,7 +61,8 @@ class LiveEvents : public EventSource {
   void TakePoseInto(WaitingFrame* waiting) const;
   static bool IsReady(const WaitingFrame& waiting, Time now);
   void DropMissed(Time now);
-  Event TakePose();
+  void Queue(const Event& sample);
+  Event TakeSample();
   Event TakeFrame();
 
   Duration pose_wait_;
@@ -67,9 +70,9 @@ class LiveEvents : public EventSource {
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::vector<PoseSample> poses_;  // a ring
-  std::size_t first_pose_ = 0;
-  std::size_t pose_count_ = 0;
+  std::vector<Event> samples_;  // poses and reports of the gimbal; a ring
+  std::size_t first_sample_ = 0;
+  std::size_t sample_count_ = 0;
   std::optional<Time> newest_pose_;  // that was put in
   double pose_delay_s_ = 0;          // the largest of the last seconds
   Time delay_learnt_;

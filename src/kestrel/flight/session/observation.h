@@ -26,6 +26,11 @@ struct BrokenFrame {
   std::string fault;  // names the file
 };
 
+// Returns the pose of the camera, if it is known.
+inline std::optional<RigidTransform> WorldFromCamera(const Observation& observation) {
+  return std::visit([](const auto& seen) { return seen.world_from_camera; }, observation.seen);
+}
+
 // Returns the time that the detection alone took.
 inline Duration DetectTime(const Observation& observation) {
   return std::visit([](const auto& seen) { return seen.detect_time; }, observation.seen);

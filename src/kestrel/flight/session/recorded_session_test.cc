@@ -81,42 +81,39 @@ class RecordedSessionTest : public ::testing::Test {
 
   OpenedSource opened_;
   ThreeFrames* source_;
-  LoggedVision vision_;
-  FrameNames sink_;
+  LoggedVision* vision_ = new LoggedVision();
+  RecordedSession session_{opened_, std::unique_ptr<Vision>(vision_)};
+  FrameNames* sink_ = session_.sinks().Add(std::make_unique<FrameNames>());
 };
 
 TEST_F(RecordedSessionTest, FrameFollowsPosesItNeeds) {
-  EXPECT_TRUE(RunRecording(opened_, &vision_, &sink_, [](std::size_t) { return true; }));
-  EXPECT_THAT(vision_.log, ElementsAre("pose 5", "pose 15", "frame 1", "pose 25", "frame 2",
-                                       "frame 3", "finish"));
-  EXPECT_THAT(sink_.names, ElementsAre("frame 1", "frame 2", "frame 3"));
+  EXPECT_TRUE(session_.Run([](std::size_t) { return true; }));
+  EXPECT_THAT(vision_->log, ElementsAre("pose 5", "pose 15", "frame 1", "pose 25", "frame 2",
+                                        "frame 3", "finish"));
+  EXPECT_THAT(sink_->names, ElementsAre("frame 1", "frame 2", "frame 3"));
 }
 
 TEST_F(RecordedSessionTest, StopsBeforeNextFrame) {
-  EXPECT_FALSE(RunRecording(opened_, &vision_, &sink_, [](std::size_t done) { return done < 2; }));
-  EXPECT_THAT(sink_.names, ElementsAre("frame 1", "frame 2"));
-  EXPECT_NE(vision_.log.back(), "finish");
+  EXPECT_FALSE(session_.Run([](std::size_t done) { return done < 2; }));
+  EXPECT_THAT(sink_->names, ElementsAre("frame 1", "frame 2"));
+  EXPECT_NE(vision_->log.back(), "finish");
 }
 
 TEST_F(RecordedSessionTest, ReportsFrameOfAnotherSize) {
   source_->width_px = kWidth_px + 1;
-  const std::string error = InputErrorOf(
-      [&] { RunRecording(opened_, &vision_, &sink_, [](std::size_t) { return true; }); });
+  const std::string error = InputErrorOf([&] { session_.Run([](std::size_t) { return true; }); });
   EXPECT_THAT(error, HasSubstr("frame 1"));
-  EXPECT_TRUE(sink_.names.empty());
+  EXPECT_TRUE(sink_->names.empty());
 }
 
 TEST_F(RecordedSessionTest, FailingSinkEndsSession) {
   struct FullDisk : ObservationSink {
     void Take(const Observation&) override { throw InputError("the disk is full"); }
   };
-  ObservationSinks sinks(SinkErrors::kThrow);
-  const FrameNames* const others = sinks.Add(std::make_unique<FrameNames>());
-  sinks.Add(std::make_unique<FullDisk>());
-  EXPECT_EQ(InputErrorOf(
-                [&] { RunRecording(opened_, &vision_, &sinks, [](std::size_t) { return true; }); }),
+  session_.sinks().Add(std::make_unique<FullDisk>());
+  EXPECT_EQ(InputErrorOf([&] { session_.Run([](std::size_t) { return true; }); }),
             "the disk is full");
-  EXPECT_THAT(others->names, ElementsAre("frame 1"));
+  EXPECT_THAT(sink_->names, ElementsAre("frame 1"));
 }
 
 }  // namespace

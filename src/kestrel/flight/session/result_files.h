@@ -15,12 +15,13 @@ namespace kestrel {
 
 // Destination of a run's results.
 struct OutputOptions {
-  std::string folder;    // empty: only the table, to stdout
-  bool force = false;    // replace existing files
-  std::string annotate;  // "video", "images" or empty
-  double rate_hz = 0;    // frame rate of the video
+  std::string folder = {};    // empty: only the table, to 'stream'
+  bool force = false;         // replace existing files
+  std::string annotate = {};  // "video", "images" or empty
+  double rate_hz = 0;         // frame rate of the video
   // The lens is not known: distances and positions are left out.
   bool only_in_image = false;
+  std::ostream* stream = nullptr;  // null: stdout
 };
 
 // Writes the results that all runs have: a table, row by row, and annotated frames. All functions
@@ -37,11 +38,12 @@ class ResultFiles {
   bool wants_pictures() const { return pictures_ != nullptr; }
   void WritePicture(const std::string& frame_name, const cv::Mat& picture);
 
-  // Folder for further files; null where the table goes to stdout.
+  // Folder for further files; null where the table goes to a stream.
   const OutputFolder* folder() const { return folder_ ? &*folder_ : nullptr; }
 
  private:
   const char* table_;
+  std::ostream* stream_;
   std::optional<OutputFolder> folder_;
   std::ofstream file_;
   std::unique_ptr<AnnotatedWriter> pictures_;

@@ -2,24 +2,22 @@
 #include "kestrel/flight/session/team_sharing.h"
 
 #include <utility>
-#include <variant>
 
 namespace kestrel {
 
 TeamSharing::TeamSharing(std::unique_ptr<TeamLink> team, const ObjectMap* map,
-                         std::vector<double> origin, const OutputFolder* folder,
+                         std::vector<double> origin, std::optional<OutputFolder> folder,
                          ObservationSink* others, std::function<bool()> is_stopped)
     : team_(std::move(team)),
       map_(map),
       origin_(std::move(origin)),
-      folder_(folder),
+      folder_(std::move(folder)),
       others_(others),
       is_stopped_(std::move(is_stopped)) {}
 
 void TeamSharing::Take(const Observation& observation) {
-  const auto& seen = std::get<HuntObservation>(observation.seen);
-  if (seen.world_from_camera) team_->SetPosition(seen.world_from_camera->translation);
-  seen_ = seen.time;
+  if (const auto pose = WorldFromCamera(observation)) team_->SetPosition(pose->translation);
+  seen_ = observation.frame.time;
   if (team_->IsTimeToTell()) {
     team_->Tell(map_->Confirmed());
     Publish();
@@ -30,7 +28,7 @@ void TeamSharing::Take(const Observation& observation) {
 void TeamSharing::Finish() {
   team_->Finish(map_->Confirmed(), is_stopped_);
   Publish();
-  if (folder_ != nullptr) team_->WriteMap(origin_, *folder_);
+  if (folder_) team_->WriteMap(origin_, *folder_);
 }
 
 void TeamSharing::Publish() { others_->Take(TeamReport{seen_, team_->Map()}); }

@@ -1,31 +1,62 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <string>
 
 #include "kestrel/core/base/time.h"
+#include "kestrel/core/poses/gimbal_history.h"
 #include "kestrel/core/poses/pose_history.h"
 #include "kestrel/flight/session/observation.h"
+#include "kestrel/flight/session/observation_sink.h"
+#include "kestrel/flight/session/result_files.h"
+#include "kestrel/flight/session/track_snapshot.h"
 #include "kestrel/io/recording/frame.h"
+#include "kestrel/vision/mapping/object_map.h"
 
 namespace kestrel {
 
-// The vision of a session over a recording: a pipeline, or its earlier results. Called by one
-// thread.
+struct TaskOptions;
+
+// The vision of a session: a pipeline, or its earlier results. Called by one thread at a time.
 class Vision {
  public:
   virtual ~Vision() = default;
 
   virtual void AddPose(const PoseSample& pose) = 0;
+  // Takes a report of the gimbal on which the camera is.
+  virtual void AddGimbal(const GimbalSample& sample) = 0;
 
-  // Time from a frame's time, on the navigation's clock, to the last pose that the frame needs.
+  // Returns how long after a frame's time, on the clock of the navigation, the newest pose may lie
+  // that the frame needs: it is processed once poses reach that far.
   virtual Duration pose_lead() const = 0;
 
-  // Throws InputError when the frame is none of those that this has results of.
+  // Throws InputError when the frame is none of those that this has results of. Does not throw in
+  // flight.
   virtual Observation Process(const Frame& frame) = 0;
+
+  // What is known of the target after the last frame; only in flight.
+  virtual TrackSnapshot snapshot() const { return {}; }
+  // The pad that the UAV can land on; nothing: there is none.
+  virtual std::optional<PadInSight> pad() const { return std::nullopt; }
+  // The map of the objects; null: none. Changes with the next frame.
+  virtual const ObjectMap* map() const { return nullptr; }
+  // True when results have places in the world, which are kept from frame to frame.
+  virtual bool has_world() const { return false; }
+
+  // Continues with other options and another altitude. Track and map stay. Throws InputError and
+  // changes nothing when the options are not valid.
+  virtual void Change(const TaskOptions& /*options*/, std::optional<double> /*altitude_m*/) {}
 
   // Called after the source's last frame. Throws InputError when there are results of more frames.
   virtual void Finish() {}
+
+  // Returns a sink that writes the tables of this vision's results, which it must not outlive;
+  // null: there are none. Its functions throw InputError when they cannot write.
+  virtual std::unique_ptr<ObservationSink> MakeTables(const OutputOptions& /*output*/) const {
+    return nullptr;
+  }
 
   // Says which part of the set-up contradicts the images, and what to do, as far as it is known by
   // now; empty where nothing does.

@@ -61,6 +61,7 @@ CameraCalibration FindCalibration(const FrameSource& source, const RecordingChoi
   if (!calibration.body_from_camera) {
     const CameraMount own = source.mount();
     calibration.body_from_camera = own.body_from_camera;
+    calibration.gimbal = own.gimbal;
     if (!choice.camera.empty() && own.body_from_camera && choice.bag.tell) {
       choice.bag.tell(choice.camera + " has no mount (T_BS): the recording's is used");
     }

@@ -148,6 +148,7 @@ fs::path BeginRecording(const std::string& path, bool replace) {
 std::vector<EurocTable> TablesOf(const RecordingHead& head) {
   std::vector<EurocTable> tables{EurocTable::kImages};
   if (head.has_poses) tables.push_back(EurocTable::kPoses);
+  if (head.calibration && head.calibration->gimbal) tables.push_back(EurocTable::kGimbal);
   return tables;
 }
 
@@ -157,7 +158,8 @@ class EurocSink : public RecordingSink {
   EurocSink(const std::string& path, const RecordingHead& head, bool replace)
       : place_(PlaceOfRecording(path)),
         part_(BeginRecording(path, replace)),
-        writer_(part_, TablesOf(head)) {
+        writer_(part_, TablesOf(head)),
+        gimbal_(head.calibration ? head.calibration->gimbal : std::nullopt) {
     if (head.calibration) writer_.WriteCamera(*head.calibration, head.rate_hz);
   }
   ~EurocSink() override {
@@ -173,6 +175,15 @@ class EurocSink : public RecordingSink {
     if (!first_pose_) first_pose_ = pose.time;
     last_pose_ = pose.time;
     ++pose_count_;
+  }
+
+  void AddGimbal(const std::vector<GimbalSample>& reports) override {
+    if (!gimbal_ || reports.empty()) return;
+    const double span_s = ToSeconds(reports.back().time - reports.front().time);
+    writer_.WriteGimbalSensor(*gimbal_, reports.front().yaw_frame,
+                              span_s > 0 ? static_cast<double>(reports.size() - 1) / span_s : 0);
+    for (const GimbalSample& report : reports) writer_.AddGimbal(report);
+    writer_.CommitMany();
   }
 
   void AddFrame(const Frame& frame) override {
@@ -192,6 +203,7 @@ class EurocSink : public RecordingSink {
   fs::path place_;
   fs::path part_;
   EurocWriter writer_;
+  std::optional<GimbalMount> gimbal_;
   std::optional<Time> first_pose_;
   Time last_pose_;
   std::size_t pose_count_ = 0;

@@ -5,8 +5,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "kestrel/core/camera/calibration.h"
+#include "kestrel/core/poses/gimbal_history.h"
 #include "kestrel/core/poses/pose_history.h"
 #include "kestrel/io/bags/decompression.h"
 #include "kestrel/io/recording/frame.h"
@@ -23,6 +25,8 @@ class RecordingSink {
   // channels are equal.
   virtual void AddPose(const PoseSample& pose) = 0;
   virtual void AddFrame(const Frame& frame) = 0;
+  // Reports of the gimbal have a place in folders only.
+  virtual void AddGimbal(const std::vector<GimbalSample>& /*reports*/) {}
 
   // Completes the recording; nothing can be written after it.
   virtual void Close() = 0;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/io/recording/event_source.h"
 
+#include <chrono>
 #include <utility>
 
 namespace kestrel {
 
 RecordingEvents::RecordingEvents(FrameSource* source, std::vector<PoseSample> poses, Duration lead)
-    : source_(source), poses_(std::move(poses)), lead_(lead) {}
+    : source_(source), poses_(std::move(poses)), lead_(lead), gimbal_(source->gimbal()) {}
 
 Event RecordingEvents::Next() {
   if (!frame_) {
@@ -15,7 +16,14 @@ Event RecordingEvents::Next() {
     frame_ = std::move(frame);
   }
   if (NeedsPose()) return poses_[next_pose_++];
+  if (NeedsGimbal()) return gimbal_[next_gimbal_++];
   return *std::exchange(frame_, std::nullopt);
+}
+
+bool RecordingEvents::NeedsGimbal() const {
+  constexpr Duration kAhead = std::chrono::milliseconds(500);
+  if (next_gimbal_ == gimbal_.size()) return false;
+  return next_gimbal_ == 0 || gimbal_[next_gimbal_ - 1].time < frame_->time + lead_ + kAhead;
 }
 
 bool RecordingEvents::NeedsPose() const {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kestrel/core/base/time.h"
+#include "kestrel/core/poses/gimbal_history.h"
 #include "kestrel/core/poses/pose_history.h"
 #include "kestrel/io/recording/frame.h"
 #include "kestrel/io/recording/frame_source.h"
@@ -16,12 +17,13 @@ namespace kestrel {
 // The stream has ended.
 struct EndOfStream {};
 
-// Input of a pipeline: a frame, or a pose of the navigation (with its rates, if they are known).
-using Event = std::variant<EndOfStream, Frame, PoseSample>;
+// Input of a pipeline: a frame, a pose of the navigation (with its rates, if they are known), or a
+// report of the gimbal on which the camera is.
+using Event = std::variant<EndOfStream, Frame, PoseSample, GimbalSample>;
 
-// Frames and poses as one stream, the same for a recording as for a camera beside an autopilot.
-// Poses are in order of time, and so are frames. A frame comes after the poses that it needs,
-// except for poses that are late: these come after it.
+// Frames, poses and reports of a gimbal as one stream, the same for a recording as for a camera
+// beside an autopilot. Each of the three is in order of time. A frame comes after the poses and
+// reports that it needs, except for those that are late: these come after it.
 class EventSource {
  public:
   virtual ~EventSource() = default;
@@ -33,7 +35,8 @@ class EventSource {
 
 // Gives each frame of a source after the poses that it needs: all poses up to the first one that is
 // not before the frame's time + 'lead' (the clock offset, and the time after its own that a frame
-// needs). 'source' must outlive this.
+// needs). The source's reports of a gimbal come half a second ahead: its clock has an offset, too.
+// 'source' must outlive this.
 class RecordingEvents : public EventSource {
  public:
   RecordingEvents(FrameSource* source, std::vector<PoseSample> poses, Duration lead);
@@ -42,11 +45,14 @@ class RecordingEvents : public EventSource {
 
  private:
   bool NeedsPose() const;
+  bool NeedsGimbal() const;
 
   FrameSource* source_;
   std::vector<PoseSample> poses_;
   Duration lead_;
   std::size_t next_pose_ = 0;
+  std::vector<GimbalSample> gimbal_;
+  std::size_t next_gimbal_ = 0;
   std::optional<Frame> frame_;  // the next frame
 };
 

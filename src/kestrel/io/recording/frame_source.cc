@@ -25,7 +25,7 @@ bool FrameSource::Next(Frame* frame) {
 
 CameraMount FrameSource::mount() const {
   const std::optional<CameraCalibration> own = calibration();
-  return own ? CameraMount{own->body_from_camera, own->clock_offset} : CameraMount();
+  return own ? CameraMount{own->body_from_camera, own->clock_offset, own->gimbal} : CameraMount();
 }
 
 }  // namespace kestrel

@@ -12,6 +12,7 @@
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/core/poses/gimbal_history.h"
 #include "kestrel/core/poses/pose_history.h"
 #include "kestrel/io/recording/frame.h"
 
@@ -24,6 +25,7 @@ inline constexpr double kNominalRateHz = 30;
 struct CameraMount {
   std::optional<RigidTransform> body_from_camera;
   std::optional<Duration> clock_offset;  // t_nav = t_image + clock_offset
+  std::optional<GimbalMount> gimbal = std::nullopt;
 };
 
 // An image that cannot be read. The source goes on with the next one.
@@ -76,6 +78,9 @@ class FrameSource {
   // Returns the poses of the navigation, on its own clock, in order of time; empty if there are
   // none.
   virtual std::vector<PoseSample> poses() const { return {}; }
+  // Returns the reports of the gimbal on which the camera is, on the gimbal's clock, in order of
+  // time; empty if there are none.
+  virtual std::vector<GimbalSample> gimbal() const { return {}; }
 
  protected:
   // As Next, but throws BrokenImage for an image that cannot be read.

@@ -186,8 +186,13 @@ RecordingPlan PlanHunt(const HuntSimulationOptions& options, const CameraCalibra
                        std::uint64_t seed) {
   RequireValid(options);
   HuntScene scene = MakeHuntScene(options, seed);
+  const Motion world_from_uav = scene.world_from_uav;
+  const Path below = [world_from_uav](double time_s) {
+    const Vector3d place = world_from_uav(time_s).translation;
+    return Vector3d(place.x(), place.y(), 0);
+  };
   const auto flight = std::make_shared<SimulatedFlight>(
-      options.recording, camera, Drawing(), std::move(scene.world), scene.world_from_uav, seed);
+      options.recording, camera, Drawing(), std::move(scene.world), world_from_uav, below, seed);
   RecordingPlan plan;
   for (const double time_s : flight->times_s()) plan.times.push_back(TimeOfFlight(time_s));
   plan.render = [flight](std::size_t i) { return flight->Image(i); };

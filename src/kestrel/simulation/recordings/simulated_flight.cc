@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/core/base/hash.h"
+#include "kestrel/core/geometry/angles.h"
 #include "kestrel/io/recording/euroc/euroc_layout.h"
 #include "kestrel/io/recording/euroc/euroc_text.h"
 #include "kestrel/simulation/recordings/truth_text.h"
@@ -18,7 +19,7 @@ namespace {
 constexpr double kMargin_s = 0.5;
 
 // Each part has its own random numbers.
-enum class FlightPart { kErrors = 100, kPoses, kVibration, kGain, kNoise };
+enum class FlightPart { kErrors = 100, kPoses, kVibration, kGain, kNoise, kGimbal };
 std::uint64_t SeedOf(std::uint64_t seed, FlightPart part) {
   return Hash(seed, static_cast<std::uint64_t>(part));
 }
@@ -29,14 +30,30 @@ NavigationErrors ErrorsOf(const NavigationOptions& options, std::uint64_t seed) 
   return DrawNavigationErrors(options, &random);
 }
 
-Motion CameraMotion(const Motion& world_from_body, const RigidTransform& body_from_camera,
+// 'world_from_base': what the camera is fixed to, the body or a gimbal's platform.
+Motion CameraMotion(const Motion& world_from_base, const RigidTransform& base_from_camera,
                     const NavigationOptions& options, std::uint64_t seed) {
   Random random = RandomOf(seed, FlightPart::kVibration);
   const auto vibration = Vibration(options, &random);
   return [=](double time_s) {
-    return world_from_body(time_s) * body_from_camera *
+    return world_from_base(time_s) * base_from_camera *
            RigidTransform{vibration(time_s), Eigen::Vector3d::Zero()};
   };
+}
+
+// The camera of a calibration on a gimbal at its place, looking ahead when the gimbal is level.
+CameraCalibration OnGimbal(CameraCalibration camera) {
+  if (camera.gimbal) return camera;
+  Eigen::Matrix3d axes;
+  axes.col(0) = -Eigen::Vector3d::UnitY();
+  axes.col(1) = -Eigen::Vector3d::UnitZ();
+  axes.col(2) = Eigen::Vector3d::UnitX();
+  GimbalMount mount;
+  mount.body_from_pivot.translation = camera.body_from_camera->translation;
+  mount.platform_from_camera.rotation = Eigen::Quaterniond(axes);
+  camera.gimbal = mount;
+  camera.body_from_camera = mount.body_from_pivot * mount.platform_from_camera;
+  return camera;
 }
 
 std::function<double(double)> GainControl(const SensorOptions& options, std::uint64_t seed) {
@@ -51,9 +68,10 @@ std::function<double(double)> GainControl(const SensorOptions& options, std::uin
 
 SimulatedFlight::SimulatedFlight(const FlightRecordingOptions& options,
                                  const CameraCalibration& camera, const Drawing& airframe,
-                                 World world, Motion world_from_body, std::uint64_t seed)
+                                 World world, Motion world_from_body, const Path& target,
+                                 std::uint64_t seed)
     : options_(options),
-      nominal_(camera),
+      nominal_(options.gimbal.is_there() ? OnGimbal(camera) : camera),
       world_(std::move(world)),
       world_from_body_(std::move(world_from_body)),
       seed_(seed),
@@ -64,8 +82,19 @@ SimulatedFlight::SimulatedFlight(const FlightRecordingOptions& options,
   lens.half_angle_deg = options.lens.half_angle_deg;
   lens.vignette = options.lens.vignette;
   lens.airframe = airframe;
-  const Motion motion = CameraMotion(world_from_body_, errors_.TrueMount(*camera.body_from_camera),
-                                     options.navigation, seed);
+  RigidTransform mount = *nominal_.body_from_camera;
+  Motion world_from_base = world_from_body_;
+  if (options.gimbal.is_there()) {
+    gimbal_ = std::make_shared<SimulatedGimbal>(options.gimbal, world_from_body_,
+                                                nominal_.gimbal->body_from_pivot, target, begin_s(),
+                                                times_s_.back() + kMargin_s);
+    mount = nominal_.gimbal->platform_from_camera;
+    world_from_base = [gimbal = gimbal_](double time_s) {
+      return gimbal->WorldFromPlatform(time_s);
+    };
+  }
+  const Motion motion =
+      CameraMotion(world_from_base, errors_.TrueMount(mount), options.navigation, seed);
   camera_ = std::make_unique<FlightCamera>(CameraModel(camera.intrinsics), lens, options.shutter,
                                            options.sensor, world_, motion);
 }
@@ -86,28 +115,51 @@ double SimulatedFlight::begin_s() const { return -kMargin_s; }
 
 std::string SimulatedFlight::SceneText(const std::string& kind) const {
   const Eigen::Vector3d& sun = world_.light.to_sun;
+  const RigidTransform& mount =
+      gimbal_ ? nominal_.gimbal->platform_from_camera : *nominal_.body_from_camera;
+  const char* const frames = gimbal_ ? "GS" : "BS";
   return fmt::format(
       "kind: {}\n"
       "seed: {}\n"
       "image_timestamp: middle of the exposure (of the middle row)\n"
       "time_offset_s: {}  # t_nav = t_image + time_offset_s\n"
-      "mount_error:  # R_BS_true = Rz(yaw) Ry(pitch) Rx(roll) R_BS_nominal, body frame\n"
+      "{}"
+      "mount_error:  # R_{}_true = Rz(yaw) Ry(pitch) Rx(roll) R_{}_nominal, {} frame\n"
       "  yaw_deg: {}\n  pitch_deg: {}\n  roll_deg: {}\n"
-      "true_T_BS:\n{}"
+      "true_T_{}:\n{}"
       "sun_direction: [{}, {}, {}]\n"
       "camera:\n{}",
-      kind, seed_, errors_.clock_offset_s, errors_.mount_yaw_deg, errors_.mount_pitch_deg,
-      errors_.mount_roll_deg, EurocTransformText(errors_.TrueMount(*nominal_.body_from_camera)),
-      sun.x(), sun.y(), sun.z(), Indented(EurocCameraText(nominal_, options_.rate_hz)));
+      kind, seed_, errors_.clock_offset_s,
+      gimbal_ ? fmt::format("gimbal_time_offset_s: {}  # t_nav = t_gimbal + gimbal_time_offset_s\n",
+                            -options_.gimbal.stamp_delay_s)
+              : "",
+      frames, frames, gimbal_ ? "platform" : "body", errors_.mount_yaw_deg, errors_.mount_pitch_deg,
+      errors_.mount_roll_deg, frames, EurocTransformText(errors_.TrueMount(mount)), sun.x(),
+      sun.y(), sun.z(), Indented(EurocCameraText(nominal_, options_.rate_hz)));
 }
 
 std::vector<RecordingFile> SimulatedFlight::Files() const {
   const double end_s = times_s_.back() + kMargin_s;
   const auto poses = navigation().ReportAll(world_from_body_, begin_s(), end_s);
-  return {{euroc::kCamera, EurocCameraText(nominal_, options_.rate_hz)},
-          {euroc::kPoseSensor, EurocPoseSensorText(options_.navigation.rate_hz)},
-          {euroc::kPoses, EurocPoseText(poses)},
-          {euroc::kTruePoses, TrueStateText(world_from_body_, begin_s(), end_s, times_s_)}};
+  std::vector<RecordingFile> files = {
+      {euroc::kCamera, EurocCameraText(nominal_, options_.rate_hz)},
+      {euroc::kPoseSensor, EurocPoseSensorText(options_.navigation.rate_hz)},
+      {euroc::kPoses, EurocPoseText(poses)},
+      {euroc::kTruePoses, TrueStateText(world_from_body_, begin_s(), end_s, times_s_)}};
+  if (gimbal_) AddGimbal(&files);
+  return files;
+}
+
+void SimulatedFlight::AddGimbal(std::vector<RecordingFile>* files) const {
+  const auto reports =
+      gimbal_->Reports(errors_.clock_offset_s, Radians(options_.navigation.world_yaw_deg),
+                       RandomOf(seed_, FlightPart::kGimbal));
+  constexpr double kTruth_hz = 200;
+  files->push_back({euroc::kGimbal, EurocGimbalText(reports)});
+  files->push_back({euroc::kTrueGimbal, EurocGimbalText(gimbal_->Truth(kTruth_hz))});
+  files->push_back(
+      {euroc::kGimbalSensor, EurocGimbalSensorText(*nominal_.gimbal, reports.front().yaw_frame,
+                                                   options_.gimbal.rate_hz)});
 }
 
 }  // namespace kestrel

@@ -14,6 +14,7 @@
 #include "kestrel/simulation/scene/drawing.h"
 #include "kestrel/simulation/scene/light_options.h"
 #include "kestrel/simulation/scene/motion.h"
+#include "kestrel/simulation/vehicle/gimbal_model.h"
 #include "kestrel/simulation/vehicle/navigation_model.h"
 
 namespace kestrel {
@@ -23,6 +24,7 @@ struct FlightRecordingOptions {
   int frames = 300;
   double rate_hz = 30;
   NavigationOptions navigation;
+  GimbalOptions gimbal;
   LensViewOptions lens;
   ShutterOptions shutter;
   SensorOptions sensor;
@@ -31,6 +33,7 @@ struct FlightRecordingOptions {
     visit("frames", self.frames, Range{1, 1e6}, "number of images");
     visit("rate_hz", self.rate_hz, Range{0.1, 1000}, "images per second");
     visit.Group("navigation", self.navigation);
+    visit.Group("gimbal", self.gimbal);
     visit.Group("lens", self.lens);
     visit.Group("shutter", self.shutter);
     visit.Group("sensor", self.sensor);
@@ -42,9 +45,11 @@ struct FlightRecordingOptions {
 // A flight through a world, with a camera and all errors of its navigation. Thread-safe.
 class SimulatedFlight {
  public:
-  // 'camera' has a mount, the nominal one; 'airframe' is in front of the lens.
+  // 'camera' has a mount, the nominal one; 'airframe' is in front of the lens. A gimbal looks at
+  // 'target'.
   SimulatedFlight(const FlightRecordingOptions& options, const CameraCalibration& camera,
-                  const Drawing& airframe, World world, Motion world_from_body, std::uint64_t seed);
+                  const Drawing& airframe, World world, Motion world_from_body, const Path& target,
+                  std::uint64_t seed);
   SimulatedFlight(const SimulatedFlight&) = delete;  // the camera refers to the world in it
   SimulatedFlight& operator=(const SimulatedFlight&) = delete;
 
@@ -66,10 +71,12 @@ class SimulatedFlight {
   // Returns the part of scene.yaml that all flights share; further lines may follow.
   std::string SceneText(const std::string& kind) const;
 
-  // cam0/sensor.yaml, nav0 and state_groundtruth_estimate0.
+  // cam0/sensor.yaml, nav0, gimbal0 if there is one, and state_groundtruth_estimate0.
   std::vector<RecordingFile> Files() const;
 
  private:
+  void AddGimbal(std::vector<RecordingFile>* files) const;
+
   FlightRecordingOptions options_;
   CameraCalibration nominal_;
   World world_;
@@ -78,6 +85,7 @@ class SimulatedFlight {
   NavigationErrors errors_;
   std::vector<double> times_s_;
   std::function<double(double time_s)> gain_;
+  std::shared_ptr<const SimulatedGimbal> gimbal_;  // null: the camera is fixed to the body
   std::unique_ptr<FlightCamera> camera_;
 };
 

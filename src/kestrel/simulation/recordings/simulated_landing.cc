@@ -14,8 +14,10 @@
 namespace kestrel {
 namespace {
 
-Drawing AirframeOf(const SurroundingsOptions& options, const CameraCalibration& camera) {
-  return options.landing_legs ? LandingLegs(camera.intrinsics, /*four=*/true) : Drawing();
+Drawing AirframeOf(const SurroundingsOptions& options, const CameraCalibration& camera,
+                   bool is_fixed) {
+  return options.landing_legs && is_fixed ? LandingLegs(camera.intrinsics, /*four=*/true)
+                                          : Drawing();
 }
 
 World WithUav(World world, const SurroundingsOptions& options, const Motion& world_from_uav) {
@@ -35,9 +37,9 @@ SimulatedLanding::SimulatedLanding(const FlightRecordingOptions& options,
     : print_(std::move(scene.print)),
       drawn_(fmt::format("drawn_arm_half_length_m: {}\n", scene.pattern.arm_half_length_m)),
       world_from_pattern_(std::move(scene.world_from_pattern)),
-      flight_(options, camera, AirframeOf(surroundings, camera),
-              WithUav(std::move(scene.world), surroundings, world_from_uav), world_from_uav, seed) {
-}
+      flight_(options, camera, AirframeOf(surroundings, camera, !options.gimbal.is_there()),
+              WithUav(std::move(scene.world), surroundings, world_from_uav), world_from_uav,
+              scene.target, seed) {}
 
 std::string SimulatedLanding::SceneText(const std::string& kind, const std::string& options) const {
   return flight_.SceneText(kind) + drawn_ + "options:\n" + Indented(options);

@@ -41,6 +41,7 @@ class HuntPipeline::Impl {
        const HuntPipelineOptions& options);
 
   PoseStatus AddPose(const PoseSample& sample) { return poses_.Add(sample); }
+  PoseStatus AddGimbal(const GimbalSample& sample) { return poses_.Add(sample); }
   void SetAltitude(std::optional<double> altitude_m) { altitude_m_ = altitude_m; }
   void ChangeOptions(const HuntPipelineOptions& options);
   const HuntObservation& Process(const cv::Mat& image, Time time);
@@ -100,8 +101,10 @@ void HuntPipeline::Impl::ChangeOptions(const HuntPipelineOptions& options) {
 const HuntObservation& HuntPipeline::Impl::Process(const cv::Mat& image, Time time) {
   observation_.time = time;
   observation_.world_from_camera.reset();
+  observation_.camera_from_body.reset();
   if (const auto camera = poses_.At(time)) {
     observation_.world_from_camera = camera->world_from_camera;
+    observation_.camera_from_body = camera->camera_from_body;
   }
   Detect(image);
   LocateInWorld();
@@ -259,6 +262,7 @@ HuntPipeline::HuntPipeline(HuntPipeline&&) noexcept = default;
 HuntPipeline& HuntPipeline::operator=(HuntPipeline&&) noexcept = default;
 
 PoseStatus HuntPipeline::AddPose(const PoseSample& sample) { return impl_->AddPose(sample); }
+PoseStatus HuntPipeline::AddGimbal(const GimbalSample& sample) { return impl_->AddGimbal(sample); }
 void HuntPipeline::SetAltitude(std::optional<double> altitude_m) { impl_->SetAltitude(altitude_m); }
 void HuntPipeline::ChangeOptions(const HuntPipelineOptions& options) {
   impl_->ChangeOptions(options);

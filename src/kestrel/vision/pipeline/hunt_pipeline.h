@@ -13,6 +13,7 @@
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/core/poses/gimbal_history.h"
 #include "kestrel/core/poses/pose_history.h"
 #include "kestrel/vision/mapping/object_map.h"
 #include "kestrel/vision/objects/object_detector.h"
@@ -70,6 +71,7 @@ struct HuntObservation {
   Time time;  // time of the frame on the images' clock
   ObjectReport report;
   std::optional<RigidTransform> world_from_camera;  // when there is a pose for this time
+  std::optional<RigidTransform> camera_from_body;   // as well
   // For each detection, in order: position and covariance in the world (ENU, m), when it has a
   // location and there is a pose. With a rolling shutter, the pose is that of its row.
   std::vector<std::optional<ObjectLocation>> in_world;
@@ -93,6 +95,8 @@ class HuntPipeline {
   // the last frame. A frame that arrives before the pose after its time has none, or a predicted
   // one.
   PoseStatus AddPose(const PoseSample& sample);
+  // Adds a report of the gimbal on which the calibration has the camera, in the same way.
+  PoseStatus AddGimbal(const GimbalSample& sample);
 
   // Sets the height (m) of the camera above the ground for frames without a pose; nothing when not
   // known. The camera is then assumed to look straight down.

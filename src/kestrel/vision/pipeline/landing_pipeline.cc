@@ -14,6 +14,15 @@
 #include "kestrel/vision/pipeline/world_location.h"
 
 namespace kestrel {
+namespace {
+
+// Nothing where the mount moves, or is not known.
+std::optional<RigidTransform> CameraFromBody(const CameraCalibration& calibration) {
+  if (calibration.gimbal || !calibration.body_from_camera) return std::nullopt;
+  return calibration.body_from_camera->Inverse();
+}
+
+}  // namespace
 
 const char* ToString(PositionMethod method) {
   return method == PositionMethod::kSize ? "size" : "altitude";
@@ -40,6 +49,7 @@ class LandingPipeline::Impl {
     pose_time_sigma_s_ = sample.time_sigma_s;
     return poses_.Add(sample);
   }
+  PoseStatus AddGimbal(const GimbalSample& sample) { return poses_.Add(sample); }
   void SetAltitude(std::optional<double> altitude_m) { altitude_m_ = altitude_m; }
   void LimitSearch(double max_search_ms) { max_search_ms_ = max_search_ms; }
   void ChangeOptions(const LandingPipelineOptions& options);
@@ -93,6 +103,7 @@ class LandingPipeline::Impl {
   std::unique_ptr<TargetWorkspace> workspace_;
   std::optional<Others> others_;  // nothing once the target was found
   CameraPoses poses_;
+  std::optional<RigidTransform> fixed_mount_;  // camera from body
   double pose_time_sigma_s_ = 0;
   std::optional<double> altitude_m_;
   TargetTracker tracker_;
@@ -117,6 +128,7 @@ LandingPipeline::Impl::Impl(const CameraCalibration& calibration,
       poses_(calibration, LandingPipelineOptions::kPoseCapacity,
              DurationFromSeconds(options.pose_gap_s), Duration::zero(),
              DurationFromSeconds(options.pose_extrapolation_s)),
+      fixed_mount_(CameraFromBody(calibration)),
       tracker_(options.tracker) {
   if (!is_detector_own_) others_ = OthersOf(detector_->camera(), options.target);
 }
@@ -153,8 +165,10 @@ void LandingPipeline::Impl::LookForOthers(const cv::Mat& image, LandingObservati
 LandingObservation LandingPipeline::Impl::Process(const cv::Mat& image, Time time) {
   LandingObservation observation;
   observation.time = time;
+  observation.camera_from_body = fixed_mount_;
   if (const auto camera = poses_.At(time)) {
     observation.world_from_camera = camera->world_from_camera;
+    observation.camera_from_body = camera->camera_from_body;
     observation.pose_uncertainty = camera->uncertainty;
   }
   observation.pose = poses_.Check(time);
@@ -341,6 +355,9 @@ LandingPipeline::LandingPipeline(LandingPipeline&&) noexcept = default;
 LandingPipeline& LandingPipeline::operator=(LandingPipeline&&) noexcept = default;
 
 PoseStatus LandingPipeline::AddPose(const PoseSample& sample) { return impl_->AddPose(sample); }
+PoseStatus LandingPipeline::AddGimbal(const GimbalSample& sample) {
+  return impl_->AddGimbal(sample);
+}
 void LandingPipeline::SetAltitude(std::optional<double> altitude_m) {
   impl_->SetAltitude(altitude_m);
 }

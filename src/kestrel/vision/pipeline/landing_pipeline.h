@@ -14,6 +14,7 @@
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/core/poses/gimbal_history.h"
 #include "kestrel/core/poses/pose_history.h"
 #include "kestrel/vision/landing/landing_pattern_detector.h"
 #include "kestrel/vision/pipeline/measurement_noise.h"
@@ -92,8 +93,10 @@ struct LandingObservation {
   // With a miss, as long as the target was never found: another tag that was read.
   std::optional<OtherTag> other_tag = {};
   std::optional<RigidTransform> world_from_camera;  // when there is a pose for this time
-  PoseLookup pose = PoseLookup::kEmpty;             // whether there is a pose, or why not
-  PoseUncertainty pose_uncertainty;                 // uncertainty of a predicted pose
+  // The mount; on a gimbal only when there is a pose for this time.
+  std::optional<RigidTransform> camera_from_body;
+  PoseLookup pose = PoseLookup::kEmpty;  // whether there is a pose, or why not
+  PoseUncertainty pose_uncertainty;      // uncertainty of a predicted pose
   // With a detection and a pose: the pattern's centre in the world (ENU, m), the method, and the
   // yaw of the pattern, see PatternYaw, if it has one.
   std::optional<Eigen::Vector3d> center_in_world;
@@ -131,6 +134,8 @@ class LandingPipeline {
   // the last frame. A frame that arrives before the pose after its time has none, or a predicted
   // one.
   PoseStatus AddPose(const PoseSample& sample);
+  // Adds a report of the gimbal on which the calibration has the camera, in the same way.
+  PoseStatus AddGimbal(const GimbalSample& sample);
 
   // Sets the height (m) of the camera above the pattern for frames without a pose; nothing when not
   // known.

@@ -38,6 +38,7 @@ CalibrationResult MountAndClockOf(const RecordingChoice& source,
   const std::string& name = source.sources.front();
   CalibrationResult result{{}, opened.calibration, opened.source->rate_hz()};
   const MountAndClock given = GivenMountAndClock(opened.calibration, name);
+  const auto gimbal = FlownGimbalOf(opened.calibration, opened.source->gimbal(), name);
   const std::vector<PoseSample> poses = RequirePoses(*opened.source, name);
   const CameraIntrinsics& camera = opened.calibration.intrinsics;
   FlightSightings flight(camera, landing);
@@ -50,7 +51,8 @@ CalibrationResult MountAndClockOf(const RecordingChoice& source,
   options.estimate_clock = request.clock;
   if (request.moving) options.knot_spacing_s = kMovingKnotSpacing_s;
   try {
-    const FlightCalibration found = CalibrateFlight(flight.sightings(), poses, given, options);
+    const FlightCalibration found =
+        CalibrateFlight(flight.sightings(), poses, given, options, gimbal);
     AddFlight(found, options, given, &result.report);
     SetMountAndClock(found.estimate, &result.calibration);
   } catch (const InputError& error) {  // the coverage is shown all the same

@@ -22,15 +22,15 @@ constexpr Duration kAnswerInterval = std::chrono::milliseconds(50);
 constexpr Duration kReturn = std::chrono::seconds(20);
 constexpr Duration kLastWords = std::chrono::milliseconds(300);
 
-ConsoleFeed::Description DescriptionOf(const std::string& title, const FlightView& view,
+ConsoleFeed::Description DescriptionOf(const std::string& title, const TaskView& view,
                                        bool has_colors) {
-  const bool is_hunt = std::holds_alternative<HuntView>(view);
+  const ViewParts parts = PartsOf(view);
   ConsoleFeed::Description description{
       .title = title,
       .is_live = true,
-      .series = is_hunt ? HuntSeries() : LandingSeries(),
-      .layers = is_hunt ? HuntLayers() : LandingLayers(),
-      .views = is_hunt ? HuntImageViews(std::get<HuntView>(view)) : LandingImageViews(),
+      .series = parts.series,
+      .layers = parts.layers,
+      .views = parts.images,
       .offers = {ConsoleCommandKind::kRecord, ConsoleCommandKind::kSnapshot,
                  ConsoleCommandKind::kSettings},
       .has_colors = has_colors};
@@ -44,7 +44,7 @@ ConsoleFeed::Description DescriptionOf(const std::string& title, const FlightVie
 // Makes the content of the page; used by one thread.
 class FlightConsole::Page : public SinkWriter {
  public:
-  Page(FlightConsole* console, FlightView view, FlightExamination examination)
+  Page(FlightConsole* console, TaskView view, FlightExamination examination)
       : console_(*console),
         feed_(console->feed_),
         view_(std::move(view)),
@@ -53,13 +53,8 @@ class FlightConsole::Page : public SinkWriter {
   void Write(const Observation& observation, std::size_t /*waiting*/) override {
     frame_.captured = observation.frame.time;
     frame_.image = observation.frame.image;
-    const Duration latency = observation.latency.value_or(Duration::zero());
-    std::visit(
-        [&](const auto& seen) {
-          sources_.Look(frame_.captured, seen.world_from_camera.has_value());
-          Show(seen, latency);
-        },
-        observation.seen);
+    sources_.Look(frame_.captured, WorldFromCamera(observation).has_value());
+    Show(observation);
     examination_.Look(frame_.image, Now());
     {
       const std::lock_guard lock(console_.mutex_);
@@ -86,21 +81,15 @@ class FlightConsole::Page : public SinkWriter {
   }
 
  private:
-  void Show(const LandingObservation& observation, Duration latency) {
-    const LandingView& view = std::get<LandingView>(view_);
-    examination_.Look(observation);
-    frame_.shapes = LandingShapes(view, observation);
-    AddSample(LandingSample(observation), latency);
-    feed_.Add(LandingMap(view, observation));
-    vision_ = LandingStatus(observation);
-  }
-
-  void Show(const HuntObservation& observation, Duration latency) {
-    const HuntView& view = std::get<HuntView>(view_);
-    frame_.shapes = HuntShapes(view, observation);
-    AddSample(HuntSample(observation), latency);
-    feed_.Add(HuntMap(view, observation));
-    vision_ = HuntStatus(observation);
+  void Show(const Observation& observation) {
+    if (const auto* const landing = std::get_if<LandingObservation>(&observation.seen)) {
+      examination_.Look(*landing);
+    }
+    ViewFrame shown = ViewFrameOf(view_, observation);
+    frame_.shapes = std::move(shown.shapes);
+    AddSample(std::move(shown.sample), observation.latency.value_or(Duration::zero()));
+    feed_.Add(std::move(shown.map));
+    vision_ = std::move(shown.status);
   }
 
   void AddSample(ViewSample sample, Duration latency) {
@@ -138,7 +127,7 @@ class FlightConsole::Page : public SinkWriter {
 
   FlightConsole& console_;
   ConsoleFeed& feed_;
-  FlightView view_;
+  TaskView view_;
   ConsoleFrame frame_;
   FlightExamination examination_;
   Time examined_{};
@@ -151,7 +140,7 @@ class FlightConsole::Page : public SinkWriter {
 };
 
 FlightConsole::FlightConsole(const ConsoleOptions& options, const std::string& title,
-                             const FlightView& view, FlightExamination examination,
+                             const TaskView& view, FlightExamination examination,
                              ChannelFeed* channels, std::optional<FlightColors> colors)
     : feed_(DescriptionOf(title, view, colors.has_value())),
       arrivals_(kArrivals),
@@ -167,7 +156,7 @@ FlightConsole::FlightConsole(const ConsoleOptions& options, const std::string& t
 }
 
 // The page begins with the model that the flight uses.
-void FlightConsole::TeachColors(const FlightColors& colors, const FlightView& view) {
+void FlightConsole::TeachColors(const FlightColors& colors, const TaskView& view) {
   kept_.emplace(colors.frames);
   const auto keep = [this] {
     const Image newest = Newest();

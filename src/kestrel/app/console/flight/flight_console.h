@@ -15,8 +15,7 @@
 #include "kestrel/app/console/colors/kept_frames.h"
 #include "kestrel/app/console/flight/flight_health.h"
 #include "kestrel/app/console/messages/console_feed.h"
-#include "kestrel/app/views/hunt_view.h"
-#include "kestrel/app/views/landing_view.h"
+#include "kestrel/app/views/task_view.h"
 #include "kestrel/app/web_server/console_options.h"
 #include "kestrel/app/web_server/web_server.h"
 #include "kestrel/core/base/bounded_queue.h"
@@ -24,9 +23,6 @@
 #include "kestrel/flight/session/asynchronous_sink.h"
 
 namespace kestrel {
-
-// The view of a flight: of a landing or of a hunt.
-using FlightView = std::variant<LandingView, HuntView>;
 
 // Requests that the page may make of a flight. Each returns a sentence that says what was done, and
 // throws InputError when it cannot be done. They may block.
@@ -52,7 +48,7 @@ class FlightConsole : public ObservationSink {
   // Starts the server. 'title': title of the page. 'channels' as for WebServer. 'colors': for a
   // hunt only; the page then teaches its model's colours. Throws InputError as WebServer and
   // ColorPage do.
-  FlightConsole(const ConsoleOptions& options, const std::string& title, const FlightView& view,
+  FlightConsole(const ConsoleOptions& options, const std::string& title, const TaskView& view,
                 FlightExamination examination, ChannelFeed* channels = nullptr,
                 std::optional<FlightColors> colors = std::nullopt);
   ~FlightConsole() override { Finish(); }
@@ -86,7 +82,7 @@ class FlightConsole : public ObservationSink {
   };
   class Page;
 
-  void TeachColors(const FlightColors& colors, const FlightView& view);
+  void TeachColors(const FlightColors& colors, const TaskView& view);
   Image Newest();
   void Answer(const FlightRequests& requests, const ConsoleCommand& command);
   void KeepSnapshot(const FlightRequests& requests);

@@ -9,7 +9,6 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 
 #include <fmt/format.h>
 
@@ -17,7 +16,7 @@
 #include "kestrel/app/evaluation/hunt_result.h"
 #include "kestrel/app/evaluation/object_comparison.h"
 #include "kestrel/core/base/read_file.h"
-#include "kestrel/flight/session/hunt_run.h"
+#include "kestrel/flight/session/hunt_task.h"
 #include "kestrel/io/recording/tables/csv_columns.h"
 #include "kestrel/io/recording/tables/csv_table.h"
 #include "kestrel/io/recording/tables/object_csv.h"
@@ -78,7 +77,7 @@ void AddTruth(const Comparisons& comparisons, const std::vector<TrueSighting>& s
 void MarkByObjects(const std::string& recording, ReplayResult* result) {
   const FlightTruth flight(recording);
   const auto [objects, sightings] = ReadObjectTruth(flight.root());
-  const std::string name = "object_detections.csv";
+  const std::string name = kObjectTable;
   std::map<Time, Comparisons> by_frame;
   for (ObjectComparison& comparison :
        CompareObjects(flight, objects, sightings, ParseObjectRows(result->table, name), name)) {
@@ -86,48 +85,6 @@ void MarkByObjects(const std::string& recording, ReplayResult* result) {
   }
   for (ReplayFrame& frame : result->frames) AddTruth(by_frame[frame.time], sightings, &frame);
 }
-
-class HuntReplay : public ReplayRun {
- public:
-  using MakeMap = std::function<std::vector<MapEntry>()>;
-
-  // 'truth': the recording that has it. 'table': the detections of an earlier run; empty: it is
-  // made from the observations. 'make_map': called after the last frame.
-  HuntReplay(std::unique_ptr<Vision> vision, HuntView view, std::optional<std::string> truth,
-             const std::string& table, MakeMap make_map)
-      : ReplayRun(std::move(vision)),
-        view_(std::move(view)),
-        truth_(std::move(truth)),
-        makes_table_(table.empty()),
-        make_map_(std::move(make_map)) {
-    result()->table = makes_table_ ? ObjectCsvHeader() : table;
-  }
-
-  void Take(const Observation& observation) override {
-    const auto& seen = std::get<HuntObservation>(observation.seen);
-    if (makes_table_) {
-      result()->table += ObjectCsvRows(observation.frame.name, seen, view_.model);
-    }
-    result()->frames.push_back(ReplayFrameOf(view_, seen));
-  }
-  void Take(const BrokenFrame& broken) override {
-    HuntObservation nothing;
-    nothing.time = broken.time;
-    if (makes_table_) result()->table += ObjectCsvRows(broken.name, nothing, view_.model);
-    result()->frames.push_back(BrokenReplayFrame(ReplayFrameOf(view_, nothing), broken));
-  }
-
- private:
-  void Complete(ReplayResult* result) override {
-    if (truth_) MarkByObjects(*truth_, result);
-    result->map = make_map_();
-  }
-
-  HuntView view_;
-  std::optional<std::string> truth_;
-  bool makes_table_;
-  MakeMap make_map_;
-};
 
 // The map beside the table of an earlier run, if there is one.
 std::vector<MapEntry> EarlierMap(const std::string& table) {
@@ -153,14 +110,13 @@ class ObjectSearch : public ReplaySearch {
   }
 
   StartRun Detect(const std::vector<std::string>& settings) const override {
-    return [this, options = WithSettings(options_, settings)](const OpenedSource& opened) {
-      auto hunt =
-          std::make_unique<HuntRun>(opened, model_, ColorGrid(model_.colors), options, altitude_m_);
-      const auto map = [this, &pipeline = hunt->pipeline()] {
-        return StandingObjects(ObjectMapCsv(pipeline.map().Confirmed(), model_), "map");
+    return [this,
+            task = HuntTask(WithSettings(options_, settings), model_)](const OpenedSource& opened) {
+      auto session = std::make_unique<RecordedSession>(opened, task, altitude_m_);
+      const auto map = [this, objects = session->vision().map()] {
+        return StandingObjects(ObjectMapCsv(objects->Confirmed(), model_), "map");
       };
-      return std::make_unique<HuntReplay>(std::move(hunt), HuntView{model_}, truth_, /*table=*/"",
-                                          map);
+      return ReplayRun(std::move(session), HuntView{model_}, /*table=*/"", Completion(map));
     };
   }
 
@@ -170,12 +126,20 @@ class ObjectSearch : public ReplaySearch {
       const HuntResult& result = earlier->result();
       const HuntView view{result.model()};
       const std::string text = result.text();
-      return std::make_unique<HuntReplay>(std::move(earlier), view, truth_, text,
-                                          [table] { return EarlierMap(table); });
+      return ReplayRun(std::make_unique<RecordedSession>(opened, std::move(earlier)), view, text,
+                       Completion([table] { return EarlierMap(table); }));
     };
   }
 
  private:
+  // 'make_map': called after the last frame.
+  ReplayFrames::Complete Completion(std::function<std::vector<MapEntry>()> make_map) const {
+    return [truth = truth_, make_map = std::move(make_map)](ReplayResult* result) {
+      if (truth) MarkByObjects(*truth, result);
+      result->map = make_map();
+    };
+  }
+
   HuntPipelineOptions options_;
   ObjectModel model_;
   std::optional<double> altitude_m_;

@@ -5,7 +5,6 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 
 #include <fmt/format.h>
 
@@ -13,7 +12,7 @@
 #include "kestrel/app/evaluation/land_result.h"
 #include "kestrel/app/evaluation/landing_comparison.h"
 #include "kestrel/core/base/read_file.h"
-#include "kestrel/flight/session/landing_run.h"
+#include "kestrel/flight/session/land_task.h"
 #include "kestrel/io/recording/tables/landing_csv.h"
 
 namespace kestrel {
@@ -51,50 +50,11 @@ void AddTruth(const LandingComparison& comparison, ReplayFrame* frame) {
 void MarkByPatterns(const std::string& recording, ReplayResult* result) {
   const FlightTruth flight(recording);
   const std::string file = (std::filesystem::path(flight.root()) / kTruePatterns).string();
-  const std::string name = "landing_detections.csv";
+  const std::string name = kLandingTable;
   const auto comparisons = CompareLanding(flight, ParseTruePatterns(ReadFile(file), file),
                                           ParseDetectionRows(result->table, name), name);
   for (std::size_t i = 0; i < comparisons.size(); ++i) AddTruth(comparisons[i], &result->frames[i]);
 }
-
-class LandingReplay : public ReplayRun {
- public:
-  // 'truth': the recording that has it. 'table': the detections of an earlier run; empty: it is
-  // made from the observations.
-  LandingReplay(std::unique_ptr<Vision> vision, LandingView view, std::optional<std::string> truth,
-                const std::string& table)
-      : ReplayRun(std::move(vision)),
-        view_(std::move(view)),
-        truth_(std::move(truth)),
-        makes_table_(table.empty()) {
-    result()->table = makes_table_ ? LandingCsvHeader() : table;
-  }
-
-  void Take(const Observation& observation) override {
-    const auto& seen = std::get<LandingObservation>(observation.seen);
-    if (makes_table_) result()->table += LandingCsvRow(observation.frame.name, seen);
-    result()->frames.push_back(ReplayFrameOf(view_, seen));
-  }
-  void Take(const BrokenFrame& broken) override {
-    if (makes_table_) result()->table += UnreadableLandingCsvRow(broken.name, broken.time);
-    LandingObservation nothing;
-    nothing.time = broken.time;
-    result()->frames.push_back(BrokenReplayFrame(ReplayFrameOf(view_, nothing), broken));
-  }
-
- private:
-  void Complete(ReplayResult* result) override {
-    if (truth_) {
-      MarkByPatterns(*truth_, result);
-    } else {
-      MarkLost(&result->frames);
-    }
-  }
-
-  LandingView view_;
-  std::optional<std::string> truth_;
-  bool makes_table_;
-};
 
 class PatternSearch : public ReplaySearch {
  public:
@@ -110,10 +70,9 @@ class PatternSearch : public ReplaySearch {
   }
 
   StartRun Detect(const std::vector<std::string>& settings) const override {
-    return [this, options = WithSettings(options_, settings)](const OpenedSource& opened) {
-      return std::make_unique<LandingReplay>(
-          std::make_unique<LandingRun>(opened, options, altitude_m_),
-          ViewOf(opened.calibration, options), truth_, /*table=*/"");
+    return [this, task = LandTask(WithSettings(options_, settings))](const OpenedSource& opened) {
+      return ReplayRun(std::make_unique<RecordedSession>(opened, task, altitude_m_),
+                       ViewOf(opened.calibration, task.options()), /*table=*/"", Completion());
     };
   }
 
@@ -121,12 +80,19 @@ class PatternSearch : public ReplaySearch {
     return [this, table](const OpenedSource& opened) {
       auto earlier = std::make_unique<EarlierResults<LandResult>>(table, opened, options_);
       const std::string text = earlier->result().text();
-      return std::make_unique<LandingReplay>(std::move(earlier),
-                                             ViewOf(opened.calibration, options_), truth_, text);
+      return ReplayRun(std::make_unique<RecordedSession>(opened, std::move(earlier)),
+                       ViewOf(opened.calibration, options_), text, Completion());
     };
   }
 
  private:
+  ReplayFrames::Complete Completion() const {
+    return [truth = truth_](ReplayResult* result) {
+      if (truth) return MarkByPatterns(*truth, result);
+      MarkLost(&result->frames);
+    };
+  }
+
   LandingPipelineOptions options_;
   std::optional<double> altitude_m_;
   std::optional<std::string> truth_;  // the recording that has the truth

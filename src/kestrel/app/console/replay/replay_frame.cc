@@ -3,39 +3,26 @@
 
 #include <algorithm>
 #include <utility>
+#include <variant>
 
 namespace kestrel {
+namespace {
 
-ReplayFrame ReplayFrameOf(const LandingView& view, const LandingObservation& observation) {
-  ReplayFrame frame;
-  frame.time = observation.time;
-  if (observation.report.detection) {
-    const bool is_far = observation.fate == MeasurementFate::kFarFromTrack;
-    frame.mark = is_far ? FrameMark::kFalse : FrameMark::kFound;
-  }
-  frame.sample = LandingSample(observation);
-  frame.status = LandingStatus(observation);
-  frame.map = LandingMap(view, observation);
-  frame.shapes = LandingShapes(view, observation);
-  frame.facts = LandingFacts(observation);
-  return frame;
+FrameMark MarkOf(const LandingObservation& observation) {
+  if (!observation.report.detection) return FrameMark::kNothing;
+  const bool is_far = observation.fate == MeasurementFate::kFarFromTrack;
+  return is_far ? FrameMark::kFalse : FrameMark::kFound;
 }
 
-ReplayFrame ReplayFrameOf(const HuntView& view, const HuntObservation& observation) {
-  ReplayFrame frame;
-  frame.time = observation.time;
-  if (!observation.report.detections.empty()) frame.mark = FrameMark::kFound;
-  frame.sample = HuntSample(observation);
-  frame.status = HuntStatus(observation);
-  frame.map = HuntMap(view, observation);
-  frame.shapes = HuntShapes(view, observation);
-  frame.facts = HuntFacts(view, observation);
-  return frame;
+FrameMark MarkOf(const HuntObservation& observation) {
+  return observation.report.detections.empty() ? FrameMark::kNothing : FrameMark::kFound;
 }
 
-ReplayFrame BrokenReplayFrame(ReplayFrame nothing, const BrokenFrame& broken) {
-  nothing.facts = {{"image", "unreadable: " + broken.fault}};
-  return nothing;
+}  // namespace
+
+ReplayFrame ReplayFrameOf(const TaskView& view, const Observation& observation) {
+  const auto mark_of = [](const auto& seen) { return MarkOf(seen); };
+  return {ViewFrameOf(view, observation), std::visit(mark_of, observation.seen)};
 }
 
 std::vector<OverlayShape> ShapesOf(const ReplayResult& first, const ReplayResult* second,

@@ -7,32 +7,20 @@
 #include <vector>
 
 #include "kestrel/app/console/messages/console_feed.h"
-#include "kestrel/app/views/hunt_view.h"
-#include "kestrel/app/views/landing_view.h"
+#include "kestrel/app/views/task_view.h"
 #include "kestrel/flight/session/observation.h"
 
 namespace kestrel {
 
-// A frame of a recording as the page shows it, for landings and hunts alike.
-struct ReplayFrame {
-  Time time;
+// A frame as the page shows it, of any task.
+struct ReplayFrame : ViewFrame {
   FrameMark mark = FrameMark::kNothing;
-  std::optional<double> error_px;  // error of the detected centre, where the truth is known
-  ViewSample sample;
-  ViewStatus status;
-  ViewMap map;
-  std::vector<OverlayShape> shapes;
-  std::vector<ViewFact> facts;
+  std::optional<double> error_px = {};  // of the detected centre, where the truth is known
 };
 
 // Makes a frame without using the truth. Its mark is kFound when the pattern, or any object, was
-// found, and kFalse when the track rejects the pattern.
-ReplayFrame ReplayFrameOf(const LandingView& view, const LandingObservation& observation);
-ReplayFrame ReplayFrameOf(const HuntView& view, const HuntObservation& observation);
-
-// Returns the frame of an image that cannot be read, which says so; 'nothing' is one in which
-// nothing was found.
-ReplayFrame BrokenReplayFrame(ReplayFrame nothing, const BrokenFrame& broken);
+// found, and kFalse when the track rejects the pattern. 'observation': of the view's kind.
+ReplayFrame ReplayFrameOf(const TaskView& view, const Observation& observation);
 
 // An object of a hunt's map and the time at which the map gets it.
 struct MapEntry {

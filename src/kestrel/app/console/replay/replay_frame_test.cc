@@ -29,7 +29,7 @@ TEST(MarkLostTest, MarksGapsAsLostAndRejectedDetectionsAsFalse) {
       detection.camera_from_pattern.translation = {0, 0, 3};
     }
     if (i == 6) observation.fate = MeasurementFate::kFarFromTrack;
-    frames.push_back(ReplayFrameOf(PaperView(), observation));
+    frames.push_back(ReplayFrameOf(PaperView(), {{}, observation}));
   }
   MarkLost(&frames);
   EXPECT_EQ(Marks(frames), "---fflxllf--");
@@ -51,7 +51,7 @@ TEST(ReplayFrameTest, ShowsObjectsOfHunt) {
   view.model.classes.resize(2);
   view.model.classes[1].name = "blue";
   HuntObservation observation;
-  EXPECT_EQ(ReplayFrameOf(view, observation).mark, FrameMark::kNothing);
+  EXPECT_EQ(ReplayFrameOf(view, {{}, observation}).mark, FrameMark::kNothing);
   observation.world_from_camera.emplace().translation = {1, 2, 5};
   ObjectDetection& found = observation.report.detections.emplace_back();
   found.class_index = 1;
@@ -60,7 +60,7 @@ TEST(ReplayFrameTest, ShowsObjectsOfHunt) {
   ObjectLocation place;
   place.position = {3, 4, 0};
   observation.in_world.emplace_back(place);
-  const ReplayFrame frame = ReplayFrameOf(view, observation);
+  const ReplayFrame frame = ReplayFrameOf(view, {{}, observation});
   EXPECT_EQ(frame.mark, FrameMark::kFound);
   ASSERT_EQ(frame.shapes.size(), 1u);
   EXPECT_EQ(frame.shapes[0].label, "blue 0.88");

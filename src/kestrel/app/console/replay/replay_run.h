@@ -2,44 +2,72 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
+#include <variant>
 
 #include "kestrel/app/console/replay/replay_frame.h"
+#include "kestrel/app/views/task_view.h"
 #include "kestrel/core/base/time.h"
-#include "kestrel/flight/session/observation_sink.h"
-#include "kestrel/flight/session/vision.h"
+#include "kestrel/flight/session/recorded_session.h"
 #include "kestrel/io/bags/open_recording.h"
 #include "kestrel/vision/pipeline/camera_poses.h"
 
 namespace kestrel {
 
-// A run over a recording whose frames are kept for the page: its vision, and the sink of the
-// vision.
-class ReplayRun : public ObservationSink {
+// Keeps the frames of a session over a recording for the page.
+class ReplayFrames : public ObservationSink {
  public:
-  explicit ReplayRun(std::unique_ptr<Vision> vision) : vision_(std::move(vision)) {}
+  // Adds what is known only after the last frame.
+  using Complete = std::function<void(ReplayResult* result)>;
 
-  Vision* vision() { return vision_.get(); }
+  // 'table': of an earlier run; empty: 'vision', which outlives this, makes it.
+  ReplayFrames(TaskView view, const Vision& vision, const std::string& table, Complete complete)
+      : view_(std::move(view)), table_(table), complete_(std::move(complete)) {
+    if (table.empty()) tables_ = vision.MakeTables({.stream = &table_});
+  }
+
+  void Take(const Observation& observation) override {
+    if (tables_) tables_->Take(observation);
+    result_.frames.push_back(ReplayFrameOf(view_, observation));
+  }
+  void Take(const BrokenFrame& broken) override {
+    if (tables_) tables_->Take(broken);
+    result_.frames.push_back({ViewFrameOf(view_, broken)});
+  }
+
   std::size_t done() const { return result_.frames.size(); }
 
   // Call it once, after the last frame. Returns all frames with their marks. Throws InputError when
   // the truth belongs to another recording.
   ReplayResult TakeResult() {
-    Complete(&result_);
+    result_.table = table_.str();
+    complete_(&result_);
     return std::move(result_);
   }
 
- protected:
-  ReplayResult* result() { return &result_; }
-  // Adds what is known only after the last frame.
-  virtual void Complete(ReplayResult* result) = 0;
-
  private:
-  std::unique_ptr<Vision> vision_;
+  TaskView view_;
+  std::ostringstream table_;
+  std::unique_ptr<ObservationSink> tables_;  // null: of an earlier run
+  Complete complete_;
   ReplayResult result_;
+};
+
+// A run over a recording whose frames are kept.
+struct ReplayRun {
+  ReplayRun(std::unique_ptr<RecordedSession> run, TaskView view, const std::string& table,
+            ReplayFrames::Complete complete)
+      : session(std::move(run)),
+        frames(session->sinks().Add(std::make_unique<ReplayFrames>(
+            std::move(view), session->vision(), table, std::move(complete)))) {}
+
+  std::unique_ptr<RecordedSession> session;
+  ReplayFrames* frames;  // of the session's sinks
 };
 
 // The results of an earlier run, in place of a pipeline. 'Result': LandResult or HuntResult.
@@ -56,6 +84,7 @@ class EarlierResults : public Vision {
                Duration::zero(), Duration::zero()) {}
 
   void AddPose(const PoseSample& pose) override { poses_.Add(pose); }
+  void AddGimbal(const GimbalSample& sample) override { poses_.Add(sample); }
   Duration pose_lead() const override { return clock_offset_; }
   Observation Process(const Frame& frame) override {
     const auto camera = poses_.At(frame.time);

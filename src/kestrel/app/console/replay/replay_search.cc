@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include "kestrel/app/console/replay/frame_winder.h"
-#include "kestrel/flight/session/recorded_session.h"
 #include "kestrel/io/recording/euroc/euroc_recording.h"
 
 namespace kestrel {
@@ -15,9 +14,9 @@ std::optional<ReplayResult> DetectAgain(const RecordingChoice& choice,
                                         const ReplaySearch::StartRun& start,
                                         const SecondRun::GoOn& go_on) {
   const OpenedSource opened = OpenRecording(choice);
-  const std::unique_ptr<ReplayRun> run = start(opened);
-  if (!RunRecording(opened, run->vision(), run.get(), go_on)) return std::nullopt;
-  return run->TakeResult();
+  const ReplayRun run = start(opened);
+  if (!run.session->Run(go_on)) return std::nullopt;
+  return run.frames->TakeResult();
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace kestrel {
 // The search of `kestrel console` in a recording. It outlives the runs and the subject it gives.
 class ReplaySearch {
  public:
-  using StartRun = std::function<std::unique_ptr<ReplayRun>(const OpenedSource& opened)>;
+  using StartRun = std::function<ReplayRun(const OpenedSource& opened)>;
 
   virtual ~ReplaySearch() = default;
 

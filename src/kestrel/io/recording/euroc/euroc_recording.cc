@@ -4,8 +4,13 @@
 #include <filesystem>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/base/load_yaml.h"
 #include "kestrel/core/base/read_file.h"
+#include "kestrel/core/base/shown.h"
+#include "kestrel/core/camera/calibration_entry.h"
 #include "kestrel/io/recording/euroc/recording_place.h"
 #include "kestrel/io/recording/tables/csv_columns.h"
 #include "kestrel/io/recording/tables/csv_table.h"
@@ -14,6 +19,21 @@ namespace kestrel {
 namespace {
 
 namespace fs = std::filesystem;
+
+YawFrame ReadYawFrame(const std::string& file) {
+  const CalibrationEntry sensor(LoadYaml(ReadFile(file), file), file);
+  const CalibrationEntry entry = sensor.Get({"yaw_frame"}, "earth or vehicle");
+  for (const YawFrame frame : {YawFrame::kEarth, YawFrame::kVehicle}) {
+    if (entry.Text() == ToString(frame)) return frame;
+  }
+  entry.Fail(fmt::format("is '{}', expected earth or vehicle", Shown(entry.Text())));
+}
+
+std::vector<GimbalSample> ReadGimbal(const fs::path& folder) {
+  const std::string rows = (folder / "data.csv").string();
+  if (!fs::exists(rows)) return {};
+  return ParseGimbalRows(ReadFile(rows), rows, ReadYawFrame((folder / "sensor.yaml").string()));
+}
 
 }  // namespace
 
@@ -36,6 +56,18 @@ std::vector<PoseSample> ParsePoseRows(std::string_view text, const std::string& 
   std::vector<PoseSample> samples;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     samples.push_back({times[row], columns.Parse(row)});
+  }
+  return samples;
+}
+
+std::vector<GimbalSample> ParseGimbalRows(std::string_view text, const std::string& file,
+                                          YawFrame yaw_frame) {
+  const CsvTable table(text, file);
+  const std::vector<Time> times = ParseTimes(table, "timestamp [ns]");
+  const QuaternionColumns attitude(table, "q_WG");
+  std::vector<GimbalSample> samples;
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    samples.push_back({times[row], attitude.Parse(row), yaw_frame});
   }
   return samples;
 }
@@ -70,7 +102,7 @@ ImageSequence OpenEurocRecording(const std::string& folder) {
   std::vector<PoseSample> poses;
   if (fs::exists(navigation)) poses = ParsePoseRows(ReadFile(navigation), navigation);
   return ImageSequence(std::move(items), fs::exists(calibration) ? calibration.string() : "",
-                       std::move(poses));
+                       std::move(poses), ReadGimbal(fs::path(*root) / "gimbal0"));
 }
 
 }  // namespace kestrel

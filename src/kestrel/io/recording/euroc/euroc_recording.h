@@ -24,12 +24,16 @@ struct ImageRow {
 std::vector<ImageRow> ParseImageRows(std::string_view text, const std::string& file);
 std::vector<PoseSample> ParsePoseRows(std::string_view text, const std::string& file,
                                       const std::string& frames = "WB");
+// Parses the text of gimbal0/data.csv, with the yaw frame that sensor.yaml says, in the same way.
+std::vector<GimbalSample> ParseGimbalRows(std::string_view text, const std::string& file,
+                                          YawFrame yaw_frame);
 
 // Returns the folder of cam0: 'folder' itself or its mav0; nothing when it is not a recording.
 std::optional<std::string> FindEurocRoot(const std::string& folder);
 
 // Opens a recording in the EuRoC / ASL layout: cam0 (data.csv, data/, sensor.yaml) and, if there,
-// nav0/data.csv. Throws InputError when 'folder' is not a recording or its files are not valid.
+// nav0/data.csv and gimbal0 (data.csv, sensor.yaml). Throws InputError when 'folder' is not a
+// recording or its files are not valid.
 ImageSequence OpenEurocRecording(const std::string& folder);
 
 }  // namespace kestrel

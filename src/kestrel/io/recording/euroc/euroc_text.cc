@@ -6,6 +6,31 @@
 #include <fmt/ranges.h>
 
 namespace kestrel {
+namespace {
+
+std::string PivotText(const GimbalMount& gimbal) {
+  std::string text = "T_BG:\n" + EurocTransformText(gimbal.body_from_pivot);
+  text += fmt::format("time_offset_s: {}\n", ToSeconds(gimbal.clock_offset));
+  if (gimbal.device_id != 0) text += fmt::format("device_id: {}\n", gimbal.device_id);
+  return text;
+}
+
+std::string Indented(const std::string& lines) {
+  std::string text = "  " + lines;
+  for (std::size_t at = text.find('\n'); at + 1 < text.size(); at = text.find('\n', at + 1)) {
+    text.insert(at + 1, "  ");
+  }
+  return text;
+}
+
+std::string GimbalCameraText(const GimbalMount& gimbal, GimbalPlace place) {
+  const std::string text = "T_GS:\n" + EurocTransformText(gimbal.platform_from_camera);
+  if (place == GimbalPlace::kFolder) return text + "gimbal: gimbal0\n";
+  return text + "gimbal:\n" + Indented(PivotText(gimbal));
+}
+
+}  // namespace
+
 const char* DistortionName(DistortionModel model) {
   switch (model) {
     case DistortionModel::kEquidistant:
@@ -25,7 +50,8 @@ std::string EurocTransformText(const RigidTransform& transform) {
   return fmt::format("  cols: 4\n  rows: 4\n  data: [{}]\n", fmt::join(first, first + 16, ", "));
 }
 
-std::string EurocCameraText(const CameraCalibration& calibration, double rate_hz) {
+std::string EurocCameraText(const CameraCalibration& calibration, double rate_hz,
+                            GimbalPlace gimbal) {
   const CameraIntrinsics& camera = calibration.intrinsics;
   std::string text = fmt::format(
       "sensor_type: camera\n"
@@ -37,14 +63,17 @@ std::string EurocCameraText(const CameraCalibration& calibration, double rate_hz
       "distortion_coefficients: [{}]\n",
       rate_hz, camera.width_px, camera.height_px, camera.fx_px, camera.fy_px, camera.cx_px,
       camera.cy_px, DistortionName(camera.distortion_model), fmt::join(camera.distortion, ", "));
-  if (calibration.body_from_camera) {
+  if (calibration.gimbal) {
+    text += GimbalCameraText(*calibration.gimbal, gimbal);
+  } else if (calibration.body_from_camera) {
     text += "T_BS:\n" + EurocTransformText(*calibration.body_from_camera);
   }
   return text;
 }
 
-std::string EurocCalibrationText(const CameraCalibration& calibration, double rate_hz) {
-  std::string text = EurocCameraText(calibration, rate_hz);
+std::string EurocCalibrationText(const CameraCalibration& calibration, double rate_hz,
+                                 GimbalPlace gimbal) {
+  std::string text = EurocCameraText(calibration, rate_hz, gimbal);
   if (calibration.clock_offset) {
     text += fmt::format("timeshift_cam_imu: {}\n", ToSeconds(*calibration.clock_offset));
   }
@@ -53,6 +82,28 @@ std::string EurocCalibrationText(const CameraCalibration& calibration, double ra
 
 std::string EurocPoseSensorText(double rate_hz) {
   return fmt::format("sensor_type: pose\nrate_hz: {}\n", rate_hz);
+}
+
+std::string EurocGimbalSensorText(const GimbalMount& gimbal, YawFrame yaw_frame, double rate_hz) {
+  return fmt::format("sensor_type: gimbal\nrate_hz: {}\nyaw_frame: {}\n", rate_hz,
+                     ToString(yaw_frame)) +
+         PivotText(gimbal);
+}
+
+std::string EurocGimbalColumns() {
+  return "#timestamp [ns],q_WG_w [],q_WG_x [],q_WG_y [],q_WG_z []";
+}
+
+std::string EurocGimbalCells(const GimbalSample& sample) {
+  const Eigen::Quaterniond& q = sample.level_from_platform;
+  return fmt::format("{},{:.9f},{:.9f},{:.9f},{:.9f}", ToNanoseconds(sample.time), q.w(), q.x(),
+                     q.y(), q.z());
+}
+
+std::string EurocGimbalText(const std::vector<GimbalSample>& samples) {
+  std::string text = EurocGimbalColumns() + "\n";
+  for (const GimbalSample& sample : samples) text += EurocGimbalCells(sample) + "\n";
+  return text;
 }
 
 std::string EurocPoseColumns(const std::string& frames) {

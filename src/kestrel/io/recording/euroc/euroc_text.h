@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "kestrel/core/camera/calibration.h"
+#include "kestrel/core/poses/gimbal_history.h"
 #include "kestrel/core/poses/pose_history.h"
 
 namespace kestrel {
@@ -12,12 +13,28 @@ namespace kestrel {
 // Returns the name in calibration files: "equidistant", "radial-tangential" or "none".
 const char* DistortionName(DistortionModel model);
 
-// Returns the text of cam0/sensor.yaml in the EuRoC layout: lens, size, rate and, if the
-// calibration has one, the mount T_BS. ReadCalibration reads it back exactly, to the last bit.
-std::string EurocCameraText(const CameraCalibration& calibration, double rate_hz);
+// The place of a gimbal's description: a folder of the recording, gimbal0, or the camera's file.
+enum class GimbalPlace { kFolder, kCameraFile };
 
-// The same with the clock offset, if the calibration has one.
-std::string EurocCalibrationText(const CameraCalibration& calibration, double rate_hz);
+// Returns the text of cam0/sensor.yaml in the EuRoC layout: lens, size, rate and, if the
+// calibration has one, the mount: T_BS, or T_GS on a gimbal. ReadCalibration reads it back exactly,
+// to the last bit.
+std::string EurocCameraText(const CameraCalibration& calibration, double rate_hz,
+                            GimbalPlace gimbal = GimbalPlace::kFolder);
+
+// The same with the clock offset, if the calibration has one: a file of its own.
+std::string EurocCalibrationText(const CameraCalibration& calibration, double rate_hz,
+                                 GimbalPlace gimbal = GimbalPlace::kCameraFile);
+
+// Returns the text of gimbal0/sensor.yaml.
+std::string EurocGimbalSensorText(const GimbalMount& gimbal, YawFrame yaw_frame, double rate_hz);
+
+// Return the columns of gimbal0/data.csv, without the end of the line, and a row of it.
+std::string EurocGimbalColumns();
+std::string EurocGimbalCells(const GimbalSample& sample);
+
+// Returns the text of gimbal0/data.csv.
+std::string EurocGimbalText(const std::vector<GimbalSample>& samples);
 
 // Returns the text of nav0/sensor.yaml.
 std::string EurocPoseSensorText(double rate_hz);

@@ -35,6 +35,38 @@ TEST(EurocTextTest, CalibrationRoundTrips) {
   EXPECT_EQ(read.body_from_camera->translation, written.body_from_camera->translation);
 }
 
+TEST(EurocTextTest, GimbalRoundTrip) {
+  CameraCalibration written;
+  written.intrinsics.width_px = 640;
+  written.intrinsics.height_px = 480;
+  written.intrinsics.fx_px = written.intrinsics.fy_px = 500;
+  written.intrinsics.cx_px = 320;
+  written.intrinsics.cy_px = 240;
+  GimbalMount gimbal;
+  gimbal.body_from_pivot.translation = {0.2, 0, -0.1};
+  gimbal.platform_from_camera.rotation = Eigen::Quaterniond(0.5, -0.5, 0.5, -0.5);
+  gimbal.clock_offset = std::chrono::milliseconds(-150);
+  gimbal.device_id = 1;
+  written.gimbal = gimbal;
+  const CameraCalibration read = ParseCalibration(EurocCalibrationText(written, 30), "lens.yaml");
+  ASSERT_TRUE(read.gimbal);
+  EXPECT_EQ(read.gimbal->body_from_pivot.translation, gimbal.body_from_pivot.translation);
+  EXPECT_LT(read.gimbal->platform_from_camera.rotation.angularDistance(
+                gimbal.platform_from_camera.rotation),
+            1e-12);
+  EXPECT_EQ(read.gimbal->clock_offset, gimbal.clock_offset);
+  EXPECT_EQ(read.gimbal->device_id, 1);
+
+  const GimbalSample sample{TimeFromNanoseconds(7), Eigen::Quaterniond(0.6, 0, 0.8, 0),
+                            YawFrame::kVehicle};
+  const auto rows = ParseGimbalRows(EurocGimbalColumns() + "\n" + EurocGimbalCells(sample) + "\n",
+                                    "data.csv", YawFrame::kVehicle);
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].time, sample.time);
+  EXPECT_NEAR(rows[0].level_from_platform.y(), 0.8, 1e-9);
+  EXPECT_EQ(rows[0].yaw_frame, YawFrame::kVehicle);
+}
+
 TEST(EurocTextTest, PosesRoundTrip) {
   const std::vector<PoseSample> written = {
       {TimeFromNanoseconds(5), {Eigen::Quaterniond(0.6, 0, 0.8, 0), {1, -2, 3.5}}},

@@ -30,6 +30,8 @@ RecordedFiles::File FileOf(EurocTable table) {
       return {root / euroc::kDroppedImages, "#timestamp [ns],reason\n"};
     case EurocTable::kPoses:
       return {root / euroc::kPoses, EurocPoseColumns("WB") + "\n"};
+    case EurocTable::kGimbal:
+      return {root / euroc::kGimbal, EurocGimbalColumns() + "\n"};
     case EurocTable::kTruePoses:
       return {root / euroc::kTruePoses, TrueStateHeader()};
     case EurocTable::kTruePatterns:
@@ -79,11 +81,18 @@ EurocWriter::EurocWriter(const fs::path& folder, std::span<const EurocTable> tab
 EurocWriter::~EurocWriter() { Commit(); }
 
 void EurocWriter::WriteCamera(const CameraCalibration& calibration, double rate_hz) const {
-  WriteFile(folder_ / kRoot / euroc::kCamera, EurocCalibrationText(calibration, rate_hz));
+  WriteFile(folder_ / kRoot / euroc::kCamera,
+            EurocCalibrationText(calibration, rate_hz, GimbalPlace::kFolder));
 }
 
 void EurocWriter::WritePoseSensor(double rate_hz) const {
   WriteFile(folder_ / kRoot / euroc::kPoseSensor, EurocPoseSensorText(rate_hz));
+}
+
+void EurocWriter::WriteGimbalSensor(const GimbalMount& gimbal, YawFrame yaw_frame,
+                                    double rate_hz) const {
+  WriteFile(folder_ / kRoot / euroc::kGimbalSensor,
+            EurocGimbalSensorText(gimbal, yaw_frame, rate_hz));
 }
 
 void EurocWriter::WriteImage(Time time, std::string_view extension, std::string_view bytes) const {
@@ -104,6 +113,10 @@ void EurocWriter::AddDroppedImage(Time time, std::string_view reason) {
 
 void EurocWriter::AddPose(const PoseSample& pose) {
   Add(EurocTable::kPoses, EurocPoseCells(pose.time, pose.world_from_body) + "\n");
+}
+
+void EurocWriter::AddGimbal(const GimbalSample& report) {
+  Add(EurocTable::kGimbal, EurocGimbalCells(report) + "\n");
 }
 
 void EurocWriter::AddTruePose(const PoseSample& pose) {

@@ -10,6 +10,7 @@
 
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/calibration.h"
+#include "kestrel/core/poses/gimbal_history.h"
 #include "kestrel/core/poses/pose_history.h"
 #include "kestrel/io/recording/euroc/recorded_files.h"
 #include "kestrel/io/recording/euroc/truth_rows.h"
@@ -25,15 +26,15 @@ enum class EurocTable {
   kExposures,
   kDroppedImages,
   kPoses,
+  kGimbal,
   kTruePoses,
   kTruePatterns,
   kPackets
 };
 
-inline constexpr std::array kEurocTables{EurocTable::kImages,        EurocTable::kExposures,
-                                         EurocTable::kDroppedImages, EurocTable::kPoses,
-                                         EurocTable::kTruePoses,     EurocTable::kTruePatterns,
-                                         EurocTable::kPackets};
+inline constexpr std::array kEurocTables{
+    EurocTable::kImages, EurocTable::kExposures, EurocTable::kDroppedImages, EurocTable::kPoses,
+    EurocTable::kGimbal, EurocTable::kTruePoses, EurocTable::kTruePatterns,  EurocTable::kPackets};
 
 // Returns the table's path in a recording.
 std::filesystem::path PathOf(EurocTable table);
@@ -54,9 +55,11 @@ class EurocWriter {
   EurocWriter(const EurocWriter&) = delete;
   EurocWriter& operator=(const EurocWriter&) = delete;
 
-  // Write the sensor.yaml of the camera and of the poses. Throw InputError when they cannot.
+  // Write the sensor.yaml of the camera, of the poses and of the gimbal. Throw InputError when they
+  // cannot.
   void WriteCamera(const CameraCalibration& calibration, double rate_hz) const;
   void WritePoseSensor(double rate_hz) const;
+  void WriteGimbalSensor(const GimbalMount& gimbal, YawFrame yaw_frame, double rate_hz) const;
 
   // Writes the file of an encoded image, which is not listed yet. Several threads may write
   // different images. Throws InputError when it cannot be written; then no part of it is there.
@@ -67,6 +70,7 @@ class EurocWriter {
   void AddExposure(Time from, double exposure_s);
   void AddDroppedImage(Time time, std::string_view reason);
   void AddPose(const PoseSample& pose);
+  void AddGimbal(const GimbalSample& report);
   void AddTruePose(const PoseSample& pose);  // without motion: at rest
   void AddTruePattern(const TruePattern& pattern);
   void AddPacket(std::int64_t utc_us, std::span<const std::uint8_t> bytes);

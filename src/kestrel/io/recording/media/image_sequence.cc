@@ -91,10 +91,11 @@ void AddFile(const std::string& name, const std::string& path,
 }  // namespace
 
 ImageSequence::ImageSequence(std::vector<Item> items, std::string calibration_file,
-                             std::vector<PoseSample> poses)
+                             std::vector<PoseSample> poses, std::vector<GimbalSample> gimbal)
     : items_(std::move(items)),
       calibration_file_(std::move(calibration_file)),
-      poses_(std::move(poses)) {}
+      poses_(std::move(poses)),
+      gimbal_(std::move(gimbal)) {}
 
 bool ImageSequence::ReadNext(Frame* frame) {
   if (next_ == items_.size()) return false;

@@ -18,9 +18,9 @@ class ImageSequence : public FrameSource {
     std::size_t page = 0;  // page in a TIFF
   };
 
-  // 'items' are in order of time, at least one. The other two are as FrameSource returns them.
+  // 'items' are in order of time, at least one. The others are as FrameSource returns them.
   explicit ImageSequence(std::vector<Item> items, std::string calibration_file = "",
-                         std::vector<PoseSample> poses = {});
+                         std::vector<PoseSample> poses = {}, std::vector<GimbalSample> gimbal = {});
 
   bool Read(std::size_t index, Frame* frame) const override;
   std::optional<std::size_t> frame_count() const override { return items_.size(); }
@@ -29,6 +29,7 @@ class ImageSequence : public FrameSource {
   // Empty when there is none.
   const std::string& calibration_file() const { return calibration_file_; }
   std::vector<PoseSample> poses() const override { return poses_; }
+  std::vector<GimbalSample> gimbal() const override { return gimbal_; }
 
  private:
   bool ReadNext(Frame* frame) override;
@@ -36,6 +37,7 @@ class ImageSequence : public FrameSource {
   std::vector<Item> items_;
   std::string calibration_file_;
   std::vector<PoseSample> poses_;
+  std::vector<GimbalSample> gimbal_;
   std::size_t next_ = 0;
 };
 

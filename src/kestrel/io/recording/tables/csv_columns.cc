@@ -49,22 +49,30 @@ Eigen::Vector3d VectorColumns::Parse(std::size_t row) const {
   return {table_->Number(row, x_), table_->Number(row, y_), table_->Number(row, z_)};
 }
 
-PoseColumns::PoseColumns(const CsvTable& table, const std::string& frames)
+QuaternionColumns::QuaternionColumns(const CsvTable& table, const std::string& name)
     : table_(&table),
-      quaternion_("q_" + frames),
-      position_(table, fmt::format("p_{}_{}_", frames, frames.substr(0, 1)), " [m]"),
-      w_(table.Column(quaternion_ + "_w []")),
-      imaginary_(table, quaternion_ + "_", " []") {}
+      name_(name),
+      w_(table.Column(name + "_w []")),
+      imaginary_(table, name + "_", " []") {}
 
-RigidTransform PoseColumns::Parse(std::size_t row) const {
+Eigen::Quaterniond QuaternionColumns::Parse(std::size_t row) const {
   const Eigen::Vector3d imaginary = imaginary_.Parse(row);
   const Eigen::Quaterniond rotation(table_->Number(row, w_), imaginary.x(), imaginary.y(),
                                     imaginary.z());
   if (!(std::abs(rotation.norm() - 1) < 0.01)) {
-    table_->Fail(row, fmt::format("the quaternion {} has the length {:.4g}, expected 1",
-                                  quaternion_, rotation.norm()));
+    table_->Fail(row, fmt::format("the quaternion {} has the length {:.4g}, expected 1", name_,
+                                  rotation.norm()));
   }
-  return {rotation.normalized(), position_.Parse(row)};
+  return rotation.normalized();
+}
+
+PoseColumns::PoseColumns(const CsvTable& table, const std::string& frames)
+    : position_(table, fmt::format("p_{}_{}_", frames, frames.substr(0, 1)), " [m]"),
+      rotation_(table, "q_" + frames) {}
+
+RigidTransform PoseColumns::Parse(std::size_t row) const {
+  const Eigen::Quaterniond rotation = rotation_.Parse(row);
+  return {rotation, position_.Parse(row)};
 }
 
 }  // namespace kestrel

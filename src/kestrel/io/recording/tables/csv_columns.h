@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/geometry/rigid_transform.h"
@@ -35,6 +36,20 @@ class VectorColumns {
   std::size_t x_, y_, z_;
 };
 
+// A rotation in four columns: 'name' + "_w []", ... The table must outlive it.
+class QuaternionColumns {
+ public:
+  QuaternionColumns(const CsvTable& table, const std::string& name);
+  // Throws InputError unless all numbers are finite and the length is 1 (to 1 %).
+  Eigen::Quaterniond Parse(std::size_t row) const;
+
+ private:
+  const CsvTable* table_;
+  std::string name_;
+  std::size_t w_;
+  VectorColumns imaginary_;
+};
+
 // The pose of frame B in A in EuRoC's columns, for 'frames' "AB": p_AB_A_x [m], ..., q_AB_w [], ...
 // The table must outlive it.
 class PoseColumns {
@@ -44,11 +59,8 @@ class PoseColumns {
   RigidTransform Parse(std::size_t row) const;
 
  private:
-  const CsvTable* table_;
-  std::string quaternion_;
   VectorColumns position_;
-  std::size_t w_;
-  VectorColumns imaginary_;
+  QuaternionColumns rotation_;
 };
 
 }  // namespace kestrel

@@ -8,6 +8,8 @@
 
 namespace kestrel {
 
+inline constexpr char kLandingTable[] = "landing_detections.csv";
+
 // Lines of landing_detections.csv, each with its newline. Unknown values are empty; lengths are
 // rounded to 1e-6 m, pixels to 1e-3 px.
 std::string LandingCsvHeader();

@@ -7,6 +7,8 @@
 
 namespace kestrel {
 
+inline constexpr char kObjectTable[] = "object_detections.csv";
+
 // Lines of object_detections.csv: a header row, then for each frame one row per object, or one row
 // with the frame and its times only. 'shape': disc, cuboid, bar, or merged for touching discs,
 // which have no position. 'digit': the most probable one, empty when none was read.

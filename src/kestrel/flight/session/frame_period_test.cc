@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/flight/onboard/frame_period.h"
+#include "kestrel/flight/session/frame_period.h"
 
 #include <chrono>
 

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "kestrel/app/views/hunt_view.h"
+#include "kestrel/app/views/landing_view.h"
+#include "kestrel/app/views/view_data.h"
+#include "kestrel/core/camera/calibration.h"
+#include "kestrel/flight/session/observation.h"
+#include "kestrel/flight/session/task.h"
+
+namespace kestrel {
+
+// What viewers show of a session's results.
+using TaskView = std::variant<LandingView, HuntView>;
+
+// What a page plots, draws over the image, and can show in its place.
+struct ViewParts {
+  std::vector<SeriesDescription> series;
+  std::vector<OverlayLayer> layers;
+  std::vector<ImageView> images;
+};
+ViewParts PartsOf(const TaskView& view);
+
+// Returns the view of a task. Throws InputError where there is none.
+TaskView ViewOf(const Task& task, const CameraCalibration& calibration);
+
+// What viewers show of a frame.
+struct ViewFrame {
+  Time time;
+  ViewSample sample;
+  ViewStatus status;
+  ViewMap map;
+  std::vector<OverlayShape> shapes;
+  std::vector<ViewFact> facts;
+};
+// 'observation': of the view's kind.
+ViewFrame ViewFrameOf(const TaskView& view, const Observation& observation);
+// Returns the view of a frame whose image cannot be read, which says so.
+ViewFrame ViewFrameOf(const TaskView& view, const BrokenFrame& broken);
+
+}  // namespace kestrel

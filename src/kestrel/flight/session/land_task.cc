@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/session/land_task.h"
+
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "kestrel/core/geometry/angles.h"
+#include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/flight/session/frame_period.h"
+#include "kestrel/flight/session/landing_files.h"
+#include "kestrel/flight/session/task.h"
+#include "kestrel/vision/pipeline/calibration_monitor.h"
+#include "kestrel/vision/pipeline/measurement_noise.h"
+#include "kestrel/vision/pipeline/pattern_area.h"
+#include "kestrel/vision/pipeline/require_altitude.h"
+#include "kestrel/vision/pipeline/told_contradictions.h"
+
+namespace kestrel {
+namespace {
+
+std::string AttitudeWarning(const Contradiction& tilt) {
+  return fmt::format(
+      "the attitude says that the pattern is tilted by {:.0f} degrees (median of {} frames): {}"
+      "check the mount (kestrel calibrate mount) and the navigation's attitude",
+      Degrees(tilt.difference), tilt.detections,
+      tilt.difference > kPi / 2 ? "is the camera mounted upside down? " : "");
+}
+
+// The landing pipeline in a session.
+class LandingVision : public Vision {
+ public:
+  // 'predict_s': horizons of the predictions that are written. Throws InputError when camera or
+  // options are not valid.
+  LandingVision(const SessionCamera& camera, const LandingPipelineOptions& options,
+                std::vector<double> predict_s = {});
+
+  void AddPose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
+  void AddGimbal(const GimbalSample& sample) override { pipeline_.AddGimbal(sample); }
+  Duration pose_lead() const override { return clock_offset_; }
+  Observation Process(const Frame& frame) override;
+  TrackSnapshot snapshot() const override { return snapshot_; }
+  std::optional<PadInSight> pad() const override;
+  bool has_world() const override { return has_world_ && !pipeline_.options().still; }
+  void Change(const TaskOptions& options, std::optional<double> altitude_m) override;
+  std::unique_ptr<ObservationSink> MakeTables(const OutputOptions& output) const override;
+
+  // Says how the detections contradict the given height and attitude; in flight, the lens.
+  std::string Warning() const override;
+  std::string Found() const override;
+  // Contradictions between detections and calibration; the number of frames without a pose, where
+  // others have one.
+  std::string Remarks() const override;
+
+ private:
+  void LimitSearch(const Frame& frame);
+  void UpdateSnapshot(const LandingObservation& observation);
+  std::optional<TargetReport> Sighting(const LandingObservation& observation) const;
+  std::string LensWarning() const;
+
+  LandingPipeline pipeline_;
+  Duration clock_offset_;
+  std::optional<double> altitude_m_;
+  bool has_world_, is_lens_unknown_, is_live_;
+  std::vector<double> predict_s_;
+  FramePeriod period_;
+  TrackSnapshot snapshot_;
+  std::map<PoseLookup, std::size_t> poses_;
+};
+
+LandingVision::LandingVision(const SessionCamera& camera, const LandingPipelineOptions& options,
+                             std::vector<double> predict_s)
+    : pipeline_(camera.calibration, InFlight(options, camera.is_live)),
+      clock_offset_(camera.calibration.clock_offset.value_or(Duration::zero())),
+      altitude_m_(camera.altitude_m),
+      has_world_(camera.has_world),
+      is_lens_unknown_(camera.is_lens_unknown),
+      is_live_(camera.is_live),
+      predict_s_(std::move(predict_s)) {
+  RequireAltitude(altitude_m_);
+  pipeline_.SetAltitude(altitude_m_);
+}
+
+Observation LandingVision::Process(const Frame& frame) {
+  if (is_live_) LimitSearch(frame);
+  LandingObservation seen = pipeline_.Process(frame.image, frame.time);
+  ++poses_[seen.pose];
+  ++snapshot_.frames;
+  snapshot_.detections += seen.report.detection.has_value();
+  snapshot_.other_tag = seen.other_tag;
+  if (is_live_) UpdateSnapshot(seen);
+  return {frame, std::move(seen)};
+}
+
+// A search that takes longer than the camera's period costs a frame; a search that is given up goes
+// on in the next frame. The rest of the period is left for the step that is running, and for the
+// other work of a frame.
+void LandingVision::LimitSearch(const Frame& frame) {
+  constexpr double kSearchShare = 0.6;
+  period_.Add(frame.time);
+  if (const auto period = period_.Get()) {
+    pipeline_.LimitSearch(kSearchShare * 1e3 * ToSeconds(*period));
+  }
+}
+
+void LandingVision::UpdateSnapshot(const LandingObservation& observation) {
+  snapshot_.captured = observation.time + clock_offset_;
+  snapshot_.state = observation.track_state;
+  snapshot_.target = observation.target;
+  if (observation.fate == MeasurementFate::kStarted ||
+      observation.fate == MeasurementFate::kAccepted) {
+    snapshot_.seen = snapshot_.captured;
+  }
+  snapshot_.sighting = Sighting(observation);
+  snapshot_.detect_time = observation.detect_time;
+  snapshot_.area = {};
+  const auto& detection = observation.report.detection;
+  if (!detection) return;
+  const TargetDetector& detector = pipeline_.detector();
+  snapshot_.area = PatternArea(*detection, detector.shape(), detector.camera());
+  if (!observation.camera_from_body) return;
+  snapshot_.sight = {snapshot_.captured,
+                     detection->camera_from_pattern.Inverse() * *observation.camera_from_body};
+}
+
+std::optional<TargetReport> LandingVision::Sighting(const LandingObservation& observation) const {
+  const auto& detection = observation.report.detection;
+  if (!detection || !observation.world_from_camera || !observation.camera_from_body) {
+    return std::nullopt;
+  }
+  const RigidTransform& world_from_camera = *observation.world_from_camera;
+  const Eigen::Vector3d& center = detection->camera_from_pattern.translation;
+  // Relative to the UAV only the pose's attitude counts, including the errors that all frames
+  // share.
+  MeasurementNoise noise = pipeline_.options().noise;
+  noise.pose_sigma_m = noise.pose_bias_m = 0;
+  TargetReport report;
+  report.time = snapshot_.captured;
+  report.world_from_body = world_from_camera * *observation.camera_from_body;
+  report.position_in_world = world_from_camera * center;
+  report.normal_in_world = world_from_camera.rotation *
+                           (detection->camera_from_pattern.rotation * Eigen::Vector3d::UnitZ());
+  report.covariance = CovarianceInWorld(detection->covariance.topLeftCorner<3, 3>(), center,
+                                        world_from_camera.rotation, noise) +
+                      SharedCovarianceInWorld(center, world_from_camera.rotation, noise);
+  if (detection->heading_symmetry != 1) return report;
+  report.yaw = observation.yaw_in_world;
+  report.yaw_sigma = std::sqrt(YawVarianceInWorld(detection->covariance.bottomRightCorner<3, 3>(),
+                                                  world_from_camera.rotation, noise));
+  return report;
+}
+
+std::optional<PadInSight> LandingVision::pad() const {
+  const TargetDetector& detector = pipeline_.detector();
+  const TargetShape& shape = detector.shape();
+  return PadInSight{shape.diameter_m, shape.SightRange(detector.camera().intrinsics()),
+                    pipeline_.options().tracker};
+}
+
+void LandingVision::Change(const TaskOptions& options, std::optional<double> altitude_m) {
+  pipeline_.ChangeOptions(InFlight(options.landing, is_live_));
+  pipeline_.SetAltitude(altitude_m);
+  altitude_m_ = altitude_m;
+}
+
+std::unique_ptr<ObservationSink> LandingVision::MakeTables(const OutputOptions& output) const {
+  return std::make_unique<LandingFiles>(output, &pipeline_, has_world(), predict_s_);
+}
+
+std::string LandingVision::Warning() const {
+  if (is_live_) return LensWarning();
+  if (const auto tilt = pipeline_.contradictions().Attitude()) return AttitudeWarning(*tilt);
+  const auto excess = pipeline_.contradictions().Altitude();
+  if (!excess) return "";
+  const std::string what = fmt::format(
+      "the given altitude is {:.1f} m {} the one that the pattern shows (median of {} frames, "
+      "standard deviation {:.1f} m): ",
+      std::abs(excess->difference), excess->difference > 0 ? "above" : "below", excess->detections,
+      excess->sigma);
+  if (has_world_) {
+    return fmt::format(
+        "{}set landing.target_height_m={:.1f}, or correct the navigation's z or the pattern's size",
+        what, pipeline_.options().target_height_m + excess->difference);
+  }
+  return fmt::format("{}set --altitude {:.1f}, or correct the pattern's size", what,
+                     altitude_m_.value_or(0) - excess->difference);
+}
+
+std::string LandingVision::LensWarning() const {
+  return kestrel::LensWarning(pipeline_.calibration_monitor(),
+                              pipeline_.detector().camera().intrinsics().fx_px);
+}
+
+std::string LandingVision::Found() const {
+  const auto& other = snapshot_.other_tag;
+  return fmt::format("pattern found in {}{}", snapshot_.detections,
+                     other ? fmt::format(" ({})", InWords(*other)) : "");
+}
+
+std::string LandingVision::Remarks() const {
+  std::string remarks;
+  if (!is_lens_unknown_) remarks = LensWarning();
+  if (!remarks.empty()) remarks += "\n";
+  // Only where there are poses for some of the frames; a source without any is not unusual.
+  for (const auto& [pose, count] : poses_) {
+    if (pose == PoseLookup::kFound || pose == PoseLookup::kEmpty ||
+        pose == PoseLookup::kPredicted) {
+      continue;
+    }
+    remarks += fmt::format("{} frames without a pose of the UAV: {}\n", count, ToString(pose));
+  }
+  return remarks;
+}
+
+}  // namespace
+
+std::unique_ptr<Vision> LandTask::MakeVision(const SessionCamera& camera) const {
+  return std::make_unique<LandingVision>(camera, options_, predict_s_);
+}
+
+}  // namespace kestrel

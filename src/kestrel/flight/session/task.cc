@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/session/task.h"
+
+#include <algorithm>
+
+#include "kestrel/flight/session/hunt_task.h"
+#include "kestrel/flight/session/land_task.h"
+
+namespace kestrel {
+namespace {
+
+std::unique_ptr<Task> MakeLand(const TaskOptions& options, const TaskChoice& choice) {
+  return std::make_unique<LandTask>(options.landing, choice.predict_s);
+}
+
+std::unique_ptr<Task> MakeHunt(const TaskOptions& options, const TaskChoice& choice) {
+  return std::make_unique<HuntTask>(options.hunt, choice.model, choice.grid, choice.origin);
+}
+
+constexpr TaskKind kKinds[] = {
+    {"land", "Run the landing pipeline over a source", MakeLand},
+    {"hunt", "Run the coloured-object pipeline over a source", MakeHunt},
+};
+
+}  // namespace
+
+std::span<const TaskKind> TaskKinds() { return kKinds; }
+
+std::unique_ptr<Task> MakeTask(std::string_view name, const TaskOptions& options,
+                               const TaskChoice& choice) {
+  const auto kind = std::find_if(std::begin(kKinds), std::end(kKinds),
+                                 [&](const TaskKind& one) { return one.name == name; });
+  return kind->make(options, choice);
+}
+
+}  // namespace kestrel

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kestrel/core/camera/calibration.h"
+#include "kestrel/flight/session/result_connection.h"
+#include "kestrel/flight/session/vision.h"
+#include "kestrel/io/recording/frame_source.h"
+#include "kestrel/vision/objects/color/color_grid.h"
+#include "kestrel/vision/objects/object_model.h"
+#include "kestrel/vision/pipeline/hunt_pipeline.h"
+#include "kestrel/vision/pipeline/landing_pipeline.h"
+
+namespace kestrel {
+
+// The camera of a session.
+struct SessionCamera {
+  CameraCalibration calibration;
+  // Height of the camera above what is looked for, where there are no poses.
+  std::optional<double> altitude_m = {};
+  bool has_world = false;        // frames can be placed in the world: poses, and the camera's mount
+  bool is_lens_unknown = false;  // as OpenedSource's
+  bool is_live = false;          // frames come in real time, and a pose may come late
+};
+
+// Options of a pipeline where the frames come in real time: the pose after a frame may not be there
+// yet, as it is in a recording.
+template <class Options>
+Options InFlight(Options options, bool is_live) {
+  constexpr double kLongestPrediction_s = 0.2;
+  double& ahead_s = options.pose_extrapolation_s;
+  if (is_live && ahead_s == 0) ahead_s = kLongestPrediction_s;
+  return options;
+}
+
+// What is looked for in a session. A new kind is a class, and a line in task.cc.
+class Task {
+ public:
+  virtual ~Task() = default;
+
+  // The image format that the vision takes.
+  virtual PixelFormat format() const = 0;
+  // File name of the table with a row for each frame.
+  virtual std::string_view table() const = 0;
+  // Topics of ROS that are advertised at once.
+  virtual ResultTopics topics() const = 0;
+  // Throws InputError when camera or options are not valid.
+  virtual std::unique_ptr<Vision> MakeVision(const SessionCamera& camera) const = 0;
+};
+
+// The options of all tasks, as `kestrel config` prints them.
+struct TaskOptions {
+  LandingPipelineOptions landing;
+  HuntPipelineOptions hunt;
+
+  static void Visit(auto& self, auto&& visit) {
+    visit.Group("landing", self.landing);
+    visit.Group("hunt", self.hunt);
+  }
+};
+
+// What is chosen for a session beside the options.
+struct TaskChoice {
+  std::vector<double> predict_s = {};  // horizons of the predictions that are written
+  ObjectModel model = DefaultObjectModel();
+  std::optional<ColorGrid> grid = {};  // nothing: the model's own
+  std::vector<double> origin = {};     // as HuntTask's
+};
+
+// A kind of task: its subcommand, and what that does.
+struct TaskKind {
+  std::string_view name;
+  const char* meaning;
+  std::unique_ptr<Task> (*make)(const TaskOptions& options, const TaskChoice& choice);
+};
+std::span<const TaskKind> TaskKinds();
+
+// 'name': of one of the kinds.
+std::unique_ptr<Task> MakeTask(std::string_view name, const TaskOptions& options,
+                               const TaskChoice& choice = {});
+
+}  // namespace kestrel
