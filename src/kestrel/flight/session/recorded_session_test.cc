@@ -40,7 +40,10 @@ class ThreeFrames : public FrameSource {
     return poses;
   }
 
+  std::vector<GimbalSample> gimbal() const override { return reports; }
+
   int width_px = kWidth_px;
+  std::vector<GimbalSample> reports;
 
  private:
   int next_ = 0;
@@ -51,6 +54,9 @@ class LoggedVision : public Vision {
  public:
   void AddPose(const PoseSample& pose) override {
     log.push_back("pose " + std::to_string(ToNanoseconds(pose.time) / 100'000'000));
+  }
+  void AddGimbal(const GimbalSample& report) override {
+    log.push_back("gimbal " + std::to_string(ToNanoseconds(report.time) / 100'000'000));
   }
   Duration pose_lead() const override { return Duration::zero(); }
   Observation Process(const Frame& frame) override {
@@ -91,6 +97,22 @@ TEST_F(RecordedSessionTest, FrameFollowsPosesItNeeds) {
   EXPECT_THAT(vision_->log, ElementsAre("pose 5", "pose 15", "frame 1", "pose 25", "frame 2",
                                         "frame 3", "finish"));
   EXPECT_THAT(sink_->names, ElementsAre("frame 1", "frame 2", "frame 3"));
+}
+
+TEST(RecordedSessionOnGimbalTest, FrameFollowsReportsItNeeds) {
+  auto source = std::make_unique<ThreeFrames>();
+  for (const double seconds : {0.8, 1.6, 2.4, 3.2})
+    source->reports.push_back({At(seconds), {}, {}});
+  OpenedSource opened;
+  opened.source = std::move(source);
+  opened.calibration.intrinsics.width_px = kWidth_px;
+  opened.calibration.intrinsics.height_px = kHeight_px;
+  auto vision = std::make_unique<LoggedVision>();
+  const auto& log = vision->log;
+  RecordedSession session(opened, std::move(vision));
+  session.Run([](std::size_t) { return true; });
+  EXPECT_THAT(log, ElementsAre("pose 5", "pose 15", "gimbal 8", "gimbal 16", "frame 1", "pose 25",
+                               "gimbal 24", "gimbal 32", "frame 2", "frame 3", "finish"));
 }
 
 TEST_F(RecordedSessionTest, StopsBeforeNextFrame) {
