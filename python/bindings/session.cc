@@ -65,7 +65,7 @@ struct Views {
 struct Choices {
   py::object source;  // a path, or a Recording
   py::object camera;
-  bool is_hunt = false;
+  std::string task;    // "land" or "hunt"
   py::object options;  // nothing, a dict or a path
   std::vector<py::function> sinks;
   py::object on_event;  // a function, or nothing
@@ -200,9 +200,9 @@ class Session {
     } else {
       options_ = VisionOptions(choices_.options);
     }
-    if (!choices_.is_hunt) WarnOf(options_.landing.target);
+    WarnOf(options_.landing.target);
     if (!choices_.model) choices_.model = std::make_shared<ObjectModel>(DefaultObjectModel());
-    task_ = MakeTask(choices_.is_hunt ? "hunt" : "land", options_, {.model = *choices_.model});
+    task_ = MakeTask(choices_.task, options_, {.model = *choices_.model});
   }
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -215,7 +215,7 @@ class Session {
 
   std::string InWords() const {
     return fmt::format("<Session over {}: {}{}>", std::string(py::repr(choices_.source)),
-                       choices_.is_hunt ? "hunt" : "landing", choices_.is_live ? ", live" : "");
+                       choices_.task, choices_.is_live ? ", live" : "");
   }
 
  private:
@@ -345,8 +345,8 @@ void BindSession(py::module_& module) {
                       const std::string& autopilot, bool guide, const std::string& record,
                       const py::object& on_event) {
             return std::make_unique<Session>(
-                Choices{source, camera, hunt, options, std::move(sinks), on_event, altitude_m, live,
-                        model, output, record, replace, autopilot, guide});
+                Choices{source, camera, hunt ? "hunt" : "land", options, std::move(sinks), on_event,
+                        altitude_m, live, model, output, record, replace, autopilot, guide});
           }),
           py::arg("source"), py::arg("camera") = py::none(), py::arg("sinks") = py::list(),
           py::kw_only(), py::arg("hunt") = false, py::arg("options") = py::none(),

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/app/cli/console_arguments.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "kestrel/app/cli/console_camera.h"
 #include "kestrel/app/console/replay/hunt_replay.h"
 #include "kestrel/app/console/replay/landing_replay.h"
@@ -8,6 +11,36 @@
 #include "kestrel/core/base/options.h"
 
 namespace kestrel {
+namespace {
+
+std::unique_ptr<ReplaySearch> MakePatternSearch(const ConsoleArguments& arguments,
+                                                const KestrelOptions& options) {
+  const SourceArguments& source = arguments.source;
+  return SearchForPattern(source.sources, arguments.LandingOptions(options), source.altitude_m);
+}
+
+std::unique_ptr<ReplaySearch> MakeObjectSearch(const ConsoleArguments& arguments,
+                                               const KestrelOptions& options) {
+  const SourceArguments& source = arguments.source;
+  HuntPipelineOptions hunt = options.hunt;
+  hunt.still = hunt.still || source.still;
+  return SearchForObjects(source.sources, hunt, ReadModel(arguments.model), source.altitude_m);
+}
+
+// The tasks that a page can show.
+struct Search {
+  std::string_view task;
+  std::unique_ptr<ReplaySearch> (*make)(const ConsoleArguments& arguments,
+                                        const KestrelOptions& options);
+};
+constexpr Search kSearches[] = {{"land", MakePatternSearch}, {"hunt", MakeObjectSearch}};
+
+const Search* FindSearch(std::string_view task) {
+  return std::find_if(std::begin(kSearches), std::end(kSearches),
+                      [&](const Search& search) { return search.task == task; });
+}
+
+}  // namespace
 
 ConsoleOptions ConsoleArguments::PageOptions(const KestrelOptions& options) const {
   if (address.empty()) return options.console;
@@ -33,15 +66,11 @@ void ConsoleArguments::RequireEnd() const {
   }
 }
 
+bool HasSearch(std::string_view task) { return FindSearch(task) != std::end(kSearches); }
+
 std::unique_ptr<ReplaySearch> MakeSearch(const ConsoleArguments& arguments,
                                          const KestrelOptions& options) {
-  const SourceArguments& source = arguments.source;
-  if (arguments.task == "land") {
-    return SearchForPattern(source.sources, arguments.LandingOptions(options), source.altitude_m);
-  }
-  HuntPipelineOptions hunt = options.hunt;
-  hunt.still = hunt.still || source.still;
-  return SearchForObjects(source.sources, hunt, ReadModel(arguments.model), source.altitude_m);
+  return FindSearch(arguments.task)->make(arguments, options);
 }
 
 }  // namespace kestrel

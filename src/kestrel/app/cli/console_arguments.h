@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kestrel/app/cli/source_arguments.h"
@@ -36,8 +37,11 @@ struct ConsoleArguments {
   void RequireEnd() const;
 };
 
-// Returns the search of the recording, with the options of `kestrel land` or `kestrel hunt`. Throws
-// InputError when the model cannot be read.
+// True for a task whose results a page over a recording can show.
+bool HasSearch(std::string_view task);
+
+// Returns the search of the recording, with the options of `kestrel land` or `kestrel hunt`. There
+// must be one for the task. Throws InputError when the model cannot be read.
 std::unique_ptr<ReplaySearch> MakeSearch(const ConsoleArguments& arguments,
                                          const KestrelOptions& options);
 

@@ -40,7 +40,7 @@ void RunConsole(const ConsoleArguments& arguments) {
   const std::string& name = arguments.source.sources.front();
   std::optional<ColorSource> colors = FindColors(choice, arguments.model, arguments.OutputFolder());
   const bool has_colors = colors.has_value();
-  if (!has_colors && !arguments.model.empty() && arguments.task == "land") {
+  if (!has_colors && !arguments.model.empty() && search->format() == PixelFormat::kGray) {
     throw InputError("--model: " + name + " has no images in color to teach it by");
   }
   ReplayConsole console(arguments.PageOptions(options), name, search->Subject(), std::move(colors));

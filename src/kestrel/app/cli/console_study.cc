@@ -59,7 +59,7 @@ void RequireHere(const std::string& path) {
 
 StudyConsole::Run OpenForReplay(const ConsoleArguments& given, const std::string& path,
                                 const StudyVariant& variant, const StudyOptions& of_run) {
-  if (variant.task != "land" && variant.task != "hunt") {
+  if (!HasSearch(variant.task)) {
     throw InputError(
         fmt::format("a study of '{}' cannot be replayed, only of land and hunt", variant.task));
   }
@@ -91,7 +91,7 @@ void RunStudyConsole(const ConsoleArguments& arguments) {
   StudyResults results(folder);
   std::vector<StudyVariant> variants = results.Variants();
   ConsoleArguments any = arguments;
-  any.task = variants.front().task;
+  if (HasSearch(variants.front().task)) any.task = variants.front().task;
   ReplaySubject subject = MakeSearch(any, options)->Subject();
   subject.has_truth = true;  // some recordings may have it
   StudyConsole console(arguments.PageOptions(options), folder, std::move(results), variants,

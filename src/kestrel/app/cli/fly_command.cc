@@ -181,7 +181,8 @@ class Flight {
 
   // Folders where the page of colours of a hunt keeps frames and models.
   std::optional<FlightColors> Colors() const {
-    if (!std::holds_alternative<HuntView>(View())) return std::nullopt;
+    const TaskView view = View();
+    if (ModelOf(view) == nullptr) return std::nullopt;
     const std::filesystem::path folder = options_.fly.keep_folder;
     return FlightColors{PathOfNow(folder, "colors_"), (folder / "taught").string(),
                         [camera = arguments_.source.sources.front()] {

@@ -41,6 +41,17 @@ TaskView ViewOf(const Task& task, const CameraCalibration& calibration) {
   throw InputError("this task has no view for a page or an MCAP file");
 }
 
+const ObjectModel* ModelOf(const TaskView& view) {
+  const auto* hunt = std::get_if<HuntView>(&view);
+  return hunt == nullptr ? nullptr : &hunt->model;
+}
+
+std::optional<ViewedTeam> TeamOf(const TaskView& view, const TeamReport& report) {
+  const auto* hunt = std::get_if<HuntView>(&view);
+  if (hunt == nullptr) return std::nullopt;
+  return HuntTeam(*hunt, report);
+}
+
 ViewFrame ViewFrameOf(const TaskView& view, const Observation& observation) {
   return std::visit(
       [&]<class View>(const View& one) {

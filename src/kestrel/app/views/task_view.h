@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -8,8 +9,10 @@
 #include "kestrel/app/views/landing_view.h"
 #include "kestrel/app/views/view_data.h"
 #include "kestrel/core/camera/calibration.h"
+#include "kestrel/flight/session/flight_report.h"
 #include "kestrel/flight/session/observation.h"
 #include "kestrel/flight/session/task.h"
+#include "kestrel/vision/objects/object_model.h"
 
 namespace kestrel {
 
@@ -26,6 +29,12 @@ ViewParts PartsOf(const TaskView& view);
 
 // Returns the view of a task. Throws InputError where there is none.
 TaskView ViewOf(const Task& task, const CameraCalibration& calibration);
+
+// Returns the objects whose colours a page can teach; null: there are none.
+const ObjectModel* ModelOf(const TaskView& view);
+
+// Returns what viewers show of the team's map; nothing for a task that makes none.
+std::optional<ViewedTeam> TeamOf(const TaskView& view, const TeamReport& report);
 
 // What viewers show of a frame.
 struct ViewFrame {

@@ -2,7 +2,11 @@
 #include "kestrel/flight/session/task.h"
 
 #include <algorithm>
+#include <iterator>
 
+#include <fmt/format.h>
+
+#include "kestrel/core/base/error.h"
 #include "kestrel/flight/session/hunt_task.h"
 #include "kestrel/flight/session/land_task.h"
 
@@ -30,6 +34,11 @@ std::unique_ptr<Task> MakeTask(std::string_view name, const TaskOptions& options
                                const TaskChoice& choice) {
   const auto kind = std::find_if(std::begin(kKinds), std::end(kKinds),
                                  [&](const TaskKind& one) { return one.name == name; });
+  if (kind == std::end(kKinds)) {
+    std::vector<std::string_view> names;
+    for (const TaskKind& one : kKinds) names.push_back(one.name);
+    throw InputError(fmt::format("no task '{}', expected {}", name, fmt::join(names, " or ")));
+  }
   return kind->make(options, choice);
 }
 

@@ -81,7 +81,7 @@ struct TaskKind {
 };
 std::span<const TaskKind> TaskKinds();
 
-// 'name': of one of the kinds.
+// 'name': of one of the kinds. Throws InputError when there is no such task.
 std::unique_ptr<Task> MakeTask(std::string_view name, const TaskOptions& options,
                                const TaskChoice& choice = {});
 

@@ -72,7 +72,7 @@ class FlightConsole::Page : public SinkWriter {
   }
 
   void Write(const TeamReport& report) override {
-    if (const auto* const view = std::get_if<HuntView>(&view_)) feed_.Add(HuntTeam(*view, report));
+    if (auto team = TeamOf(view_, report)) feed_.Add(*std::move(team));
   }
 
   void Rest(bool /*had_frame*/) override {
@@ -166,7 +166,7 @@ void FlightConsole::TeachColors(const FlightColors& colors, const TaskView& view
       ColorSource{.recording = std::filesystem::absolute(colors.frames).lexically_normal().string(),
                   .frame_count = 0,
                   .read = [this](std::size_t frame) { return kept_->Read(frame); },
-                  .model = std::get<HuntView>(view).model,
+                  .model = *ModelOf(view),
                   .folder = colors.folder,
                   .keep = keep,
                   .warn = colors.warn},
