@@ -140,10 +140,14 @@ void BindFlight(py::module_& module) {
 void BindCalibration(py::module_& module) {
   BindLens(module);
   BindFlight(module);
-  module.def("calibration_text", &EurocCalibrationText, py::arg("calibration"),
-             py::arg("rate_hz") = kNominalRateHz,
-             "Returns the text of a calibration file (EuRoC's sensor.yaml), which read_calibration "
-             "reads back to the last bit.");
+  module.def(
+      "calibration_text",
+      [](const CameraCalibration& calibration, double rate_hz) {
+        return EurocCalibrationText(calibration, rate_hz);
+      },
+      py::arg("calibration"), py::arg("rate_hz") = kNominalRateHz,
+      "Returns the text of a calibration file (EuRoC's sensor.yaml), which read_calibration "
+      "reads back to the last bit.");
 }
 
 }  // namespace kestrel::python

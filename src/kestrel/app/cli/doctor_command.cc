@@ -162,13 +162,18 @@ class DoctorVisit {
       link.open_error = error.what();
       return;
     }
+    AutopilotOptions options = source_.simulated.Asking(options_.fly.autopilot);
+    if (const auto& gimbal = source_.live.calibration.gimbal) {
+      options.gimbal_device_id = gimbal->device_id;
+    }
     autopilot_.emplace(
-        source_.simulated.Asking(options_.fly.autopilot), &*connection_,
+        options, &*connection_,
         AutopilotListener{
             .pose = [this](const PoseSample& pose) { TakePose(pose); },
             .true_pose = [this](const PoseSample& pose) { source_.simulated.TakeTruePose(pose); },
             .event = [this](const AutopilotEvent& e) { examination_->TakeEvent(e); },
             .text = {},
+            .gimbal = [this](const GimbalSample& report) { examination_->TakeGimbal(report); },
         });
   }
 

@@ -39,6 +39,7 @@ class Examination {
   // Takes a pose of the autopilot, on the local clock, from its listener. Called by the thread that
   // calls Run.
   void TakePose(const PoseSample& pose) { events_.Push(pose); }
+  void TakeGimbal(const GimbalSample& report) { events_.Push(report); }
   // Takes an event from the autopilot's listener. Called by the same thread.
   void TakeEvent(const AutopilotEvent& event);
 

@@ -82,7 +82,8 @@ class Follower {
                     .text =
                         [this](std::uint8_t severity, std::string_view text) {
                           Add(LevelOf(severity), WordsOfAutopilot(text));
-                        }}) {
+                        },
+                    .gimbal = {}}) {
     report_.autopilot.emplace();
     found_.states.push_back({Time::min(), NotKnown()});
   }
