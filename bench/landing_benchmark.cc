@@ -174,7 +174,7 @@ struct StageTimes {
   std::array<double, kLandingStageCount> ms{};
   int frames = 0;
   void Add(const LandingReport& report) {
-    for (int i = 0; i < kLandingStageCount; ++i) ms[i] += 1e-6 * report.stage_ns[i];
+    for (int i = 0; i < kLandingStageCount; ++i) ms[i] += 1e-6 * report.diagnostics.stage_ns[i];
     ++frames;
   }
 };

@@ -74,14 +74,14 @@ void MeasureErrors(const LandingFrame& frame, const LandingDetection& detection,
   score->position_error = error.norm() / truth.norm();
   const Eigen::Matrix3d covariance = detection.covariance.topLeftCorner<3, 3>();
   score->nees = error.dot(covariance.ldlt().solve(error));
-  if (!detection.mirror_camera_from_pattern) return;
+  if (!detection.diagnostics.mirror_camera_from_pattern) return;
   const auto tilt_error = [&](const RigidTransform& pose) {
     const Vector3d z = Vector3d::UnitZ();
     return (pose.rotation * z - frame.camera_from_pattern->rotation * z).norm();
   };
   score->has_mirror = true;
-  score->is_mirrored =
-      tilt_error(*detection.mirror_camera_from_pattern) < tilt_error(detection.camera_from_pattern);
+  score->is_mirrored = tilt_error(*detection.diagnostics.mirror_camera_from_pattern) <
+                       tilt_error(detection.camera_from_pattern);
 }
 
 }  // namespace

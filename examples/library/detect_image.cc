@@ -16,10 +16,9 @@ int main(int argc, char** argv) {
   try {
     const kestrel::CameraModel camera(kestrel::ReadCalibration(argv[1]).intrinsics);
     const kestrel::LandingPatternDetector detector(camera, {});
-    kestrel::LandingWorkspace workspace;
     kestrel::Frame frame;
     if (!kestrel::OpenSource({argv[2]})->Next(&frame)) return 1;
-    const kestrel::LandingReport report = detector.Detect(frame.image, /*hint=*/{}, workspace);
+    const kestrel::LandingReport report = detector.Detect(frame.image);
     if (!report.detection) {
       std::cout << "no pattern: " << report.reason << "\n";
       return 1;

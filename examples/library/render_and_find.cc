@@ -11,8 +11,7 @@ int main() {
       kestrel::PlanLandingScenario("calm", {}, calibration, /*seed=*/1);
   const cv::Mat view = plan.render(0);
   const kestrel::LandingPatternDetector detector(kestrel::CameraModel(calibration.intrinsics), {});
-  kestrel::LandingWorkspace workspace;
-  const kestrel::LandingReport report = detector.Detect(view, /*hint=*/{}, workspace);
+  const kestrel::LandingReport report = detector.Detect(view);
   if (!report.detection) {
     std::cout << "no pattern: " << report.reason << "\n";
     return 1;

@@ -62,6 +62,11 @@ cv::Mat OfSize(const cv::Mat& image, const CameraIntrinsics& camera) {
 
 cv::Mat GrayImage(const py::handle& array) { return Image(array, 1); }
 cv::Mat ColorImage(const py::handle& array) { return Image(array, 3); }
+cv::Mat AnyImage(const py::handle& array) {
+  const bool is_color =
+      py::isinstance<py::array>(array) && py::reinterpret_borrow<py::array>(array).ndim() == 3;
+  return is_color ? ColorImage(array) : GrayImage(array);
+}
 cv::Mat GrayImage(const py::handle& array, const CameraIntrinsics& camera) {
   return OfSize(GrayImage(array), camera);
 }

@@ -16,6 +16,8 @@ namespace kestrel::python {
 // an image. Throws TypeError for anything else.
 cv::Mat GrayImage(const pybind11::handle& array);
 cv::Mat ColorImage(const pybind11::handle& array);
+// Either of them, by the number of axes.
+cv::Mat AnyImage(const pybind11::handle& array);
 
 // The same for an image of a camera. Throws ImageSizeError when it has another size.
 cv::Mat GrayImage(const pybind11::handle& array, const CameraIntrinsics& camera);

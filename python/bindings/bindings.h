@@ -12,6 +12,7 @@ void Warn(const std::string& text);
 // Each adds the classes and functions of one subject to the module. A function may use the classes
 // of those before it.
 void BindErrors(pybind11::module_& module);
+void BindEnums(pybind11::module_& module);
 void BindCameras(pybind11::module_& module);
 void BindPoses(pybind11::module_& module);
 void BindDetection(pybind11::module_& module);

@@ -92,7 +92,8 @@ void BindHint(py::module_& module) {
       .Field("altitude_m", &LandingHint::altitude_m, "Height of the camera above the pad, m.")
       .Field("up_in_camera", &LandingHint::up_in_camera,
              "Unit vector away from the ground, camera frame.")
-      .Field("first_step", &LandingHint::first_step, "LandingReport.next_step of the frame before.")
+      .Field("first_step", &LandingHint::first_step,
+             "SearchDiagnostics.next_step of the frame before.")
       .Field("max_search_ms", &LandingHint::max_search_ms, "Time limit, ms; 0: none.");
 }
 
@@ -131,6 +132,20 @@ void BindLandingDetection(py::module_& module) {
     detection->parts = {};
     for (const auto& part : value.cast<std::vector<SeenPart>>()) detection->parts.Add(part);
   };
+  using Diagnostics = DetectionDiagnostics;
+  ValueClass<Diagnostics>(module, "DetectionDiagnostics",
+                          "How a detection fits lens and print, for the examination of a "
+                          "calibration.")
+      .Field("misfit_px", &Diagnostics::misfit_px,
+             "Distance of the edges from where pose and lens predict them, RMS, px.")
+      .Field("misfit_bound_px", &Diagnostics::misfit_bound_px,
+             "Largest misfit that agrees with print and lens, px.")
+      .Field("seen", &Diagnostics::seen, "SeenPrint or None.")
+      .Field("calibration", &Diagnostics::calibration, "CalibrationEvidence.")
+      .Field("mirror_camera_from_pattern", &Diagnostics::mirror_camera_from_pattern,
+             "The other pose under which the print looks the same, or None.")
+      .Derived("is_misfit", &Diagnostics::is_misfit,
+               "True when lens or print are not as described.");
   Detection blank{};
   blank.center_px.setZero();
   blank.covariance.setZero();
@@ -141,8 +156,7 @@ void BindLandingDetection(py::module_& module) {
       .Field("covariance", &Detection::covariance,
              "Of the pose's error, float64 6 x 6: translation in the camera frame (m^2), rotation "
              "vector in the camera frame (rad^2).")
-      .Field("method", &Detection::method,
-             "'ring', 'partial', 'tags', 'letter', 'followed', 'other'.")
+      .Field("method", &Detection::method, "DetectionMethod.")
       .Field("quality", &Detection::quality, "Probability that it is the pad, 0 to 1.")
       .Field("semi_major_px", &Detection::semi_major_px, "Half of its longest extent, px.")
       .Field("semi_minor_px", &Detection::semi_minor_px, "Half of its extent across, px.")
@@ -150,14 +164,7 @@ void BindLandingDetection(py::module_& module) {
       .Field("heading_symmetry", &Detection::heading_symmetry,
              "Number of headings under which the pad looks the same; 0: all.")
       .Field("parts", parts, set_parts, "List of SeenPart.")
-      .Field("misfit_px", &Detection::misfit_px,
-             "Distance of the edges from where pose and lens predict them, RMS, px.")
-      .Field("misfit_bound_px", &Detection::misfit_bound_px,
-             "Largest misfit that agrees with print and lens, px.")
-      .Field("seen", &Detection::seen, "SeenPrint or None.")
-      .Field("calibration", &Detection::calibration, "CalibrationEvidence.")
-      .Field("mirror_camera_from_pattern", &Detection::mirror_camera_from_pattern,
-             "The other pose under which the print looks the same, or None.")
+      .Field("diagnostics", &Detection::diagnostics, "DetectionDiagnostics.")
       .Derived(
           "center_in_camera",
           [](const Detection& self) { return self.camera_from_pattern.translation; },
@@ -168,28 +175,29 @@ void BindLandingDetection(py::module_& module) {
             return self.covariance.diagonal().head<3>().cwiseSqrt();
           },
           "Standard deviations of that, m.")
-      .Derived("is_misfit", &Detection::is_misfit, "True when lens or print are not as described.")
       .Repr([](const Detection& self) { return "<LandingDetection: " + InWords(self) + ">"; });
 }
 
 void BindReport(py::module_& module) {
+  using Diagnostics = SearchDiagnostics;
+  ValueClass<Diagnostics>(module, "SearchDiagnostics", "Counts and times of one search for a pad.")
+      .Field(
+          "candidates", [](const Diagnostics& self) { return ByStage(self.candidates); },
+          [](const py::handle& value, Diagnostics* self) { SetByStage(value, &self->candidates); },
+          "Number of candidates that entered each stage, by the stages' names.")
+      .Field(
+          "stage_ns", [](const Diagnostics& self) { return ByStage(self.stage_ns); },
+          [](const py::handle& value, Diagnostics* self) { SetByStage(value, &self->stage_ns); },
+          "Time in each stage, ns, by the stages' names.")
+      .Field("next_step", &Diagnostics::next_step,
+             "Step at which the search ran out of time; 0: it did not.");
   ValueClass<SeenReport>(module, "LandingReport",
                          "The result of a search for a pad: the detection, or why there is none.")
       .Field("detection", &SeenReport::detection, "LandingDetection or None.")
       .Field("reached", &SeenReport::reached,
-             "'found', or the stage at which the best candidate fell: 'binarize', 'areas', 'ring', "
-             "'cross', 'match', 'locate'.")
+             "LandingStage: FOUND, or the stage at which the best candidate fell.")
       .Field("reason", &SeenReport::reason, "Why it fell; empty when found.")
-      .Field(
-          "candidates", [](const SeenReport& self) { return ByStage(self.candidates); },
-          [](const py::handle& value, SeenReport* self) { SetByStage(value, &self->candidates); },
-          "Number of candidates that entered each stage, by the stages' names.")
-      .Field(
-          "stage_ns", [](const SeenReport& self) { return ByStage(self.stage_ns); },
-          [](const py::handle& value, SeenReport* self) { SetByStage(value, &self->stage_ns); },
-          "Time in each stage, ns, by the stages' names.")
-      .Field("next_step", &SeenReport::next_step,
-             "Step at which the search ran out of time; 0: it did not.")
+      .Field("diagnostics", &SeenReport::diagnostics, "SearchDiagnostics.")
       .Field("view", &SeenReport::view, "PadView for drawing it, or None.")
       .Repr([](const SeenReport& self) { return "<LandingReport: " + InWords(self) + ">"; })
       .py()

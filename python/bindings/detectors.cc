@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -13,8 +14,12 @@
 #include "detector.h"
 #include "enum_casters.h"
 #include "kestrel/core/base/read_file.h"
+#include "kestrel/detect_tags.h"
+#include "kestrel/helipad_detector.h"
 #include "kestrel/landing_pattern_detector.h"
 #include "kestrel/landing_pipeline.h"
+#include "kestrel/make_target_detector.h"
+#include "kestrel/tag_board_detector.h"
 #include "kestrel/vision/tags/plain_tags.h"
 #include "kestrel/vision/targets/ring_with_tags_detector.h"
 #include "option_values.h"
@@ -204,6 +209,52 @@ void BindTags(py::module_& module) {
            "landing.detector and landing.target.tags of `kestrel config`.");
 }
 
+using CornerRows = Eigen::Matrix<double, 4, 2, Eigen::RowMajor>;
+
+CornerRows CornersOf(const TagDetection& tag) {
+  CornerRows rows;
+  for (int k = 0; k < 4; ++k) rows.row(k) = tag.corners_px[k].transpose();
+  return rows;
+}
+
+void SetCorners(const py::handle& value, TagDetection* tag) {
+  const auto rows = value.cast<CornerRows>();
+  for (int k = 0; k < 4; ++k) tag->corners_px[k] = rows.row(k).transpose();
+}
+
+void BindDetectTags(py::module_& module) {
+  TagDetection blank;
+  blank.corners_px.fill(Eigen::Vector2d::Zero());
+  ValueClass<TagDetection>(module, "TagDetection", "A tag in an image.", blank)
+      .Field("family", &TagDetection::family, "Name of its family, as 'tag36h11'.")
+      .Field("id", &TagDetection::id, "int.")
+      .Field("corners_px", CornersOf, SetCorners,
+             "Corners of the square where its black and white borders meet, float64 4 x 2, px: "
+             "clockwise in the image from the tag's upper left corner, as OpenCV's detectMarkers "
+             "returns them; libapriltag has them in reverse.")
+      .Field("decision_margin", &TagDetection::decision_margin,
+             "Mean distance of the bits from the threshold between black and white, gray values, "
+             "as libapriltag defines it, but without its sharpening.")
+      .Repr([](const TagDetection& self) {
+        return fmt::format("<TagDetection: {} id {} at ({:.1f}, {:.1f}) px>", self.family, self.id,
+                           self.corners_px[0].x(), self.corners_px[0].y());
+      });
+  module.def("tag_families", &TagFamilies, "Returns the names of all families of detect_tags.");
+  module.def(
+      "detect_tags",
+      [](const py::handle& image, const std::vector<std::string>& families) {
+        const cv::Mat pixels = AnyImage(image);
+        const py::gil_scoped_release release;
+        return DetectTags(pixels, families);
+      },
+      py::arg("image"), py::arg("families"),
+      "Finds all AprilTags and ArUco markers in an image, without a calibration.\n\nimage: uint8 "
+      "of shape (rows, columns) or (rows, columns, 3), BGR, of any size; its pixels are not "
+      "copied.\nfamilies: list of names, as ['tag36h11', 'aruco_4x4_50'] (tag_families).\nReturns "
+      "a list of TagDetection, by family and id. Raises TypeError for another kind of array, "
+      "InputError for an unknown family. Lets other threads run.");
+}
+
 void BindHelipad(py::module_& module) {
   FinderClass<HelipadFinder>(module, "HelipadDetector", "Finds a helipad by its H.")
       .def(py::init([](const CameraArgument& camera, const py::object& options,
@@ -257,6 +308,7 @@ void BindDetectors(py::module_& module) {
   BindBase(module);
   BindLandingPattern(module);
   BindTags(module);
+  BindDetectTags(module);
   BindHelipad(module);
   BindOwnPad(module);
   BindMakeDetector(module);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Enums are words in Python: "ring", "tracking". They are those of the tables and the command.
+// Enums are enums in Python, too. The values of their members are words, "ring" or "tracking",
+// those of the tables and the command; a word is accepted in place of a member.
 
 #include <array>
 #include <string>
@@ -13,9 +14,16 @@
 
 namespace kestrel::python {
 
-// The values of an enum with their words.
+// The values of an enum with their words, and its name.
 template <class Enum>
 struct Words;
+
+// The class of an enum in Python. BindEnums sets it; the interpreter keeps it.
+template <class Enum>
+pybind11::handle& EnumClass() {
+  static pybind11::handle enum_class;
+  return enum_class;
+}
 
 template <class Enum, auto... values>
 struct WordsByToString {
@@ -25,6 +33,7 @@ struct WordsByToString {
 
 template <>
 struct Words<DetectionMethod> {
+  static constexpr char kName[] = "DetectionMethod";
   static constexpr auto kValues = kDetectionMethods;
   static const char* Of(DetectionMethod value) { return ToString(value); }
 };
@@ -32,32 +41,47 @@ template <>
 struct Words<LandingStage>
     : WordsByToString<LandingStage, LandingStage::kBinarize, LandingStage::kAreas,
                       LandingStage::kRing, LandingStage::kCross, LandingStage::kMatch,
-                      LandingStage::kLocate, LandingStage::kFound> {};
+                      LandingStage::kLocate, LandingStage::kFound> {
+  static constexpr char kName[] = "LandingStage";
+};
 template <>
 struct Words<MeasurementFate>
     : WordsByToString<MeasurementFate, MeasurementFate::kStarted, MeasurementFate::kAccepted,
                       MeasurementFate::kInvalid, MeasurementFate::kTooOld,
-                      MeasurementFate::kFarFromTrack> {};
+                      MeasurementFate::kFarFromTrack> {
+  static constexpr char kName[] = "MeasurementFate";
+};
 template <>
 struct Words<TrackState>
     : WordsByToString<TrackState, TrackState::kSearching, TrackState::kTracking,
-                      TrackState::kPredicting, TrackState::kLost> {};
+                      TrackState::kPredicting, TrackState::kLost> {
+  static constexpr char kName[] = "TrackState";
+};
 template <>
 struct Words<PoseLookup>
     : WordsByToString<PoseLookup, PoseLookup::kFound, PoseLookup::kEmpty, PoseLookup::kTooOld,
-                      PoseLookup::kTooNew, PoseLookup::kGap, PoseLookup::kPredicted> {};
+                      PoseLookup::kTooNew, PoseLookup::kGap, PoseLookup::kPredicted> {
+  static constexpr char kName[] = "PoseLookup";
+};
 template <>
 struct Words<PositionMethod>
-    : WordsByToString<PositionMethod, PositionMethod::kSize, PositionMethod::kAltitude> {};
+    : WordsByToString<PositionMethod, PositionMethod::kSize, PositionMethod::kAltitude> {
+  static constexpr char kName[] = "PositionMethod";
+};
 template <>
 struct Words<Completeness> : WordsByToString<Completeness, Completeness::kWhole,
-                                             Completeness::kCutOff, Completeness::kMerged> {};
+                                             Completeness::kCutOff, Completeness::kMerged> {
+  static constexpr char kName[] = "Completeness";
+};
 template <>
 struct Words<ObjectShape>
-    : WordsByToString<ObjectShape, ObjectShape::kDisc, ObjectShape::kCuboid, ObjectShape::kBar> {};
+    : WordsByToString<ObjectShape, ObjectShape::kDisc, ObjectShape::kCuboid, ObjectShape::kBar> {
+  static constexpr char kName[] = "ObjectShape";
+};
 
 template <>
 struct Words<PoseStatus> {
+  static constexpr char kName[] = "PoseStatus";
   static constexpr std::array kValues = {PoseStatus::kOk, PoseStatus::kOutOfOrder,
                                          PoseStatus::kInvalid};
   static const char* Of(PoseStatus value) {
@@ -68,6 +92,7 @@ struct Words<PoseStatus> {
 // The words of a calibration file.
 template <>
 struct Words<DistortionModel> {
+  static constexpr char kName[] = "DistortionModel";
   static constexpr std::array kValues = {DistortionModel::kNone, DistortionModel::kRadialTangential,
                                          DistortionModel::kEquidistant};
   static const char* Of(DistortionModel value) {
@@ -77,13 +102,14 @@ struct Words<DistortionModel> {
 };
 template <>
 struct Words<PixelFormat> {
+  static constexpr char kName[] = "PixelFormat";
   static constexpr std::array kValues = {PixelFormat::kGray, PixelFormat::kBgr};
   static const char* Of(PixelFormat value) { return value == PixelFormat::kGray ? "gray" : "bgr"; }
 };
 
 template <class Enum>
 struct EnumCaster {
-  PYBIND11_TYPE_CASTER(Enum, pybind11::detail::const_name("str"));
+  PYBIND11_TYPE_CASTER(Enum, pybind11::detail::const_name(Words<Enum>::kName));
 
   bool load(pybind11::handle source, bool /*convert*/) {
     if (!pybind11::isinstance<pybind11::str>(source)) return false;
@@ -97,7 +123,7 @@ struct EnumCaster {
   }
   static pybind11::handle cast(Enum enumerator, pybind11::return_value_policy /*policy*/,
                                pybind11::handle /*parent*/) {
-    return pybind11::str(Words<Enum>::Of(enumerator)).release();
+    return EnumClass<Enum>()(Words<Enum>::Of(enumerator)).release();
   }
 };
 

@@ -8,9 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "bind_enum.h"
 #include "bindings.h"
 #include "casters.h"
-#include "enum_casters.h"
 #include "kestrel/app/evaluation/evaluate_hunt.h"
 #include "kestrel/app/evaluation/evaluate_landing.h"
 #include "value_class.h"
@@ -19,6 +19,7 @@ namespace kestrel::python {
 
 template <>
 struct Words<LandingVerdict> {
+  static constexpr char kName[] = "LandingVerdict";
   static constexpr std::array kValues = {LandingVerdict::kFound, LandingVerdict::kMissed,
                                          LandingVerdict::kFalse, LandingVerdict::kQuiet};
   static const char* Of(LandingVerdict value) {
@@ -50,6 +51,10 @@ std::vector<ObjectComparison> CompareSightings(const std::filesystem::path& reco
 }
 
 void BindLandingComparison(py::module_& module) {
+  BindEnum<LandingVerdict>(
+      module,
+      "Whether a pad was found, missed, another thing was detected (FALSE), or "
+      "there was neither a pad nor a detection (QUIET).");
   ValueClass<LandingErrors>(module, "LandingErrors",
                             "Errors of a right detection, estimate minus truth.")
       .Field("center_px", &LandingErrors::center_px, "Of the centre in the image, px.")
@@ -64,9 +69,7 @@ void BindLandingComparison(py::module_& module) {
   ValueClass<LandingComparison>(module, "LandingComparison", "An image, its result, its truth.")
       .Field("time_ns", &LandingComparison::time, "Of the image, int, ns.")
       .Field("condition", &LandingComparison::condition, "Light and weather of scene.yaml.")
-      .Field("verdict", &LandingComparison::verdict,
-             "'found', 'missed', 'false' (something else was detected), or 'quiet' (neither the "
-             "pad nor a detection).")
+      .Field("verdict", &LandingComparison::verdict, "LandingVerdict.")
       .Field("truth", &LandingComparison::truth,
              "TruePattern, or None where the pad is not in the scene.")
       .Field("tilt", &LandingComparison::tilt,

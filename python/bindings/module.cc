@@ -8,6 +8,7 @@ PYBIND11_MODULE(_kestrel, module) {
   module.doc() = "The compiled part of kestrel.";
   module.attr("__version__") = kestrel::kVersion;
   BindErrors(module);
+  BindEnums(module);
   BindPoses(module);
   BindCameras(module);
   BindDetection(module);

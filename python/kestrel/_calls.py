@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import enum
 import functools
 import inspect
 import os
@@ -32,6 +33,8 @@ def with_clear_errors(value: Any) -> Any:
     """Returns a bound function whose TypeError is one line, or a class with such methods."""
     if not inspect.isclass(value):
         return _with_clear_errors(value, value.__name__, is_method=False)
+    if issubclass(value, enum.Enum):
+        return value
     for name, member in list(vars(value).items()):
         full_name = value.__name__ + ("" if name == "__init__" else f".{name}")
         if isinstance(member, staticmethod):
@@ -57,6 +60,7 @@ def _with_clear_errors(function: Callable[..., Any], name: str,
         raise TypeError(line)
 
     call.__qualname__ = name
+    call.__doc__ = (function.__doc__ or "").replace("kestrel._kestrel.", "kestrel.")
     return call
 
 
@@ -125,6 +129,8 @@ def _may_be(kind: str, value: Any) -> bool:
     if test:
         return test(value)
     bound = getattr(_kestrel, kind.rpartition(".")[2], None)
+    if isinstance(bound, enum.EnumMeta):
+        return value in list(bound)
     return not inspect.isclass(bound) or isinstance(value, bound)
 
 

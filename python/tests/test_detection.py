@@ -16,7 +16,7 @@ def test_the_pattern_is_found_where_it_was_drawn(calibration, drawn, below):
     np.testing.assert_allclose(found.center_px, expected, atol=0.1)
     assert found.quality > 0.9
     assert (np.linalg.eigvalsh(found.covariance) > 0).all()
-    assert report.candidates["found"] >= 1
+    assert report.diagnostics.candidates["found"] >= 1
 
 
 def test_a_miss_says_why(calibration):
@@ -143,3 +143,61 @@ def test_objects_are_found(hunt_flight):
         detector.detect(frames[0].image[:, :, 0])
     with pytest.raises(kestrel.InputError, match="did you mean 'min_pixels'"):
         kestrel.ObjectDetector(hunt_flight.calibration, min_pixel=3)
+
+
+@pytest.fixture(scope="module")
+def tag_image():
+    tag = {"kind": "apriltag", "apriltag": {"id": 3, "size_m": 0.5}}
+    return kestrel.simulate("calm", frames=10, rate_hz=10, target=tag)[0].image
+
+
+def test_all_tags_of_an_image_are_found(tag_image):
+    wide = np.hstack([tag_image, tag_image])
+    tags = kestrel.detect_tags(wide, ["aruco_4x4_50", "tag36h11"])
+    assert [(tag.family, tag.id) for tag in tags] == [("tag36h11", 3)] * 2
+    assert tags[0].corners_px.shape == (4, 2) and tags[0].decision_margin > 10
+    apart = np.abs(tags[0].corners_px - tags[1].corners_px).max(axis=0)
+    np.testing.assert_allclose(apart, [tag_image.shape[1], 0], atol=0.1)
+    assert "tag36h11 id 3 at (" in repr(tags[0])
+
+
+def test_the_corners_turn_with_the_image(tag_image):
+    before = kestrel.detect_tags(tag_image, ["tag36h11"])[0].corners_px
+    turned = np.ascontiguousarray(np.rot90(tag_image, -1))
+    after = kestrel.detect_tags(turned, ["tag36h11"])[0].corners_px
+    expected = np.stack([tag_image.shape[0] - 1 - before[:, 1], before[:, 0]], axis=1)
+    np.testing.assert_allclose(after, expected, atol=0.1)
+
+
+def test_the_corners_are_in_the_order_of_the_pose(tag_image):
+    corners = kestrel.detect_tags(tag_image, ["tag36h11"])[0].corners_px
+    tag = {"family": "tag36h11", "id": 3, "size_m": 0.5}
+    calibration = kestrel.paper_calibration()
+    pose = kestrel.TagBoardDetector(calibration, [tag]).detect(tag_image).detection.camera_from_pattern
+    places = 0.25 * np.array([[-1, 1, 0], [1, 1, 0], [1, -1, 0], [-1, -1, 0]])
+    expected = kestrel.CameraModel(calibration).project(pose @ places)
+    np.testing.assert_allclose(corners, expected, atol=1)
+
+
+def test_a_colour_image_has_the_tags_of_its_luminance(tag_image):
+    color = np.stack([tag_image] * 3, axis=2)
+    assert [tag.id for tag in kestrel.detect_tags(color, ["tag36h11"])] == [3]
+
+
+def test_wrong_calls_of_detect_tags(tag_image):
+    with pytest.raises(kestrel.InputError, match="'tag36h12', did you mean 'tag36h11'"):
+        kestrel.detect_tags(tag_image, ["tag36h12"])
+    with pytest.raises(TypeError, match="detect_tags: 'families' is 'tag36h11'"):
+        kestrel.detect_tags(tag_image, "tag36h11")
+    with pytest.raises(TypeError, match="image: got uint8 array of shape .0, 0."):
+        kestrel.detect_tags(np.zeros((0, 0), np.uint8), ["tag36h11"])
+    with pytest.raises(TypeError, match="image: got float64 array"):
+        kestrel.detect_tags(np.full((48, 64), np.nan), ["tag36h11"])
+    assert kestrel.detect_tags(np.zeros((1, 1), np.uint8), ["tag36h11"]) == []
+    assert "tag36h11" in kestrel.tag_families()
+
+
+@pytest.mark.parametrize("size_m", [float("nan"), 0, -1])
+def test_a_tag_of_no_size_is_refused(calibration, size_m):
+    with pytest.raises(kestrel.InputError, match="size_m"):
+        kestrel.make_detector(calibration, target={"kind": "apriltag", "apriltag": {"size_m": size_m}})

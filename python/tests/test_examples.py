@@ -28,10 +28,31 @@ def recording(tmp_path_factory):
     return folder
 
 
-def test_the_first_program_of_the_page_finds_its_tag(capsys):
+@pytest.fixture(scope="module")
+def photo(tmp_path_factory):
+    """An image with tag 3."""
+    folder = tmp_path_factory.mktemp("photo")
+    tag = {"kind": "apriltag", "apriltag": {"id": 3}}
+    assert kestrel.simulate("calm", frames=10, rate_hz=10, target=tag).write(folder / "flight")
+    return min((folder / "flight/mav0/cam0/data").iterdir()).rename(folder / "photo.png")
+
+
+def run_block(index):
+    """Runs a program of the page."""
     page = (EXAMPLES.parents[1] / "docs/python.md").read_text()
-    exec(page.split("```python\n")[1].split("```")[0], {})
+    exec(page.split("```python\n")[index].split("```")[0], {})
+
+
+def test_the_first_programs_of_the_page_find_their_tags(photo, monkeypatch, capsys):
+    monkeypatch.chdir(photo.parent)
+    run_block(1)
+    assert "tag36h11 3 at [" in capsys.readouterr().out
+    run_block(2)
     assert "found at" in capsys.readouterr().out
+
+
+def test_list_tags(photo):
+    assert run("list_tags.py", photo).startswith("tag36h11 3 at [")
 
 
 def test_detect_image(recording):

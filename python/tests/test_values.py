@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Plain values: pickled, copied, printed."""
 import copy
+import enum
+import json
 import pickle
 
 import numpy as np
@@ -96,3 +98,15 @@ def test_an_array_of_a_result_outlives_it(calibration, drawn):
     for _ in range(50):
         kestrel.LandingPatternDetector(calibration).detect(drawn)
     assert np.array_equal(position, kept[0]) and np.array_equal(covariance, kept[1])
+
+
+def test_an_enum_is_equal_to_its_word_and_prints_as_it(results):
+    method = results[2].detection.method
+    assert method is kestrel.DetectionMethod.RING
+    assert isinstance(method, enum.Enum) and method == "ring"
+    assert str(method) == f"{method}" == "ring"
+    assert json.dumps({"method": method}) == '{"method": "ring"}'
+    assert kestrel.PoseStatus("out of order") is kestrel.PoseStatus.OUT_OF_ORDER
+    assert pickle.loads(pickle.dumps(method)) is method
+    pinhole = kestrel.CameraIntrinsics(distortion_model=kestrel.DistortionModel.NONE)
+    assert pinhole.distortion_model is kestrel.CameraIntrinsics(distortion_model="none").distortion_model

@@ -114,10 +114,10 @@ LandingObservation LandResult::Next(Time time,
         observation.report.detection.emplace(DetectionOf(*pattern, world_from_camera));
     detection.method = row.method;
     detection.quality = row.quality;
-    detection.misfit_px = row.misfit_px;
+    detection.diagnostics.misfit_px = row.misfit_px;
     detection.id = row.id;
     // The table does not have the bound of the misfit.
-    detection.misfit_bound_px = std::numeric_limits<double>::infinity();
+    detection.diagnostics.misfit_bound_px = std::numeric_limits<double>::infinity();
     observation.center_in_world = pattern->center_in_world;
     observation.yaw_in_world = pattern->yaw_in_world;
   } else {

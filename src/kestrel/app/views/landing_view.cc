@@ -117,11 +117,12 @@ std::string InWords(const LandingDetection& found) {
 }
 
 std::string MisfitInWords(const LandingDetection& detection) {
-  if (detection.misfit_px == 0) return "";
-  return fmt::format("{:.2f} px{}", detection.misfit_px,
-                     detection.is_misfit()
-                         ? fmt::format(", at most {:.2f} expected", detection.misfit_bound_px)
-                         : "");
+  if (detection.diagnostics.misfit_px == 0) return "";
+  return fmt::format(
+      "{:.2f} px{}", detection.diagnostics.misfit_px,
+      detection.diagnostics.is_misfit()
+          ? fmt::format(", at most {:.2f} expected", detection.diagnostics.misfit_bound_px)
+          : "");
 }
 
 ViewMapObject MapObject(const std::string& label, const TurnState& motion) {
@@ -180,15 +181,15 @@ std::vector<OverlayShape> LandingShapes(const LandingView& view,
   const OverlayLayer layer = is_rejected ? OverlayLayer::kRejected : OverlayLayer::kDetection;
   const std::string label = fmt::format("{}, {:.0f} %{}", InWords(found), 100 * found.quality,
                                         is_rejected ? ", far from the track" : "");
-  const bool is_seen_elsewhere = found.is_misfit() && found.seen;
+  const bool is_seen_elsewhere = found.diagnostics.is_misfit() && found.diagnostics.seen;
   if (is_seen_elsewhere) {
-    const PlaneWarp warp = found.seen->Warp(view.camera);
+    const PlaneWarp warp = found.diagnostics.seen->Warp(view.camera);
     AddOutlines(view.shape, AsSeen(warp), layer, label + ", as seen", &shapes);
   }
   AddOutlines(view.shape, ByPose(view.camera, found.camera_from_pattern),
               is_seen_elsewhere ? OverlayLayer::kRejected : layer,
               is_seen_elsewhere
-                  ? fmt::format("by the calibration: {:.1f} px beside", found.misfit_px)
+                  ? fmt::format("by the calibration: {:.1f} px beside", found.diagnostics.misfit_px)
                   : label,
               &shapes);
   shapes.push_back(
@@ -222,10 +223,10 @@ ViewStatus LandingStatus(const LandingObservation& observation) {
     status.reason = "not found: " + MissInWords(observation);
   } else if (observation.fate == MeasurementFate::kFarFromTrack) {
     status.reason = "found, but far from where the track has it";
-  } else if (report.detection->is_misfit()) {
+  } else if (report.detection->diagnostics.is_misfit()) {
     status.reason =
         fmt::format("found, but {:.1f} px beside where the calibration has it: is it this lens's?",
-                    report.detection->misfit_px);
+                    report.detection->diagnostics.misfit_px);
   } else if (!observation.world_from_camera) {
     status.reason = "found, but where the UAV was is not known";
   }

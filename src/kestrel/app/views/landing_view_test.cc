@@ -130,10 +130,11 @@ TEST(LandingViewTest, ShowsDetectionFarFromTrackAsRejected) {
 TEST(LandingViewTest, ShowsBothOutlinesOfMisfit) {
   LandingObservation observation = Seen();
   LandingDetection& detection = *observation.report.detection;
-  detection.seen = SeenPrint{detection.camera_from_pattern, PlaneWarp::Coefficients::Zero(), 0.5};
-  detection.seen->displacement_px(1, 0) = 25;
-  detection.misfit_px = 20;
-  detection.misfit_bound_px = 1;
+  detection.diagnostics.seen =
+      SeenPrint{detection.camera_from_pattern, PlaneWarp::Coefficients::Zero(), 0.5};
+  detection.diagnostics.seen->displacement_px(1, 0) = 25;
+  detection.diagnostics.misfit_px = 20;
+  detection.diagnostics.misfit_bound_px = 1;
   const auto shapes = LandingShapes(View(), observation);
   ASSERT_EQ(shapes.size(), 8U);
   EXPECT_EQ(shapes[1].layer, OverlayLayer::kDetection);
@@ -145,7 +146,7 @@ TEST(LandingViewTest, ShowsBothOutlinesOfMisfit) {
   EXPECT_NE(LandingStatus(observation).reason.find("20.0 px beside"), std::string::npos);
   EXPECT_EQ(LandingFacts(observation).back().value, "20.00 px, at most 1.00 expected");
   EXPECT_EQ(LandingFacts(LandingObservation()).size(), LandingFacts(observation).size());
-  detection.misfit_bound_px = 30;
+  detection.diagnostics.misfit_bound_px = 30;
   EXPECT_EQ(LandingShapes(View(), observation).size(), 5U) << "no more than should be";
 }
 

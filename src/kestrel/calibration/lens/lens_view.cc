@@ -45,7 +45,8 @@ std::optional<LensView> LensViewFinder::Find(const std::string& name, const cv::
     return std::nullopt;
   }
   const LandingDetection& seen = *report.detection;
-  const CameraModel camera(Recalibrated(detector_.camera().intrinsics(), seen.calibration));
+  const CameraModel camera(
+      Recalibrated(detector_.camera().intrinsics(), seen.diagnostics.calibration));
   PrintAlignment alignment{PlaneWarp(camera, seen.camera_from_pattern, outline_->radius_m()), {}};
   const double reach_px = std::max(kLeastReachPx, kReachShare * 2 * seen.semi_major_px);
   if (!AlignPrint(image, image, {}, outline_->all(), reach_px, kMinStep, &alignment)) {

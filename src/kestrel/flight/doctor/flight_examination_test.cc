@@ -40,7 +40,7 @@ class FlightExaminationTest : public ::testing::Test {
     LandingDetection& detection = observation.report.detection.emplace();
     detection.camera_from_pattern = (world_from_body * true_mount).Inverse();
     detection.semi_minor_px = 50;
-    detection.misfit_px = 0.2;
+    detection.diagnostics.misfit_px = 0.2;
     return observation;
   }
 

@@ -42,6 +42,7 @@ class HelipadDetector final : public TargetDetector {
   HelipadDetector& operator=(HelipadDetector&&) noexcept;
 
   // As of TargetDetector. Does not allocate once the workspace has warmed up.
+  using TargetDetector::Detect;
   LandingReport Detect(const cv::Mat& image, const LandingHint& hint,
                        TargetWorkspace& workspace) const override;
   std::unique_ptr<TargetWorkspace> MakeWorkspace() const override;

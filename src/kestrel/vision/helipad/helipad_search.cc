@@ -161,7 +161,7 @@ void HelipadSearch::Report(const AlignedPad& found, double quality, DetectionMet
   AlignedPad aligned = found;
   const std::optional<RigidTransform> mirror = ResolveMirror(&aligned);
   LandingDetection detection = DetectionOf(aligned, quality, method);
-  detection.mirror_camera_from_pattern = mirror;
+  detection.diagnostics.mirror_camera_from_pattern = mirror;
   RigidTransform& pose = detection.camera_from_pattern;
   if (hint_.rotation_in_camera &&
       pose.rotation.angularDistance(*hint_.rotation_in_camera) > kPi / 2) {

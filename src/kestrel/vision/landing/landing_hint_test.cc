@@ -135,11 +135,11 @@ TEST_F(LandingHintTest, GoodPredictionNeedsNoSearch) {
     hint.up_in_camera = truth.rotation * Eigen::Vector3d::UnitZ();
     const LandingReport searched = Detect(image, hint);
     ASSERT_TRUE(searched.detection);
-    EXPECT_GT(searched.candidates[kAreas], 0);
+    EXPECT_GT(searched.diagnostics.candidates[kAreas], 0);
     hint.center_in_camera = truth.translation + Eigen::Vector3d(0.03, -0.02, 0.02 * distance);
     const LandingReport predicted = Detect(image, hint);
     ASSERT_TRUE(predicted.detection);
-    EXPECT_EQ(predicted.candidates[kAreas], 0) << distance << " m";
+    EXPECT_EQ(predicted.diagnostics.candidates[kAreas], 0) << distance << " m";
     EXPECT_EQ(predicted.detection->method, searched.detection->method);
     EXPECT_LT((predicted.detection->center_px - searched.detection->center_px).norm(), 0.05);
     EXPECT_LT((predicted.detection->camera_from_pattern.translation -
@@ -151,7 +151,7 @@ TEST_F(LandingHintTest, GoodPredictionNeedsNoSearch) {
     hint.center_sigma_m = 0.2;
     const LandingReport around = Detect(image, hint);
     ASSERT_TRUE(around.detection);
-    EXPECT_GT(around.candidates[kAreas], 0);
+    EXPECT_GT(around.diagnostics.candidates[kAreas], 0);
   }
 }
 
@@ -179,13 +179,13 @@ TEST_F(LandingHintTest, SearchOutOfTimeContinuesInNextFrame) {
     ASSERT_LT(frames, static_cast<int>(kSearchSteps));
     const LandingReport report = bounded.Detect(image, hint, workspace_);
     if (report.detection) {
-      EXPECT_EQ(report.next_step, 0);
+      EXPECT_EQ(report.diagnostics.next_step, 0);
       EXPECT_LT((report.detection->camera_from_pattern.translation - truth.translation).norm(),
                 0.03 * truth.translation.norm());
       break;
     }
-    EXPECT_GT(report.next_step, hint.first_step);
-    hint.first_step = report.next_step;
+    EXPECT_GT(report.diagnostics.next_step, hint.first_step);
+    hint.first_step = report.diagnostics.next_step;
   }
   EXPECT_GT(frames, 1) << "the first steps look for larger rings";
 }
@@ -202,8 +202,8 @@ TEST_F(LandingHintTest, BoundedSearchOfEmptyImageTakesStepsInTurn) {
     for (int frame = 0; frame < 2 * static_cast<int>(kSearchSteps); ++frame) {
       const LandingReport report = bounded.Detect(image, hint, workspace_);
       EXPECT_FALSE(report.detection);
-      steps.insert(report.next_step);
-      hint.first_step = report.next_step;
+      steps.insert(report.diagnostics.next_step);
+      hint.first_step = report.diagnostics.next_step;
     }
     // Without a hint, the likely part is the whole image, so there is only one round.
     EXPECT_GE(steps.size(), kSearchSteps);
@@ -222,14 +222,14 @@ TEST_F(LandingHintTest, UnboundedSearchIsComplete) {
   const cv::Mat other = Draw(SpokedPrint(pattern_, 3), pose_);
   for (const cv::Mat& image : {image_, far, other}) {
     const LandingReport whole = Detect(image);
-    EXPECT_EQ(whole.next_step, 0);
+    EXPECT_EQ(whole.diagnostics.next_step, 0);
     ExpectSame(generous.Detect(image, {}, workspace_), whole);
     for (const int first_step : {1, 7, 19, 30, -5, 1000}) {
       LandingHint hint;
       hint.first_step = first_step;
       const LandingReport report = Detect(image, hint);
       EXPECT_EQ(report.detection.has_value(), whole.detection.has_value()) << first_step;
-      EXPECT_EQ(report.next_step, 0) << first_step;
+      EXPECT_EQ(report.diagnostics.next_step, 0) << first_step;
     }
   }
 }

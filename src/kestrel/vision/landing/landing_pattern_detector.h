@@ -63,6 +63,7 @@ class LandingPatternDetector final : public TargetDetector {
   LandingPatternDetector& operator=(LandingPatternDetector&&) noexcept;
 
   // As of TargetDetector. 'workspace': a LandingWorkspace.
+  using TargetDetector::Detect;
   LandingReport Detect(const cv::Mat& image, const LandingHint& hint,
                        TargetWorkspace& workspace) const override;
   std::unique_ptr<TargetWorkspace> MakeWorkspace() const override;

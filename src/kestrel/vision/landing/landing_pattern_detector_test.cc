@@ -229,7 +229,7 @@ TEST_F(LandingPatternDetectorTest, RejectsFlatImageAtFirstStages) {
   const LandingReport report = Detect(cv::Mat(240, 320, CV_8UC1, cv::Scalar(100)));
   EXPECT_FALSE(report.detection);
   EXPECT_EQ(report.reached, LandingStage::kBinarize);
-  EXPECT_EQ(report.candidates[static_cast<int>(LandingStage::kRing)], 0);
+  EXPECT_EQ(report.diagnostics.candidates[static_cast<int>(LandingStage::kRing)], 0);
 }
 
 TEST_F(LandingPatternDetectorTest, ReportsImageOfAnotherCamera) {
@@ -308,9 +308,9 @@ TEST_F(LandingPatternDetectorTest, CovarianceCoversMirrorPose) {
     const LandingReport report = Detect(image);
     ASSERT_TRUE(report.detection) << i << ": " << report.reason;
     const LandingDetection& detection = *report.detection;
-    if (!detection.mirror_camera_from_pattern) continue;
+    if (!detection.diagnostics.mirror_camera_from_pattern) continue;
     ++mirrored;
-    const RigidTransform& mirror = *detection.mirror_camera_from_pattern;
+    const RigidTransform& mirror = *detection.diagnostics.mirror_camera_from_pattern;
     const auto tilt = [&](const RigidTransform& pose) {
       return PoseError(pose, truth).tail<3>().norm();
     };
@@ -329,9 +329,11 @@ TEST_F(LandingPatternDetectorTest, CountsAndTimesStages) {
   for (const LandingStage stage :
        {LandingStage::kAreas, LandingStage::kRing, LandingStage::kCross, LandingStage::kMatch,
         LandingStage::kLocate, LandingStage::kFound}) {
-    EXPECT_GT(report.candidates[static_cast<int>(stage)], 0) << ToString(stage);
+    EXPECT_GT(report.diagnostics.candidates[static_cast<int>(stage)], 0) << ToString(stage);
   }
-  EXPECT_GT(std::accumulate(report.stage_ns.begin(), report.stage_ns.end(), std::int64_t{0}), 0);
+  EXPECT_GT(std::accumulate(report.diagnostics.stage_ns.begin(), report.diagnostics.stage_ns.end(),
+                            std::int64_t{0}),
+            0);
 }
 
 TEST(LandingPatternDetectorOptions, ReportsEveryViolation) {

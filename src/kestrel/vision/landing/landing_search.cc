@@ -53,7 +53,7 @@ LandingReport LandingSearch::Run() {
   TestPrediction();
   if (!choice_.IsSure()) TakeSteps();
   report_.detection = choice_.Detection();
-  if (report_.detection) report_.next_step = 0;
+  if (report_.detection) report_.diagnostics.next_step = 0;
   return report_;
 }
 
@@ -93,7 +93,7 @@ void LandingSearch::TakeSteps() {
     Take(step);
     if (choice_.IsSure()) return;
     if (IsOutOfTime()) {
-      report_.next_step = (index + 1) % (2 * static_cast<int>(kSearchSteps));
+      report_.diagnostics.next_step = (index + 1) % (2 * static_cast<int>(kSearchSteps));
       return;
     }
   }

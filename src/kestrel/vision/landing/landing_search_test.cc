@@ -123,7 +123,7 @@ TEST_F(LandingSearchTest, FindsPatternsInFourFramesAtQuarterOfTime) {
       for (bool is_found = false; !is_found && frames <= kFrames; ++frames) {
         const LandingReport report = LandingSearch(bounded, image, hint, &buffers_).Run();
         is_found = report.detection.has_value();
-        hint.first_step = report.next_step;
+        hint.first_step = report.diagnostics.next_step;
       }
       EXPECT_LE(frames, kFrames) << distance << " m, from step " << first;
     }

@@ -31,7 +31,7 @@ class LandingPatternDetectorTest : public ::testing::Test {
 inline void ExpectSame(const LandingReport& a, const LandingReport& b) {
   EXPECT_EQ(a.reached, b.reached);
   EXPECT_EQ(a.reason, b.reason);
-  EXPECT_EQ(a.candidates, b.candidates);
+  EXPECT_EQ(a.diagnostics.candidates, b.diagnostics.candidates);
   ASSERT_EQ(a.detection.has_value(), b.detection.has_value());
   if (!a.detection) return;
   EXPECT_EQ(a.detection->center_px, b.detection->center_px);

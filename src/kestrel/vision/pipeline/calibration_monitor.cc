@@ -59,14 +59,14 @@ CalibrationMonitor::Side* CalibrationMonitor::SideOf(const LandingDetection& det
 }
 
 void CalibrationMonitor::Add(const LandingDetection& detection) {
-  if (detection.misfit_px > 0) ++misfits_.detections;
-  if (detection.is_misfit()) ++misfits_.misfits;
+  if (detection.diagnostics.misfit_px > 0) ++misfits_.detections;
+  if (detection.diagnostics.is_misfit()) ++misfits_.misfits;
   AddEvidence(detection);
 }
 
 // Views without evidence are ignored.
 void CalibrationMonitor::AddEvidence(const LandingDetection& detection) {
-  const CalibrationEvidence& evidence = detection.calibration;
+  const CalibrationEvidence& evidence = detection.diagnostics.calibration;
   if (!(evidence.edge_variance > 0) || !evidence.information.allFinite()) return;
   Side* const side = SideOf(detection);
   if (side == nullptr) return;

@@ -27,7 +27,7 @@ struct Views {
         turn * random->Uniform(0.5, 1.5), Eigen::Vector3d(std::cos(angle), std::sin(angle), 0));
     detection.camera_from_pattern.translation = {0, 0, 3};
     detection.semi_major_px = 50;
-    CalibrationEvidence& evidence = detection.calibration;
+    CalibrationEvidence& evidence = detection.diagnostics.calibration;
     evidence.edge_variance = 0.01;
     const bool is_outlier = random->Chance(outliers);
     for (int i = 0; i < 2; ++i) {
@@ -115,7 +115,7 @@ TEST(CalibrationMonitor, IgnoresViewsWithoutEvidence) {
   Random random(1);
   for (int i = 0; i < 20; ++i) {
     LandingDetection detection = Views().Next(&random);
-    detection.calibration = {};
+    detection.diagnostics.calibration = {};
     monitor.Add(detection);
   }
   EXPECT_FALSE(monitor.Focal());
@@ -130,14 +130,14 @@ TEST(LensWarning, NamesBothFocalLengths) {
 TEST(LensWarning, CountsMisfits) {
   CalibrationMonitor monitor;
   LandingDetection detection{};
-  detection.misfit_px = 0.3;
-  detection.misfit_bound_px = 0.5;
+  detection.diagnostics.misfit_px = 0.3;
+  detection.diagnostics.misfit_bound_px = 0.5;
   for (int i = 0; i < 30; ++i) monitor.Add(detection);
   EXPECT_EQ(LensWarning(monitor, 370), "");
-  detection.misfit_px = 12;
+  detection.diagnostics.misfit_px = 12;
   for (int i = 0; i < 10; ++i) monitor.Add(detection);
   EXPECT_THAT(LensWarning(monitor, 370), HasSubstr("in 10 of 40 frames"));
-  detection.misfit_px = detection.misfit_bound_px = 0;  // no edges
+  detection.diagnostics.misfit_px = detection.diagnostics.misfit_bound_px = 0;  // no edges
   monitor.Add(detection);
   EXPECT_THAT(LensWarning(monitor, 370), HasSubstr("in 10 of 40 frames"));
 }

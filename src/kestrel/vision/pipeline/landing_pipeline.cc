@@ -196,7 +196,7 @@ void LandingPipeline::Impl::Detect(const cv::Mat& image, LandingObservation* obs
   const auto start = std::chrono::steady_clock::now();
   observation->report = detector_->Detect(image, hint, *workspace_);
   observation->detect_time = std::chrono::steady_clock::now() - start;
-  next_step_ = observation->report.next_step;
+  next_step_ = observation->report.diagnostics.next_step;
   auto& detection = observation->report.detection;
   if (!detection) return;
   contradictions_.Add(told, *detection);
@@ -215,7 +215,7 @@ double LandingPipeline::Impl::AltitudeExcess() const {
 // calibration themselves were located with their own focal length and are left alone.
 void LandingPipeline::Impl::AddErrorOfFocalLength(LandingDetection* detection) const {
   const auto focal = calibration_monitor_.Contradiction();
-  if (!focal || detection->calibration.contradicts) return;
+  if (!focal || detection->diagnostics.calibration.contradicts) return;
   const Eigen::Vector3d error_m = (focal->factor - 1) * detection->camera_from_pattern.translation;
   detection->covariance.topLeftCorner<3, 3>() += error_m * error_m.transpose();
 }

@@ -368,8 +368,8 @@ TEST_F(LandingPipelineTest, ReportsOtherLensWithinThirtyFrames) {
       const cv::Mat image = DrawRandomView(camera, options_.detector.pattern, &random);
       const LandingObservation seen = right.Process(image, kTime);
       ASSERT_TRUE(seen.report.detection) << seed << " " << i;
-      EXPECT_LT(seen.report.detection->misfit_px, 0.5) << seed << " " << i;
-      EXPECT_FALSE(seen.report.detection->is_misfit()) << seed << " " << i;
+      EXPECT_LT(seen.report.detection->diagnostics.misfit_px, 0.5) << seed << " " << i;
+      EXPECT_FALSE(seen.report.detection->diagnostics.is_misfit()) << seed << " " << i;
       EXPECT_EQ(LensWarning(right.calibration_monitor(), kFocal_px), "") << seed << " " << i;
       other_center.Process(image, kTime);
       EXPECT_FALSE(other_center.calibration_monitor().Contradiction()) << seed << " " << i;

@@ -37,8 +37,8 @@ double AngleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 template <class DifferenceOf>
 double LeastDifference(const LandingDetection& seen, const DifferenceOf& difference_of) {
   const double value = difference_of(seen.camera_from_pattern);
-  if (!seen.mirror_camera_from_pattern) return value;
-  const double mirrored = difference_of(*seen.mirror_camera_from_pattern);
+  if (!seen.diagnostics.mirror_camera_from_pattern) return value;
+  const double mirrored = difference_of(*seen.diagnostics.mirror_camera_from_pattern);
   return std::abs(mirrored) < std::abs(value) ? mirrored : value;
 }
 

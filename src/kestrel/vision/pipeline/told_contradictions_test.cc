@@ -122,7 +122,7 @@ TEST_F(ToldContradictionsTest, MirrorPoseMayAgree) {
   ToldContradictions contradictions;
   for (int i = 0; i < 20; ++i) {
     View view = See();
-    view.seen.mirror_camera_from_pattern = view.seen.camera_from_pattern;
+    view.seen.diagnostics.mirror_camera_from_pattern = view.seen.camera_from_pattern;
     RigidTransform& told_first = view.seen.camera_from_pattern;
     told_first.rotation = Rotation(0.9, Eigen::Vector3d::UnitX()) * told_first.rotation;
     contradictions.Add({5, view.up_in_camera}, view.seen);

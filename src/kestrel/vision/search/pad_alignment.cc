@@ -11,6 +11,7 @@
 
 #include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/core/image/gray_sampling.h"
+#include "kestrel/vision/search/edge_place.h"
 
 namespace kestrel {
 namespace {
@@ -18,13 +19,12 @@ namespace {
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-constexpr int kProfile = 11;        // gray values across an edge
+constexpr int kProfile = kEdgeProfile;
 constexpr double kReach = 0.5;      // share of the stroke, on either side of an edge
 constexpr double kMostReachPx = 6;  // at last; four times as far at first
 constexpr int kHalvings = 2;  // steps of the reach, each once edges move by less than a fourth
 constexpr double kLeastReachPx = 1.2;
 constexpr double kFineStrokePx = 8;  // strokes whose fine edges are looked at, too
-constexpr float kLeastStep = 6;      // gray values across an edge
 constexpr std::size_t kLeastEdges = 12;
 constexpr double kFloorPx = 0.06;  // noise of an edge's place that stays however sharp it is
 constexpr double kOutlier = 4;     // standard deviations
@@ -33,29 +33,6 @@ constexpr double kMostRmsPx = 0.35 * kMostReachPx;
 constexpr double kMostTurn = 0.3;    // largest rotation in a step, rad
 constexpr double kConverged = 1e-5;  // rad
 constexpr int kIterations = 12;
-
-// Returns the place of a rising edge in a profile over -reach to reach: the centroid of the
-// gradient around its steepest place. NaN where there is none.
-double EdgePlace(std::span<const float, kProfile> gray, double reach) {
-  std::array<float, kProfile - 2> gradient;
-  for (int i = 0; i + 2 < kProfile; ++i) {
-    if (gray[i] < 0 || gray[i + 2] < 0) return NAN;
-    gradient[i] = gray[i + 2] - gray[i];
-  }
-  const int steepest =
-      static_cast<int>(std::max_element(gradient.begin(), gradient.end()) - gradient.begin());
-  constexpr int kMiddle = static_cast<int>(gradient.size()) / 2;
-  const int around =
-      std::min(kMiddle, std::min(steepest, static_cast<int>(gradient.size()) - 1 - steepest));
-  double sum = 0, moment = 0;
-  for (int i = steepest - around; i <= steepest + around; ++i) {
-    const double weight = std::max(0.0f, gradient[i]);
-    sum += weight;
-    moment += weight * (i - kMiddle);
-  }
-  if (sum < kLeastStep) return NAN;
-  return moment / sum * 2 * reach / (kProfile - 1);
-}
 
 // The normal equations of one step.
 struct NormalEquations {

@@ -59,7 +59,7 @@ void PadSearch::Search() {
   const std::chrono::duration<double, std::milli> limit(hint_.max_search_ms);
   for (int step = hint_.first_step; step < Steps() && !is_found(); ++step) {
     if (limit.count() > 0 && step > hint_.first_step && Clock::now() - start > limit) {
-      report_.next_step = step;
+      report_.diagnostics.next_step = step;
       return;
     }
     if (MayHaveSize(step % PlaneBorders::kPasses)) SearchStep(part, step);
@@ -93,7 +93,7 @@ cv::Rect PadSearch::SearchedPart() const {
 }
 
 void PadSearch::ExamineBorders(std::size_t count, std::string_view reason) {
-  report_.candidates[static_cast<std::size_t>(LandingStage::kAreas)] +=
+  report_.diagnostics.candidates[static_cast<std::size_t>(LandingStage::kAreas)] +=
       static_cast<std::int32_t>(count);
   if (count == 0 || report_.reached >= LandingStage::kAreas) return;
   report_.reached = LandingStage::kAreas;
@@ -167,8 +167,8 @@ LandingDetection PadSearch::DetectionOf(const AlignedPad& aligned, double qualit
   detection.covariance = aligned.covariance;
   detection.method = method;
   detection.quality = quality;
-  detection.misfit_px = aligned.rms_px;
-  detection.misfit_bound_px = kMisfitBoundPx;
+  detection.diagnostics.misfit_px = aligned.rms_px;
+  detection.diagnostics.misfit_bound_px = kMisfitBoundPx;
   return detection;
 }
 

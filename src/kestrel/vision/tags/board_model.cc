@@ -8,10 +8,6 @@
 namespace kestrel {
 namespace {
 
-// Data bits that a tag needs for each bit that may be misread. A tag with fewer bits has to match
-// exactly: with one wrong bit tolerated, random pictures would match too often.
-constexpr int kBitsPerWrong = 18;
-
 // Adds the edge between two cells that lie beside each other: from (column, row) by 'step'.
 void AddEdge(int column, int row, std::pair<int, int> step, TagModel* tag) {
   const TagGrid& grid = tag->grid();
@@ -49,10 +45,7 @@ TagModel MakeTag(const BoardTag& tag, const PrintedTag& printed) {
   for (int row = 0; row < grid.width; ++row) {
     for (int column = 0; column < grid.width; ++column) {
       model.cell_centers.push_back(printed.OnBoard(column + 0.5, row + 0.5));
-      // Cells by their distance from the tag's rim. The two rings of cells at the edge of the
-      // square, black and white, are the same for all tags of a family and carry no data.
-      const int ring = std::min(std::min(column, row), grid.width - 1 - std::max(column, row));
-      model.is_data.push_back(ring != margin && ring != margin - 1);
+      model.is_data.push_back(grid.IsDataCell(column, row));
       AddEdge(column, row, {1, 0}, &model);
       AddEdge(column, row, {0, 1}, &model);
     }
@@ -61,7 +54,7 @@ TagModel MakeTag(const BoardTag& tag, const PrintedTag& printed) {
   for (std::size_t i = 0; i < grid.cells.size(); ++i) {
     bits += model.is_data[i] && grid.cells[i] != TagCell::kNone;
   }
-  model.most_wrong = std::min((tag.MinDistance() - 1) / 2, bits / kBitsPerWrong);
+  model.most_wrong = MostWrongBits(tag.MinDistance(), bits);
   return model;
 }
 

@@ -49,6 +49,7 @@ class TagBoardDetector final : public TargetDetector {
   TagBoardDetector& operator=(TagBoardDetector&&) noexcept;
 
   // As of TargetDetector. The detection's id is that of the board's first tag.
+  using TargetDetector::Detect;
   LandingReport Detect(const cv::Mat& image, const LandingHint& hint,
                        TargetWorkspace& workspace) const override;
   std::unique_ptr<TargetWorkspace> MakeWorkspace() const override;

@@ -77,6 +77,17 @@ TagGrid Turned(const TagGrid& grid) {
 
 }  // namespace
 
+bool TagGrid::IsDataCell(int column, int row) const {
+  // Number of the ring from the outside.
+  const int ring = std::min(std::min(column, row), width - 1 - std::max(column, row));
+  return ring != margin() && ring != margin() - 1;
+}
+
+int MostWrongBits(int min_distance, int bits) {
+  constexpr int kBitsPerWrong = 18;
+  return std::min((min_distance - 1) / 2, bits / kBitsPerWrong);
+}
+
 TagGrid SquareTag(int side, const std::vector<bool>& bits) {
   const int width = side + 4;
   TagGrid grid{width, side + 2, std::vector<TagCell>(width * width, TagCell::kNone)};

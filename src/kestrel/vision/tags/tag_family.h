@@ -20,7 +20,14 @@ struct TagGrid {
   TagCell at(int column, int row) const { return cells[row * width + column]; }
   // Cells between the edge of the drawing and the square that the size refers to.
   int margin() const { return (width - border_width) / 2; }
+  // Returns whether tags of a family may differ in a cell. Those on both sides of the square's edge
+  // are all tags' own.
+  bool IsDataCell(int column, int row) const;
 };
+
+// Returns how many of 'bits' may be misread in tags that differ in 'min_distance' bits: with more
+// it may be another tag, and of few bits chance makes too many.
+int MostWrongBits(int min_distance, int bits);
 
 // Returns a tag in ArUco's layout: side x side bits (true is white), row by row from the upper
 // left, in a black border of one cell and the white margin.

@@ -135,7 +135,7 @@ void TagSearch::Report(AlignedPad aligned, const SeenParts& parts, double qualit
                        DetectionMethod method) {
   const std::optional<RigidTransform> mirror = ResolveMirror(&aligned);
   LandingDetection detection = DetectionOf(aligned, quality, method);
-  detection.mirror_camera_from_pattern = mirror;
+  detection.diagnostics.mirror_camera_from_pattern = mirror;
   double largest = 0;
   for (const SeenPart& part : parts.all()) largest = std::max(largest, part.size_px);
   const RigidTransform& pose = aligned.camera_from_pad;

@@ -61,7 +61,7 @@ struct LandingHint {
   // Unit vector away from the ground, in the camera frame. Resolves the mirror pose of a circle and
   // steadies the tilt of a far one.
   std::optional<Eigen::Vector3d> up_in_camera;
-  // Step at which the search begins: LandingReport::next_step of the frame before.
+  // Step at which the search begins: SearchDiagnostics::next_step of the frame before.
   int first_step = 0;
   // Time limit (ms) of this frame where the options set none; 0: no limit.
   double max_search_ms = 0;
@@ -89,6 +89,23 @@ class SeenParts {
   std::size_t count_ = 0;
 };
 
+// Fit of a detection to lens and print, for those who examine a calibration.
+struct DetectionDiagnostics {
+  // Root mean square distance (px) of the edges from where pose and lens predict them, and the
+  // largest value that agrees with print and lens as they are described. 0 where the detection used
+  // no edges.
+  double misfit_px = 0;
+  double misfit_bound_px = 0;
+  std::optional<SeenPrint> seen;    // where the image shows the print's outlines
+  CalibrationEvidence calibration;  // evidence of the edges about the calibration
+  // The other pose under which the print looks the same, when the image cannot tell the two apart.
+  std::optional<RigidTransform> mirror_camera_from_pattern;
+
+  // True when lens or print are not as described: pose and lens predict the print elsewhere than
+  // the image shows it.
+  bool is_misfit() const { return misfit_px > misfit_bound_px; }
+};
+
 struct LandingDetection {
   Eigen::Vector2d center_px;           // origin of frame P; may be out of view
   RigidTransform camera_from_pattern;  // pose of the pad (frame P, see TargetShape) in the camera
@@ -106,19 +123,15 @@ struct LandingDetection {
   // 1 where the heading is known, 0 for a disc, which has none.
   int heading_symmetry = 1;
   SeenParts parts;
-  // Root mean square distance (px) of the edges from where pose and lens predict them, and the
-  // largest value that agrees with print and lens as they are described. 0 where the detection used
-  // no edges.
-  double misfit_px = 0;
-  double misfit_bound_px = 0;
-  std::optional<SeenPrint> seen;    // where the image shows the print's outlines
-  CalibrationEvidence calibration;  // evidence of the edges about the calibration
-  // The other pose under which the print looks the same, when the image cannot tell the two apart.
-  std::optional<RigidTransform> mirror_camera_from_pattern;
+  DetectionDiagnostics diagnostics;
+};
 
-  // True when lens or print are not as described: pose and lens predict the print elsewhere than
-  // the image shows it.
-  bool is_misfit() const { return misfit_px > misfit_bound_px; }
+// Counts and times of one search, for those who look into a detector.
+struct SearchDiagnostics {
+  std::array<std::int32_t, kLandingStageCount> candidates{};  // number that entered each stage
+  std::array<std::int64_t, kLandingStageCount> stage_ns{};    // time spent in each stage
+  // Step at which the search ran out of time, for the hint of the next frame; 0 when it did not.
+  int next_step = 0;
 };
 
 struct LandingReport {
@@ -126,10 +139,7 @@ struct LandingReport {
   LandingStage reached = LandingStage::kBinarize;  // kFound, or where the best candidate fell
   std::string_view reason;                         // why it failed, static text; empty when found
   bool is_another_pad = false;  // a pad of this kind is in view, but it is not this one
-  std::array<std::int32_t, kLandingStageCount> candidates{};  // number that entered each stage
-  std::array<std::int64_t, kLandingStageCount> stage_ns{};    // time spent in each stage
-  // Step at which the search ran out of time, for the hint of the next frame; 0 when it did not.
-  int next_step = 0;
+  SearchDiagnostics diagnostics;
 };
 
 // Returns in words why there is no detection, in those of the kind of pad: "not in view" unless a

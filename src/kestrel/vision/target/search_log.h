@@ -17,7 +17,7 @@ class SearchLog {
   // Counts a candidate that enters a stage. 'reason_if_it_ends_here' becomes the report's reason
   // unless a candidate comes farther.
   void Reach(LandingStage stage, std::string_view reason_if_it_ends_here) {
-    ++report_.candidates[static_cast<int>(stage)];
+    ++report_.diagnostics.candidates[static_cast<int>(stage)];
     if (stage < report_.reached) return;
     report_.reached = stage;
     report_.reason = reason_if_it_ends_here;
@@ -37,7 +37,7 @@ class SearchLog {
     std::chrono::steady_clock::time_point start_;
   };
   [[nodiscard]] Timer Time(LandingStage stage) {
-    return Timer(&report_.stage_ns[static_cast<int>(stage)]);
+    return Timer(&report_.diagnostics.stage_ns[static_cast<int>(stage)]);
   }
 
  private:

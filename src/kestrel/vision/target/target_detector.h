@@ -37,6 +37,12 @@ class TargetDetector {
   virtual LandingReport Detect(const cv::Mat& image, const LandingHint& hint,
                                TargetWorkspace& workspace) const = 0;
 
+  // Searches one image of which nothing is known, with a workspace of its own. A loop over images
+  // keeps a workspace instead, which saves its memory and the time to make it.
+  LandingReport Detect(const cv::Mat& image) const {
+    return Detect(image, LandingHint(), *MakeWorkspace());
+  }
+
   virtual std::unique_ptr<TargetWorkspace> MakeWorkspace() const = 0;
 
   virtual const CameraModel& camera() const = 0;

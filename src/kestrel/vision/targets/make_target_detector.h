@@ -81,9 +81,9 @@ LandingPatternDetectorOptions RingOfTarget(const TargetOptions& target,
 
 // Returns the detector of the target. 'ring': options of the kind "ring-cross". Throws InputError
 // when the options or the camera are not valid.
-std::unique_ptr<const TargetDetector> MakeTargetDetector(const CameraModel& camera,
-                                                         const TargetOptions& target,
-                                                         const LandingPatternDetectorOptions& ring);
+std::unique_ptr<const TargetDetector> MakeTargetDetector(
+    const CameraModel& camera, const TargetOptions& target,
+    const LandingPatternDetectorOptions& ring = {});
 
 // Returns what finds the other tags of the target's family; nothing for a target without tags.
 // Throws InputError when the options are not valid.

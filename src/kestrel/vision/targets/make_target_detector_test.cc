@@ -2,6 +2,7 @@
 #include "kestrel/vision/targets/make_target_detector.h"
 
 #include <cmath>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -26,6 +27,25 @@ TEST_F(MakeTargetDetectorTest, RingIsDefault) {
   EXPECT_EQ(report.detection->heading_symmetry, 4);
   EXPECT_FALSE(report.detection->id);
   EXPECT_EQ(detector->shape().diameter_m, pattern_.outer_diameter_m);
+}
+
+TEST_F(MakeTargetDetectorTest, DetectsInOneImageWithoutHintAndWorkspace) {
+  const LandingPatternDetector ring(camera_, {});
+  ExpectSame(ring.Detect(image_), Detect(image_));
+  for (const char* kind : {"ring-cross", "apriltag", "aruco", "helipad"}) {
+    TargetOptions target;
+    target.kind = kind;
+    const auto detector = MakeTargetDetector(camera_, target);
+    const auto workspace = detector->MakeWorkspace();
+    ExpectSame(detector->Detect(image_), detector->Detect(image_, {}, *workspace));
+    for (const cv::Mat& other : {cv::Mat(), cv::Mat(image_.size(), CV_8UC3)}) {
+      const LandingReport report = detector->Detect(other);
+      EXPECT_FALSE(report.detection) << kind;
+      EXPECT_THAT(std::string(report.reason), HasSubstr("CV_8UC1")) << kind;
+    }
+    target.size_m = NAN;
+    EXPECT_THROW(MakeTargetDetector(camera_, target), InputError) << kind;
+  }
 }
 
 TEST_F(MakeTargetDetectorTest, UsesOptionsOfRing) {

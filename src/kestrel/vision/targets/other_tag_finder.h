@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -10,9 +8,8 @@
 #include <opencv2/core.hpp>
 
 #include "kestrel/core/camera/camera_model.h"
-#include "kestrel/vision/search/pad_samples.h"
 #include "kestrel/vision/tags/tag_board.h"
-#include "kestrel/vision/tags/tag_quads.h"
+#include "kestrel/vision/tags/tag_reader.h"
 #include "kestrel/vision/target/target_detector.h"
 
 namespace kestrel {
@@ -35,22 +32,11 @@ class OtherTagFinder {
   std::optional<int> Find(const cv::Mat& image, TargetWorkspace* searched) const;
 
  private:
-  struct Code {
-    std::uint64_t bits;  // of the data cells, row by row; true is white
-    int id;
-  };
-
-  std::uint64_t BitsOf(const TagGrid& grid) const;
-  std::optional<int> Read(const cv::Mat& image, const TagQuad& quad, PadSamples* samples) const;
-  std::optional<int> IdOf(std::uint64_t bits) const;
-
   CameraModel camera_;
   std::string_view family_;
   int id_;
-  TagGrid layout_;                       // kNone where tags of the family differ
-  std::vector<std::size_t> data_cells_;  // of the grid, where they do
-  bool dark_inside_ = true;              // of the edge of the square that the size refers to
-  std::vector<Code> others_;             // in the order of their bits
+  std::vector<int> own_ids_;         // of the family, on the board
+  std::optional<TagReader> reader_;  // of the family, where there is one
 };
 
 }  // namespace kestrel

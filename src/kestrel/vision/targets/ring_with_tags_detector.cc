@@ -38,8 +38,8 @@ RigidTransform Turned(const RigidTransform& camera_from_pattern, int quarters) {
 // Adds the work of a search to that of another one in the same image.
 void AddWork(const LandingReport& other, LandingReport* report) {
   for (int stage = 0; stage < kLandingStageCount; ++stage) {
-    report->candidates[stage] += other.candidates[stage];
-    report->stage_ns[stage] += other.stage_ns[stage];
+    report->diagnostics.candidates[stage] += other.diagnostics.candidates[stage];
+    report->diagnostics.stage_ns[stage] += other.diagnostics.stage_ns[stage];
   }
 }
 
@@ -135,9 +135,9 @@ void RingWithTagsDetector::Impl::Identify(const cv::Mat& image, PadSamples* samp
   if (!heading) return;
   // The outlines of the ring in 'seen' are the same in all headings.
   detection.camera_from_pattern = Turned(ring_pose, heading->quarters);
-  if (detection.mirror_camera_from_pattern) {
-    detection.mirror_camera_from_pattern =
-        Turned(*detection.mirror_camera_from_pattern, heading->quarters);
+  if (detection.diagnostics.mirror_camera_from_pattern) {
+    detection.diagnostics.mirror_camera_from_pattern =
+        Turned(*detection.diagnostics.mirror_camera_from_pattern, heading->quarters);
   }
   detection.id = board.tags.front().id;
   detection.heading_symmetry = 1;

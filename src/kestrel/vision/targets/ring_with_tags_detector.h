@@ -34,6 +34,7 @@ class RingWithTagsDetector final : public TargetDetector {
   RingWithTagsDetector& operator=(RingWithTagsDetector&&) noexcept;
 
   // As of TargetDetector. The detection's id is that of the board's first tag.
+  using TargetDetector::Detect;
   LandingReport Detect(const cv::Mat& image, const LandingHint& hint,
                        TargetWorkspace& workspace) const override;
   std::unique_ptr<TargetWorkspace> MakeWorkspace() const override;

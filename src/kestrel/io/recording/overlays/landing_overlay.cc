@@ -115,14 +115,14 @@ void DrawOutlines(const TargetShape& shape, const Projection& project, const cv:
 // Draws the print at its edges in the image, and as pose and lens project it.
 void DrawMisfit(const LandingDetection& detection, const CameraModel& camera,
                 const TargetShape& shape, Canvas* canvas) {
-  const PlaneWarp seen = detection.seen->Warp(camera);
+  const PlaneWarp seen = detection.diagnostics.seen->Warp(camera);
   const auto project = [&](const Eigen::Vector3d& point, Eigen::Vector2d* pixel) {
     return seen.Project(point.head<2>(), pixel);
   };
   DrawOutlines(shape, project, kMagenta, canvas);
   canvas->Write("magenta: where it is seen", kMagenta, 1);
   canvas->Write(fmt::format("yellow: where pose and calibration have it, {:.1f} px beside",
-                            detection.misfit_px),
+                            detection.diagnostics.misfit_px),
                 kYellow, 2);
 }
 
@@ -168,7 +168,7 @@ void DrawDetection(const LandingDetection& detection, const CameraModel& camera,
     const Eigen::Vector3d end = shape.radius_m() * Eigen::Vector3d::Unit(axis);
     canvas->DrawLine(LineBetween(Eigen::Vector3d::Zero(), end), project, colors[axis]);
   }
-  if (!only_in_image && detection.is_misfit() && detection.seen) {
+  if (!only_in_image && detection.diagnostics.is_misfit() && detection.diagnostics.seen) {
     DrawMisfit(detection, camera, shape, canvas);
   }
   canvas->DrawCenter(detection.center_px);
@@ -192,7 +192,7 @@ cv::Mat DrawLandingOverlay(const cv::Mat& image, const CameraModel& camera,
   if (has_path) canvas.Write("cyan: where the track goes", kCyan, -1);
   if (report.detection) {
     DrawDetection(*report.detection, camera, shape, options.only_in_image, &canvas);
-    if (!report.detection->is_misfit())
+    if (!report.detection->diagnostics.is_misfit())
       canvas.Write("yellow: the pad", kYellow, has_path ? -2 : -1);
   } else {
     canvas.Write("not found: " + MissInWords(observation), kRed);

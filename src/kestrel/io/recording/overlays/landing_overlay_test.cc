@@ -53,13 +53,14 @@ bool IsMagenta(const cv::Mat& image, int x, int y) {
 TEST(LandingOverlay, DrawsBothOutlinesOfMisfit) {
   LandingObservation observation = FoundAt({0.0, 0.0, 2.0});
   LandingDetection& detection = *observation.report.detection;
-  detection.seen = SeenPrint{detection.camera_from_pattern, PlaneWarp::Coefficients::Zero(), 0.5};
-  detection.seen->displacement_px(0, 0) = 40;
-  detection.misfit_px = 28;
-  detection.misfit_bound_px = 30;
+  detection.diagnostics.seen =
+      SeenPrint{detection.camera_from_pattern, PlaneWarp::Coefficients::Zero(), 0.5};
+  detection.diagnostics.seen->displacement_px(0, 0) = 40;
+  detection.diagnostics.misfit_px = 28;
+  detection.diagnostics.misfit_bound_px = 30;
   const auto drawn = [&] { return DrawLandingOverlay(kGray, kCamera, kShape, observation); };
   EXPECT_FALSE(IsMagenta(drawn(), 359 + 60, 239 + 80)) << "no more than should be";
-  detection.misfit_bound_px = 1;
+  detection.diagnostics.misfit_bound_px = 1;
   EXPECT_TRUE(IsYellow(drawn(), 319 + 60, 239 + 80));
   EXPECT_TRUE(IsMagenta(drawn(), 359 + 60, 239 + 80));
   EXPECT_TRUE(IsMagenta(drawn(), 359 + 48, 239 + 64));

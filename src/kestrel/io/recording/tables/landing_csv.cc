@@ -25,8 +25,8 @@ std::string ImageCells(const std::optional<LandingDetection>& detection, bool on
 
 // 0 stands for "no edges", as a measured misfit is never exactly 0.
 std::string MisfitCell(const std::optional<LandingDetection>& detection, bool only_in_image) {
-  if (!detection || only_in_image || detection->misfit_px == 0) return "";
-  return fmt::format("{:.3f}", detection->misfit_px);
+  if (!detection || only_in_image || detection->diagnostics.misfit_px == 0) return "";
+  return fmt::format("{:.3f}", detection->diagnostics.misfit_px);
 }
 
 std::string IdCell(const std::optional<LandingDetection>& detection) {

@@ -16,7 +16,7 @@ LandingObservation Found() {
   detection.covariance.diagonal().head<3>() = Eigen::Vector3d(0.0001, 0.0004, 0.0009);
   detection.method = DetectionMethod::kRing;
   detection.quality = 0.875;
-  detection.misfit_px = 0.125;
+  detection.diagnostics.misfit_px = 0.125;
   LandingObservation observation;
   observation.time = TimeFromNanoseconds(1234567890123456789);
   observation.report.detection = detection;
@@ -44,7 +44,7 @@ TEST(LandingCsv, WritesDetectionInWorld) {
 
 TEST(LandingCsv, LeavesMisfitEmptyWithoutEdges) {
   LandingObservation observation = Found();
-  observation.report.detection->misfit_px = 0;
+  observation.report.detection->diagnostics.misfit_px = 0;
   EXPECT_TRUE(LandingCsvRow("b", observation).ends_with(",1.2500,,\n"));
 }
 

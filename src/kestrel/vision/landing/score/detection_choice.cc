@@ -118,14 +118,14 @@ std::optional<LandingDetection> DetectionChoice::Detection() const {
   detection.semi_minor_px = 0.5 * best_->diameters_px.y();
   detection.heading_symmetry = PrintOutline::kArms;
   detection.parts.Add({"ring and cross", std::nullopt, best_->diameters_px.x()});
-  detection.misfit_px = best_->location.misfit_px;
-  detection.misfit_bound_px = MisfitBoundPx(*best_);
-  detection.seen = best_->seen;
-  detection.calibration = best_->location.calibration;
+  detection.diagnostics.misfit_px = best_->location.misfit_px;
+  detection.diagnostics.misfit_bound_px = MisfitBoundPx(*best_);
+  detection.diagnostics.seen = best_->seen;
+  detection.diagnostics.calibration = best_->location.calibration;
   if (!mirror_) return detection;
-  detection.mirror_camera_from_pattern = mirror_->location.camera_from_pattern;
+  detection.diagnostics.mirror_camera_from_pattern = mirror_->location.camera_from_pattern;
   const Eigen::Matrix<double, 6, 1> difference =
-      Difference(detection.camera_from_pattern, *detection.mirror_camera_from_pattern);
+      Difference(detection.camera_from_pattern, *detection.diagnostics.mirror_camera_from_pattern);
   detection.covariance += kMirrorIsRight * difference * difference.transpose();
   return detection;
 }

@@ -106,8 +106,8 @@ TEST_F(DetectionChoiceTest, ChoosesMostProbableFinding) {
     EXPECT_EQ(detection->center_px, best->center_px);
     EXPECT_DOUBLE_EQ(detection->quality, ProbabilityOf(best->log_odds));
     EXPECT_EQ(detection->semi_major_px, 20);
-    EXPECT_EQ(detection->misfit_px, best->location.misfit_px);
-    EXPECT_FALSE(detection->mirror_camera_from_pattern);
+    EXPECT_EQ(detection->diagnostics.misfit_px, best->location.misfit_px);
+    EXPECT_FALSE(detection->diagnostics.mirror_camera_from_pattern);
   }
 }
 
@@ -144,10 +144,10 @@ TEST_F(DetectionChoiceTest, ReportsMirrorPoseOfRing) {
     choice.Add(right_first ? right : mirror);
     choice.Add(right_first ? mirror : right);
     const auto detection = choice.Detection();
-    ASSERT_TRUE(detection && detection->mirror_camera_from_pattern);
+    ASSERT_TRUE(detection && detection->diagnostics.mirror_camera_from_pattern);
     EXPECT_EQ(detection->camera_from_pattern.translation,
               right.location.camera_from_pattern.translation);
-    EXPECT_EQ(detection->mirror_camera_from_pattern->translation,
+    EXPECT_EQ(detection->diagnostics.mirror_camera_from_pattern->translation,
               mirror.location.camera_from_pattern.translation);
     const Eigen::Vector3d away = mirror.location.camera_from_pattern.translation -
                                  right.location.camera_from_pattern.translation;
