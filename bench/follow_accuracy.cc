@@ -198,21 +198,21 @@ void PutSunBehind(const Motion& world_from_uav, const RigidTransform& world_from
 
 // --- What is seen ---
 
-double TurnBetween(const LandingDetection& detection, const RigidTransform& truth) {
+double TurnBetween(const TargetDetection& detection, const RigidTransform& truth) {
   double least = kPi;
   for (int i = 0; i < detection.heading_symmetry; ++i) {
     const Eigen::Quaterniond turn = RotationBy({0, 0, i * 2 * kPi / detection.heading_symmetry});
     least = std::min(least,
-                     detection.camera_from_pattern.rotation.angularDistance(truth.rotation * turn));
+                     detection.camera_from_target.rotation.angularDistance(truth.rotation * turn));
   }
   return least;
 }
 
-Sighting Measure(double altitude_m, const std::optional<LandingDetection>& detection,
+Sighting Measure(double altitude_m, const std::optional<TargetDetection>& detection,
                  const RigidTransform& truth) {
   Sighting sighting{.altitude_m = altitude_m, .found = detection.has_value()};
   if (!detection) return sighting;
-  sighting.error_m = (detection->camera_from_pattern.translation - truth.translation).norm();
+  sighting.error_m = (detection->camera_from_target.translation - truth.translation).norm();
   sighting.is_false = sighting.error_m > kFalse_m || TurnBetween(*detection, truth) > kFalseTurn;
   return sighting;
 }

@@ -35,22 +35,22 @@ const std::array<std::string, 3> kHints{"none", "place known", "followed"};
 struct Frame {
   cv::Mat image;
   RigidTransform pose;
-  std::array<LandingHint, kHints.size()> hints;
+  std::array<TargetHint, kHints.size()> hints;
 };
 
 // Returns a hint of each kind for a pad of that pose.
-std::array<LandingHint, kHints.size()> HintsAt(const RigidTransform& pose, double altitude,
-                                               Random* random) {
-  LandingHint none;
+std::array<TargetHint, kHints.size()> HintsAt(const RigidTransform& pose, double altitude,
+                                              Random* random) {
+  TargetHint none;
   none.up_in_camera = pose.rotation * Eigen::Vector3d::UnitZ();
-  LandingHint place = none;
+  TargetHint place = none;
   const double sigma = 0.02 + 0.02 * altitude;
   const double x = random->Normal();
   const double y = random->Normal();
   const double z = random->Normal();
   place.center_in_camera = pose.translation + sigma * Eigen::Vector3d(x, y, z);
   place.center_sigma_m = sigma;
-  LandingHint followed = place;
+  TargetHint followed = place;
   constexpr double kTurn = 0.02;  // rad
   const double turn_x = kTurn * random->Normal();
   const double turn_y = kTurn * random->Normal();
@@ -88,14 +88,14 @@ double HeadingError(const RigidTransform& seen, const RigidTransform& truth) {
   return Degrees(std::abs(std::atan(along.x() / along.y())));
 }
 
-Sighting Look(const HelipadDetector& detector, const Frame& frame, const LandingHint& hint,
+Sighting Look(const HelipadDetector& detector, const Frame& frame, const TargetHint& hint,
               TargetWorkspace* workspace) {
   Sighting sighting;
   const double start = ThreadMs();
-  const LandingReport report = detector.Detect(frame.image, hint, *workspace);
+  const TargetReport report = detector.Detect(frame.image, hint, *workspace);
   sighting.ms = ThreadMs() - start;
   if (!report.detection) return sighting;
-  const RigidTransform& seen = report.detection->camera_from_pattern;
+  const RigidTransform& seen = report.detection->camera_from_target;
   Eigen::Vector2d truth(NAN, NAN), place(NAN, NAN);
   detector.camera().Project(frame.pose.translation, &truth);
   detector.camera().Project(seen.translation, &place);
@@ -208,11 +208,11 @@ void PrintLookalikes(const HelipadDetector& detector, const PadRenderer& rendere
     const RigidTransform pose = RandomPadBelow(altitude, &random);
     const PadImageOptions taken = Conditions(random.Integer(0, 3), &random);
     const cv::Mat image = renderer.Render(board.print, pose, taken, random.Bits());
-    const auto look = [&](const LandingHint& hint, const std::string& how) {
-      const LandingReport report = detector.Detect(image, hint, *workspace);
+    const auto look = [&](const TargetHint& hint, const std::string& how) {
+      const TargetReport report = detector.Detect(image, hint, *workspace);
       if (!report.detection) return;
       const Eigen::Vector3d place =
-          pose.Inverse() * report.detection->camera_from_pattern.translation;
+          pose.Inverse() * report.detection->camera_from_target.translation;
       accepted[i].push_back(fmt::format("{} ({}, quality {:.3f}, {:.1f} m, board {})",
                                         board.NameAt(place.head<2>()), how,
                                         report.detection->quality, altitude, i));
@@ -254,7 +254,7 @@ void PrintTextures(const CameraModel& camera, const Settings& settings, Calibrat
         ForEachIndex(images, [&](std::size_t i) {
           GroundTextures textures(size, settings.seed + 1000 * kind + i);
           const auto workspace = detector.MakeWorkspace();
-          const LandingReport report = detector.Detect(textures.Draw(kind), {}, *workspace);
+          const TargetReport report = detector.Detect(textures.Draw(kind), {}, *workspace);
           if (report.detection) qualities[i] = report.detection->quality;
         });
         const auto accepted =

@@ -36,7 +36,7 @@ struct Scenes {
   std::string name;
   LandingPatternDetector detector;
   std::vector<cv::Mat> images;
-  std::vector<LandingHint> hints;  // without a centre if the pattern was not found
+  std::vector<TargetHint> hints;  // without a centre if the pattern was not found
 };
 
 Scenes MakeScenes(const std::string& name, const CameraIntrinsics& camera,
@@ -46,13 +46,13 @@ Scenes MakeScenes(const std::string& name, const CameraIntrinsics& camera,
   Random random(1);
   const auto error = [&random] { return kHintError_m * random.Normal(); };
   for (const cv::Mat& image : scenes.images) {
-    const LandingReport report = scenes.detector.Detect(image, {}, workspace);
-    LandingHint hint;
+    const TargetReport report = scenes.detector.Detect(image, {}, workspace);
+    TargetHint hint;
     if (report.detection) {
-      hint.center_in_camera = report.detection->camera_from_pattern.translation;
+      hint.center_in_camera = report.detection->camera_from_target.translation;
       for (double& coordinate : hint.center_in_camera->array()) coordinate += error();
       hint.center_sigma_m = 3 * kHintError_m;
-      hint.up_in_camera = report.detection->camera_from_pattern.rotation * Eigen::Vector3d::UnitZ();
+      hint.up_in_camera = report.detection->camera_from_target.rotation * Eigen::Vector3d::UnitZ();
     }
     scenes.hints.push_back(hint);
   }
@@ -122,7 +122,7 @@ Contestant Threshold(const Scenes& scenes) {
 Contestant Detect(const Scenes& scenes, bool with_hint) {
   return [&scenes, with_hint, workspace = std::make_shared<LandingWorkspace>()] {
     for (std::size_t i = 0; i < scenes.images.size(); ++i) {
-      const LandingHint hint = with_hint ? scenes.hints[i] : LandingHint();
+      const TargetHint hint = with_hint ? scenes.hints[i] : TargetHint();
       benchmark::DoNotOptimize(scenes.detector.Detect(scenes.images[i], hint, *workspace));
     }
   };
@@ -173,7 +173,7 @@ double MillisecondsOf(const std::function<void()>& run) {
 struct StageTimes {
   std::array<double, kLandingStageCount> ms{};
   int frames = 0;
-  void Add(const LandingReport& report) {
+  void Add(const TargetReport& report) {
     for (int i = 0; i < kLandingStageCount; ++i) ms[i] += 1e-6 * report.diagnostics.stage_ns[i];
     ++frames;
   }
@@ -192,7 +192,7 @@ std::vector<FrameTime> TimeFrames(const LandingFrameSet& set, StageTimes* stages
   std::vector<std::vector<double>> detect_ms(set.frames.size());
   for (int round = 0; round < kRounds; ++round) {
     for (std::size_t i = 0; i < set.frames.size(); ++i) {
-      LandingReport report;
+      TargetReport report;
       detect_ms[i].push_back(
           MillisecondsOf([&] { report = detector.Detect(set.frames[i].image, {}, workspace); }));
       stages->Add(report);

@@ -55,13 +55,13 @@ std::vector<LandingFrameSet> FramesOf(const std::string& name, const std::string
 }
 
 // A row of CSV: the frame, a hash (FNV-1a) of its pixels, and the detection.
-void Print(const LandingFrame& frame, const LandingReport& report) {
+void Print(const LandingFrame& frame, const TargetReport& report) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const auto pixel : cv::Mat1b(frame.image)) hash = (hash ^ pixel) * 0x100000001b3u;
   fmt::print("{},{:016x}", frame.name, hash);
   if (report.detection) {
     const Eigen::Vector2d& pixel = report.detection->center_px;
-    const Eigen::Vector3d& place = report.detection->camera_from_pattern.translation;
+    const Eigen::Vector3d& place = report.detection->camera_from_target.translation;
     fmt::print(",{:.6f},{:.6f},{:.7f},{:.7f},{:.7f},{:.5f}", pixel.x(), pixel.y(), place.x(),
                place.y(), place.z(), report.detection->quality);
   }
@@ -69,9 +69,9 @@ void Print(const LandingFrame& frame, const LandingReport& report) {
 }
 
 // Returns a hint at the pattern's last place, the least that a track gives.
-LandingHint HintOf(const LandingDetection& detection) {
-  LandingHint hint;
-  hint.center_in_camera = detection.camera_from_pattern.translation;
+TargetHint HintOf(const TargetDetection& detection) {
+  TargetHint hint;
+  hint.center_in_camera = detection.camera_from_target.translation;
   hint.center_sigma_m = 0.1;
   return hint;
 }
@@ -95,7 +95,7 @@ int Run(int argc, char** argv) {
     const LandingPatternDetector detector(CameraModel(set.camera), {});
     LandingWorkspace workspace;
     for (const LandingFrame& frame : set.frames) {
-      const LandingReport report = detector.Detect(frame.image, {}, workspace);
+      const TargetReport report = detector.Detect(frame.image, {}, workspace);
       if (is_printed) Print(frame, report);
       if (is_near && report.detection) {
         detector.Detect(frame.image, HintOf(*report.detection), workspace);

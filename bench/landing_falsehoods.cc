@@ -52,58 +52,58 @@ constexpr std::array kPrintErrors = {
     PrintError{"skewed by 5 % (rolling shutter)", 0, 0, 0.05},
 };
 
-LandingHint Nothing(const LandingFrame& /*frame*/) { return {}; }
+TargetHint Nothing(const LandingFrame& /*frame*/) { return {}; }
 
-LandingHint Attitude(const LandingFrame& frame) {
-  LandingHint hint;
+TargetHint Attitude(const LandingFrame& frame) {
+  TargetHint hint;
   hint.up_in_camera = frame.up_in_camera;
   return hint;
 }
 
 template <int kMetres>
-LandingHint AltitudePlus(const LandingFrame& frame) {
-  LandingHint hint = Attitude(frame);
+TargetHint AltitudePlus(const LandingFrame& frame) {
+  TargetHint hint = Attitude(frame);
   hint.altitude_m = frame.altitude_m + kMetres;
   return hint;
 }
 
 template <int kTimes>
-LandingHint AltitudeTimes(const LandingFrame& frame) {
-  LandingHint hint = Attitude(frame);
+TargetHint AltitudeTimes(const LandingFrame& frame) {
+  TargetHint hint = Attitude(frame);
   hint.altitude_m = frame.altitude_m * kTimes;
   return hint;
 }
 
-LandingHint UpsideDown(const LandingFrame& frame) {
-  LandingHint hint = AltitudePlus<0>(frame);
+TargetHint UpsideDown(const LandingFrame& frame) {
+  TargetHint hint = AltitudePlus<0>(frame);
   hint.up_in_camera = -*hint.up_in_camera;
   return hint;
 }
 
-LandingHint TurnedRound(const LandingFrame& frame) {
-  LandingHint hint = AltitudePlus<0>(frame);
+TargetHint TurnedRound(const LandingFrame& frame) {
+  TargetHint hint = AltitudePlus<0>(frame);
   hint.up_in_camera->head<2>() *= -1;
   return hint;
 }
 
-LandingHint TiltedBy30Degrees(const LandingFrame& frame) {
+TargetHint TiltedBy30Degrees(const LandingFrame& frame) {
   constexpr double kTilt = 0.5236;
-  LandingHint hint = AltitudePlus<0>(frame);
+  TargetHint hint = AltitudePlus<0>(frame);
   hint.up_in_camera = Eigen::AngleAxisd(kTilt, Eigen::Vector3d::UnitX()) * *hint.up_in_camera;
   return hint;
 }
 
-LandingHint CenterElsewhere(const LandingFrame& frame) {
-  LandingHint hint = Attitude(frame);
-  hint.center_in_camera = frame.camera_from_pattern->translation;
+TargetHint CenterElsewhere(const LandingFrame& frame) {
+  TargetHint hint = Attitude(frame);
+  hint.center_in_camera = frame.camera_from_target->translation;
   hint.center_in_camera->x() += 0.5 * frame.altitude_m;
   hint.center_sigma_m = 0.1;
   return hint;
 }
 
-LandingHint CenterTwiceAsFar(const LandingFrame& frame) {
-  LandingHint hint = Attitude(frame);
-  hint.center_in_camera = 2 * frame.camera_from_pattern->translation;
+TargetHint CenterTwiceAsFar(const LandingFrame& frame) {
+  TargetHint hint = Attitude(frame);
+  hint.center_in_camera = 2 * frame.camera_from_target->translation;
   hint.center_sigma_m = 0.1;
   return hint;
 }

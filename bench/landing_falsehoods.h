@@ -39,7 +39,7 @@ LandingFrameSet RenderStills(int per_altitude, const PrintError& print, int thre
 // A hint of a caller about a frame with known pose, right or wrong.
 struct ToldHint {
   std::string_view name;
-  LandingHint (*tell)(const LandingFrame& frame);
+  TargetHint (*tell)(const LandingFrame& frame);
 };
 std::span<const ToldHint> ToldHints();
 

@@ -73,7 +73,7 @@ class AnnotationReader {
 };
 
 // Half of the largest width of the ring's image, as if the image had no border.
-double RingRadiusPx(const CameraModel& camera, const RigidTransform& camera_from_pattern,
+double RingRadiusPx(const CameraModel& camera, const RigidTransform& camera_from_target,
                     double radius_m) {
   constexpr int kPoints = 64;
   std::vector<Vector2d> pixels;
@@ -81,7 +81,7 @@ double RingRadiusPx(const CameraModel& camera, const RigidTransform& camera_from
     const double angle = 2 * std::numbers::pi * i / kPoints;
     const Vector3d point(radius_m * std::cos(angle), radius_m * std::sin(angle), 0);
     Vector2d pixel;
-    if (camera.Project(camera_from_pattern * point, &pixel) != ProjectionStatus::kOutsideModel) {
+    if (camera.Project(camera_from_target * point, &pixel) != ProjectionStatus::kOutsideModel) {
       pixels.push_back(pixel);
     }
   }
@@ -155,12 +155,12 @@ LandingFrameSet ReadHardCondition(const fs::path& folder) {
     const auto row = rows.find(ToNanoseconds(image.time));
     frame.truth = row == rows.end() ? PatternTruth::kNone : PatternTruth::kWhole;
     if (row != rows.end()) {
-      frame.camera_from_pattern = camera_from_world * row->second.world_from_pattern;
+      frame.camera_from_target = camera_from_world * row->second.world_from_pattern;
       frame.center_px = row->second.center_px;
       frame.altitude_m = row->second.altitude_m;
       frame.visible_fraction = row->second.visible_fraction;
       frame.ring_radius_px =
-          RingRadiusPx(camera, *frame.camera_from_pattern, LandingPattern().outer_radius_m());
+          RingRadiusPx(camera, *frame.camera_from_target, LandingPattern().outer_radius_m());
     }
     set.frames.push_back(std::move(frame));
   }
@@ -220,7 +220,7 @@ LandingFrame FrameFromStill(const LandingStill& still, const std::string& set, s
   frame.truth = PatternTruth::kWhole;
   frame.center_px = still.center_px;
   frame.ring_radius_px = 0.5 * still.ring_major_px;
-  frame.camera_from_pattern = still.camera_from_pattern;
+  frame.camera_from_target = still.camera_from_target;
   frame.up_in_camera = still.up_in_camera;
   frame.altitude_m = still.altitude_m;
   frame.visible_fraction = still.visible_fraction;

@@ -33,7 +33,7 @@ struct LandingFrame {
   Eigen::Vector2d center_px = Eigen::Vector2d::Zero();  // kWhole: point where the arms meet
   double ring_radius_px = 0;     // of the outer edge: half of its largest width in the image
   std::optional<Ellipse> outer;  // annotated outer edge of the ring, pixels
-  std::optional<RigidTransform> camera_from_pattern;
+  std::optional<RigidTransform> camera_from_target;
   std::optional<Eigen::Vector3d> up_in_camera;  // by the navigation, unit vector
   double altitude_m = 0;                        // of the camera above the pattern; 0 if unknown
   double visible_fraction = 1;                  // of ring and cross, 0 to 1; 1 if unknown

@@ -27,7 +27,7 @@ double DistanceToEllipse(const Ellipse& ellipse, const Vector2d& point) {
   return std::abs(offset.norm() - offset.norm() / std::max(scale, 1e-9));
 }
 
-bool RingAgrees(const LandingFrame& frame, const LandingDetection& detection,
+bool RingAgrees(const LandingFrame& frame, const TargetDetection& detection,
                 const CameraModel& camera, const LandingPattern& pattern) {
   constexpr int kPoints = 128;
   constexpr int kMinPointsInImage = 16;
@@ -37,7 +37,7 @@ bool RingAgrees(const LandingFrame& frame, const LandingDetection& detection,
     const double angle = 2 * std::numbers::pi * i / kPoints;
     const Vector3d point = pattern.outer_radius_m() * Vector3d(std::cos(angle), std::sin(angle), 0);
     Vector2d pixel;
-    if (camera.Project(detection.camera_from_pattern * point, &pixel) != ProjectionStatus::kOk) {
+    if (camera.Project(detection.camera_from_target * point, &pixel) != ProjectionStatus::kOk) {
       continue;
     }
     const double distance = DistanceToEllipse(*frame.outer, pixel);
@@ -48,14 +48,14 @@ bool RingAgrees(const LandingFrame& frame, const LandingDetection& detection,
          std::sqrt(sum_squares / in_image) <= std::max(2.0, 0.05 * frame.ring_radius_px);
 }
 
-bool IsRight(const LandingFrame& frame, const LandingDetection& detection,
-             const CameraModel& camera, const LandingPattern& pattern) {
+bool IsRight(const LandingFrame& frame, const TargetDetection& detection, const CameraModel& camera,
+             const LandingPattern& pattern) {
   if (frame.truth == PatternTruth::kPartial) return RingAgrees(frame, detection, camera, pattern);
   return (detection.center_px - frame.center_px).norm() <=
          std::max(4.0, 0.15 * frame.ring_radius_px);
 }
 
-LandingOutcome OutcomeOf(const LandingFrame& frame, const LandingReport& report,
+LandingOutcome OutcomeOf(const LandingFrame& frame, const TargetReport& report,
                          const CameraModel& camera, const LandingPattern& pattern) {
   if (frame.truth == PatternTruth::kNone) {
     return report.detection ? LandingOutcome::kWrong : LandingOutcome::kQuiet;
@@ -65,28 +65,28 @@ LandingOutcome OutcomeOf(const LandingFrame& frame, const LandingReport& report,
                                                             : LandingOutcome::kWrong;
 }
 
-void MeasureErrors(const LandingFrame& frame, const LandingDetection& detection,
+void MeasureErrors(const LandingFrame& frame, const TargetDetection& detection,
                    LandingScore* score) {
   score->center_error_px = (detection.center_px - frame.center_px).norm();
-  if (!frame.camera_from_pattern) return;
-  const Vector3d& truth = frame.camera_from_pattern->translation;
-  const Vector3d error = detection.camera_from_pattern.translation - truth;
+  if (!frame.camera_from_target) return;
+  const Vector3d& truth = frame.camera_from_target->translation;
+  const Vector3d error = detection.camera_from_target.translation - truth;
   score->position_error = error.norm() / truth.norm();
   const Eigen::Matrix3d covariance = detection.covariance.topLeftCorner<3, 3>();
   score->nees = error.dot(covariance.ldlt().solve(error));
-  if (!detection.diagnostics.mirror_camera_from_pattern) return;
+  if (!detection.diagnostics.mirror_camera_from_target) return;
   const auto tilt_error = [&](const RigidTransform& pose) {
     const Vector3d z = Vector3d::UnitZ();
-    return (pose.rotation * z - frame.camera_from_pattern->rotation * z).norm();
+    return (pose.rotation * z - frame.camera_from_target->rotation * z).norm();
   };
   score->has_mirror = true;
-  score->is_mirrored = tilt_error(*detection.diagnostics.mirror_camera_from_pattern) <
-                       tilt_error(detection.camera_from_pattern);
+  score->is_mirrored = tilt_error(*detection.diagnostics.mirror_camera_from_target) <
+                       tilt_error(detection.camera_from_target);
 }
 
 }  // namespace
 
-LandingScore ScoreLanding(const LandingFrame& frame, const LandingReport& report,
+LandingScore ScoreLanding(const LandingFrame& frame, const TargetReport& report,
                           const CameraModel& camera, const LandingPattern& pattern) {
   LandingScore score;
   score.name = frame.name;
@@ -105,10 +105,10 @@ LandingScore ScoreLanding(const LandingFrame& frame, const LandingReport& report
   return score;
 }
 
-LandingHint NoHint(const LandingFrame& /*frame*/) { return {}; }
+TargetHint NoHint(const LandingFrame& /*frame*/) { return {}; }
 
-LandingHint AttitudeHint(const LandingFrame& frame) {
-  LandingHint hint;
+TargetHint AttitudeHint(const LandingFrame& frame) {
+  TargetHint hint;
   hint.up_in_camera = frame.up_in_camera;
   return hint;
 }
@@ -122,7 +122,7 @@ std::vector<LandingScore> ScoreFrames(
   ForEachIndex(count, threads, [&](std::size_t i) {
     thread_local LandingWorkspace workspace;
     const LandingFrame frame = make_frame(i);
-    const LandingReport report = detector.Detect(frame.image, hint(frame), workspace);
+    const TargetReport report = detector.Detect(frame.image, hint(frame), workspace);
     scores[i] = ScoreLanding(frame, report, detector.camera(), detector.options().pattern);
     if (!sees) return;
     const std::lock_guard lock(seeing);

@@ -41,13 +41,13 @@ struct LandingScore {
 // A right centre is within max(4 px, 0.15 ring radii) of the true one. Of a ring that is cut by the
 // border only the part in the image is known: a right pose projects its ring within max(2 px, 0.05
 // ring radii), root mean square, of the annotated one there.
-LandingScore ScoreLanding(const LandingFrame& frame, const LandingReport& report,
+LandingScore ScoreLanding(const LandingFrame& frame, const TargetReport& report,
                           const CameraModel& camera, const LandingPattern& pattern);
 
 // Returns the hint that a detector gets about a frame.
-using HintOf = LandingHint (*)(const LandingFrame& frame);
-LandingHint NoHint(const LandingFrame& frame);
-LandingHint AttitudeHint(const LandingFrame& frame);
+using HintOf = TargetHint (*)(const LandingFrame& frame);
+TargetHint NoHint(const LandingFrame& frame);
+TargetHint AttitudeHint(const LandingFrame& frame);
 
 // Scores the frames 0 ... count - 1 that 'make_frame' makes, on 'threads' threads with one
 // workspace each. 'sees' (if any) is called for each frame, by one thread at a time. The results

@@ -284,7 +284,7 @@ std::vector<LandingFrame> RenderSign(const SignKind& kind, SignLight light, bool
 
   LandingFrame frame;
   frame.truth = kind.is_pattern ? PatternTruth::kWhole : PatternTruth::kNone;
-  frame.camera_from_pattern = pose;
+  frame.camera_from_target = pose;
   frame.up_in_camera = pose.rotation * Vector3d::UnitZ();
   frame.altitude_m = pose.Inverse().translation.z();
   frame.ring_radius_px = PaperCamera().fx_px * kPattern.outer_radius_m() / pose.translation.norm();

@@ -97,14 +97,14 @@ std::vector<SpeedSet> MakeSets(const std::string& data_dir) {
 }
 
 // The hint of a tracker for a frame with this detection.
-LandingHint Predict(const LandingDetection& detection, Random* random) {
-  LandingHint hint;
-  hint.center_in_camera = detection.camera_from_pattern.translation;
+TargetHint Predict(const TargetDetection& detection, Random* random) {
+  TargetHint hint;
+  hint.center_in_camera = detection.camera_from_target.translation;
   for (double& coordinate : hint.center_in_camera->array()) {
     coordinate += kHintError_m * random->Normal();
   }
   hint.center_sigma_m = 3 * kHintError_m;
-  hint.up_in_camera = detection.camera_from_pattern.rotation * Eigen::Vector3d::UnitZ();
+  hint.up_in_camera = detection.camera_from_target.rotation * Eigen::Vector3d::UnitZ();
   return hint;
 }
 
@@ -187,12 +187,12 @@ void Measure(const SpeedSet& set, int passes) {
   const LandingPatternDetector detector(CameraModel(set.frames.camera), {});
   LandingWorkspace workspace;
   std::vector<std::size_t> all, predicted;
-  std::vector<LandingHint> hints(frames.size());
+  std::vector<TargetHint> hints(frames.size());
   Random random(1);
   for (std::size_t i = 0; i < frames.size(); ++i) {
     all.push_back(i);
     if (frames[i].truth == PatternTruth::kNone) continue;
-    const LandingReport report = detector.Detect(frames[i].image, {}, workspace);
+    const TargetReport report = detector.Detect(frames[i].image, {}, workspace);
     if (!report.detection) continue;
     hints[i] = Predict(*report.detection, &random);
     predicted.push_back(i);

@@ -110,8 +110,8 @@ LandingFrameSet Mirrored(const LandingFrameSet& set, bool left_right, bool top_b
       frame.outer->center = mirror_px(frame.outer->center);
       frame.outer->angle *= sign.prod();
     }
-    if (frame.camera_from_pattern) {
-      RigidTransform& pose = *frame.camera_from_pattern;
+    if (frame.camera_from_target) {
+      RigidTransform& pose = *frame.camera_from_target;
       const Eigen::Matrix3d rotation =
           in_camera.asDiagonal() * pose.rotation.toRotationMatrix() * in_print.asDiagonal();
       pose.rotation = Eigen::Quaterniond(rotation);

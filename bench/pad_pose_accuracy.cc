@@ -46,7 +46,7 @@ struct Descent {
   std::vector<double> altitudes_m;
 };
 
-std::uint32_t PartsOf(const LandingDetection& detection) {
+std::uint32_t PartsOf(const TargetDetection& detection) {
   constexpr std::size_t kOther = 31;  // the ring, the H
   std::uint32_t parts = 0;
   for (const SeenPart& part : detection.parts.all()) parts |= 1U << part.tag.value_or(kOther);
@@ -55,23 +55,21 @@ std::uint32_t PartsOf(const LandingDetection& detection) {
 
 // Returns the rotation vector from the true to the seen orientation, to the nearest of those under
 // which the pad looks the same.
-Eigen::Vector3d TurnFrom(const RigidTransform& truth, const LandingDetection& detection) {
+Eigen::Vector3d TurnFrom(const RigidTransform& truth, const TargetDetection& detection) {
   const int headings = std::max(detection.heading_symmetry, 1);
   Eigen::Vector3d best = Eigen::Vector3d::Constant(2 * kPi);
   for (int i = 0; i < headings; ++i) {
     const Eigen::Quaterniond turn = RotationBy({0, 0, i * 2 * kPi / headings});
     const Eigen::Vector3d error =
-        RotationVector(detection.camera_from_pattern.rotation * turn * truth.rotation.conjugate());
+        RotationVector(detection.camera_from_target.rotation * turn * truth.rotation.conjugate());
     if (error.norm() < best.norm()) best = error;
   }
   return best;
 }
 
-Sighting Measure(double altitude_m, const LandingDetection& detection,
-                 const RigidTransform& truth) {
+Sighting Measure(double altitude_m, const TargetDetection& detection, const RigidTransform& truth) {
   Eigen::Matrix<double, 6, 1> error;
-  error << detection.camera_from_pattern.translation - truth.translation,
-      TurnFrom(truth, detection);
+  error << detection.camera_from_target.translation - truth.translation, TurnFrom(truth, detection);
   const Eigen::Matrix3d to_pad = truth.rotation.conjugate().toRotationMatrix();
   return {altitude_m, error.dot(detection.covariance.ldlt().solve(error)), to_pad * error.head<3>(),
           to_pad * detection.covariance.topLeftCorner<3, 3>() * to_pad.transpose(),
@@ -79,7 +77,7 @@ Sighting Measure(double altitude_m, const LandingDetection& detection,
 }
 
 // Returns the hint of a track for a pad of that pose.
-LandingHint HintAt(const RigidTransform& pose, double altitude_m, Random* random) {
+TargetHint HintAt(const RigidTransform& pose, double altitude_m, Random* random) {
   constexpr double kTurn = 0.02;  // rad
   const auto draw = [&](double sigma) {
     const double x = random->Normal();
@@ -87,7 +85,7 @@ LandingHint HintAt(const RigidTransform& pose, double altitude_m, Random* random
     const double z = random->Normal();
     return Eigen::Vector3d(sigma * Eigen::Vector3d(x, y, z));
   };
-  LandingHint hint;
+  TargetHint hint;
   hint.center_sigma_m = 0.005 + 0.015 * altitude_m;
   hint.center_in_camera = pose.translation + draw(hint.center_sigma_m);
   hint.up_in_camera = pose.rotation * Eigen::Vector3d::UnitZ();
@@ -104,9 +102,9 @@ Descent FlyDown(const TargetDetector& detector, const TargetPrint& print,
   const double first = kBinEdges.back() * std::pow(kStep, random.Uniform());
   for (double altitude = first; altitude > kBinEdges.front(); altitude *= kStep) {
     const RigidTransform pose = RandomPadBelow(altitude, &random);
-    const LandingHint hint = HintAt(pose, altitude, &random);
+    const TargetHint hint = HintAt(pose, altitude, &random);
     const cv::Mat image = renderer.Render(print, pose, taken, random.Bits());
-    const LandingReport report = detector.Detect(image, hint, *workspace);
+    const TargetReport report = detector.Detect(image, hint, *workspace);
     descent.altitudes_m.push_back(altitude);
     descent.frames.emplace_back();
     if (report.detection) descent.frames.back() = Measure(altitude, *report.detection, pose);

@@ -109,8 +109,8 @@ class Report {
       const auto workspace = detector_.MakeWorkspace();
       for (std::size_t k = 0; k < frames.size(); ++k) {
         const LandingFrame& frame = frames[k];
-        const LandingHint hint = options_.attitude ? AttitudeHint(frame) : NoHint(frame);
-        const LandingReport report = detector_.Detect(frame.image, hint, *workspace);
+        const TargetHint hint = options_.attitude ? AttitudeHint(frame) : NoHint(frame);
+        const TargetReport report = detector_.Detect(frame.image, hint, *workspace);
         const LandingScore score = ScoreLanding(frame, report, detector_.camera(), {});
         const std::lock_guard lock(mutex);
         counts[k].Add(score);

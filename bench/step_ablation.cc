@@ -146,7 +146,7 @@ Result Score(const std::vector<LandingFrameSet>& sets, std::uint32_t skipped) {
     models.skipped_steps = skipped;
     const auto buffers = std::make_unique<LandingWorkspace::Buffers>();
     for (const LandingFrame& frame : set.frames) {
-      const LandingReport report = LandingSearch(models, frame.image, {}, buffers.get()).Run();
+      const TargetReport report = LandingSearch(models, frame.image, {}, buffers.get()).Run();
       result.tally.Add(ScoreLanding(frame, report, models.camera, models.options.pattern));
     }
     frames += static_cast<int>(set.frames.size());

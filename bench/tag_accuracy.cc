@@ -50,8 +50,8 @@ struct Found {
 struct Frame {
   cv::Mat image;
   RigidTransform pose;
-  LandingHint hint;      // place and up
-  LandingHint followed;  // and orientation
+  TargetHint hint;      // place and up
+  TargetHint followed;  // and orientation
 };
 
 Corners CornersOf(const CameraModel& camera, const RigidTransform& pose) {
@@ -254,11 +254,11 @@ int Run(const Settings& settings) {
     const TagBoard board{{tag}};
     const TagBoardDetector detector(camera, board, {});
     const auto workspace = detector.MakeWorkspace();
-    const auto kestrel = [&](const LandingHint& hint, const cv::Mat& image) {
+    const auto kestrel = [&](const TargetHint& hint, const cv::Mat& image) {
       Found found;
-      const LandingReport report = detector.Detect(image, hint, *workspace);
+      const TargetReport report = detector.Detect(image, hint, *workspace);
       if (report.detection) {
-        found.corners = CornersOf(camera, report.detection->camera_from_pattern);
+        found.corners = CornersOf(camera, report.detection->camera_from_target);
       }
       return found;
     };

@@ -195,7 +195,7 @@ void Search(const Kind& kind, const TagRenderer& renderer, const TagBoardDetecto
   const PrintedTag print = kind.print(&random);
   const cv::Mat image = renderer.Render({print}, pose, taken, random.Bits());
   const auto workspace = detector.MakeWorkspace();
-  LandingHint hint;
+  TargetHint hint;
   counts->searched += detector.Detect(image, hint, *workspace).detection.has_value();
   hint.up_in_camera = pose.rotation * Eigen::Vector3d::UnitZ();
   hint.rotation_in_camera = pose.rotation;

@@ -142,8 +142,8 @@ class AnyTagFinder {
   explicit AnyTagFinder(const CameraModel& camera) : camera_(camera), finder_(camera) {}
 
   // Returns the detection of a tag, however unlikely.
-  std::optional<LandingDetection> Find(const cv::Mat& image, const std::string& family,
-                                       int id) const {
+  std::optional<TargetDetection> Find(const cv::Mat& image, const std::string& family,
+                                      int id) const {
     const BoardModel board(BoardOfTag(family, id, kTagSize));
     const PadAlignment alignment(camera_, board.tags);
     TagSearchBuffers buffers;

@@ -177,13 +177,13 @@ class TagFinder {
 
   std::optional<TagCorners> Find(const cv::Mat& image) const {
     const auto workspace = detector_.MakeWorkspace();
-    const LandingReport report = detector_.Detect(image, {}, *workspace);
+    const TargetReport report = detector_.Detect(image, {}, *workspace);
     if (!report.detection) return std::nullopt;
     constexpr std::array<std::array<double, 2>, 4> kCorners{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
     TagCorners corners;
     for (std::size_t k = 0; k < corners.size(); ++k) {
       const Eigen::Vector3d place(kHalf * kCorners[k][0], kHalf * kCorners[k][1], 0);
-      camera_.Project(report.detection->camera_from_pattern * place, &corners[k]);
+      camera_.Project(report.detection->camera_from_target * place, &corners[k]);
     }
     return corners;
   }

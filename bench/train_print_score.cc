@@ -368,7 +368,7 @@ std::vector<ScoredFrame> Search(const TrainingSource& source) {
         const std::optional<bool> is_pattern = IsPattern(print, frame);
         if (is_pattern) scored.prints.push_back({print.kind, print.doubts, *is_pattern});
       };
-      const LandingHint no_hint;
+      const TargetHint no_hint;
       LandingSearch(*models[calibration], image, no_hint, buffers.get(), &observer).Run();
       const std::lock_guard lock(mutex);
       frames.push_back(std::move(scored));

@@ -22,12 +22,12 @@ TEST(HelipadAllocationTest, AllocatesNothingAfterFirstFrame) {
     cv::Mat image = renderer.Render(PrintOf(options), pose, {}, i);
     const bool shows_pad = i % 3 != 2;
     if (!shows_pad) image.setTo(120, image < 200);  // the ground alone
-    LandingHint hint;
+    TargetHint hint;
     if (i % 3 == 1) {
       hint.center_in_camera = pose.translation;
       hint.rotation_in_camera = pose.rotation;
     }
-    LandingReport report;
+    TargetReport report;
     const int count = CountAllocations([&] { report = detector.Detect(image, hint, *workspace); });
     EXPECT_EQ(report.detection.has_value(), shows_pad) << i;
     if (i == 0) {

@@ -20,7 +20,7 @@ constexpr int kCountedFrames = 15;
 
 struct Shot {
   cv::Mat image;
-  LandingHint hint;
+  TargetHint hint;
 };
 
 // Stills from 0.5 to 9 m, each at another height than the one before.
@@ -35,9 +35,9 @@ std::vector<Shot> ShotsOfPattern(bool with_hint) {
   std::vector<Shot> shots;
   for (int i = 0; i < kWarmUpFrames + kCountedFrames; ++i) {
     const LandingStill still = MakerOf(i).MakePattern(i);
-    LandingHint hint;
+    TargetHint hint;
     if (with_hint) {
-      hint.center_in_camera = still.camera_from_pattern.translation;
+      hint.center_in_camera = still.camera_from_target.translation;
       hint.center_sigma_m = 0.15;
       hint.altitude_m = still.altitude_m;
       hint.up_in_camera = still.up_in_camera;

@@ -83,7 +83,7 @@ TEST(LandingRobustnessTest, CovarianceGrowsWithWrongFocalLength) {
   const LandingStillMaker maker(options);
   LandingFrameSet near{"near", options.camera, {}};
   for (std::uint64_t seed = 7'000'000; near.frames.size() < kStills; ++seed) {
-    if (maker.PlacePattern(seed).camera_from_pattern.translation.norm() > kMaxDistance_m) continue;
+    if (maker.PlacePattern(seed).camera_from_target.translation.norm() > kMaxDistance_m) continue;
     near.frames.push_back(FrameFromStill(maker, near.name, seed));
   }
   for (const double factor : {0.9, 1.0, 1.1}) {

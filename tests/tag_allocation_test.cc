@@ -20,10 +20,10 @@ TEST(TagAllocationTest, AllocatesNothingAfterFirstFrame) {
   for (int i = 0; i < 8; ++i) {
     const RigidTransform pose = RandomBoardBelow(0.7 + 0.5 * i, 0.4, 0.1, &random);
     const cv::Mat image = renderer.Render(board.Printed(), pose, {}, random.Bits());
-    LandingHint hint;
+    TargetHint hint;
     if (i % 4 >= 2) hint.center_in_camera = pose.translation;
     if (i % 4 == 3) hint.rotation_in_camera = pose.rotation;
-    LandingReport report;
+    TargetReport report;
     const int count = CountAllocations([&] { report = detector.Detect(image, hint, *workspace); });
     EXPECT_TRUE(report.detection) << i;
     if (i == 0) {

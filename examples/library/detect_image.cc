@@ -18,13 +18,13 @@ int main(int argc, char** argv) {
     const kestrel::LandingPatternDetector detector(camera, {});
     kestrel::Frame frame;
     if (!kestrel::OpenSource({argv[2]})->Next(&frame)) return 1;
-    const kestrel::LandingReport report = detector.Detect(frame.image);
+    const kestrel::TargetReport report = detector.Detect(frame.image);
     if (!report.detection) {
       std::cout << "no pattern: " << report.reason << "\n";
       return 1;
     }
     std::cout << "seen at " << report.detection->center_px.transpose() << " px, "
-              << report.detection->camera_from_pattern.translation.transpose()
+              << report.detection->camera_from_target.translation.transpose()
               << " m in the camera frame, quality " << report.detection->quality << "\n";
   } catch (const kestrel::InputError& error) {
     std::cerr << error.what() << "\n";

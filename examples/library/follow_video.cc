@@ -22,7 +22,7 @@ void Show(const kestrel::Frame& frame, kestrel::LandingPipeline* pipeline) {
   } else if (seen.center_in_world) {
     std::cout << seen.center_in_world->transpose() << " m in the world";
   } else {
-    std::cout << seen.report.detection->camera_from_pattern.translation.transpose()
+    std::cout << seen.report.detection->camera_from_target.translation.transpose()
               << " m in the camera frame";
   }
   if (const auto soon = pipeline->tracker().Predict(frame.time + std::chrono::milliseconds(500))) {

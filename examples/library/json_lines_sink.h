@@ -17,7 +17,7 @@ class JsonLinesSink : public kestrel::ObservationSink {
     if (seen == nullptr || !seen->report.detection) return;
     *out_ << R"({"frame": ")" << observation.frame.name << R"(", "timestamp_ns": )"
           << kestrel::ToNanoseconds(seen->time);
-    Write("center_in_camera", seen->report.detection->camera_from_pattern.translation);
+    Write("center_in_camera", seen->report.detection->camera_from_target.translation);
     if (seen->center_in_world) Write("center_in_world", *seen->center_in_world);
     *out_ << "}\n";
     ++lines_;

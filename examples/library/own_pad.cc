@@ -29,13 +29,13 @@ class DiscDetector : public kestrel::TargetDetector {
     }
   }
 
-  kestrel::LandingReport Detect(const cv::Mat& image, const kestrel::LandingHint& hint,
-                                kestrel::TargetWorkspace& /*workspace*/) const override {
+  kestrel::TargetReport Detect(const cv::Mat& image, const kestrel::TargetHint& hint,
+                               kestrel::TargetWorkspace& /*workspace*/) const override {
     cv::Mat dark;
     cv::threshold(image, dark, 0, 255, cv::THRESH_BINARY_INV | cv::THRESH_OTSU);
     std::vector<std::vector<cv::Point>> outlines;
     cv::findContours(dark, outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
-    kestrel::LandingReport report;
+    kestrel::TargetReport report;
     report.reached = kestrel::LandingStage::kAreas;
     report.reason = "nothing dark is an ellipse";
     for (const std::vector<cv::Point>& outline : outlines) {
@@ -58,9 +58,9 @@ class DiscDetector : public kestrel::TargetDetector {
 
  private:
   // The disc lies level. It is as far away as its longer axis is wide.
-  kestrel::LandingDetection Locate(const cv::RotatedRect& ellipse,
-                                   const kestrel::LandingHint& hint) const {
-    kestrel::LandingDetection found{};
+  kestrel::TargetDetection Locate(const cv::RotatedRect& ellipse,
+                                  const kestrel::TargetHint& hint) const {
+    kestrel::TargetDetection found{};
     found.center_px = {ellipse.center.x, ellipse.center.y};
     found.semi_major_px = std::max(ellipse.size.width, ellipse.size.height) / 2;
     found.semi_minor_px = std::min(ellipse.size.width, ellipse.size.height) / 2;
@@ -69,8 +69,8 @@ class DiscDetector : public kestrel::TargetDetector {
     const double distance_m =
         shape_.radius_m() * camera_.intrinsics().fx_px / found.semi_major_px / ray.z();
     const Eigen::Vector3d up = hint.up_in_camera.value_or(-Eigen::Vector3d::UnitZ());
-    found.camera_from_pattern = {Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), up),
-                                 distance_m * ray};
+    found.camera_from_target = {Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), up),
+                                distance_m * ray};
     const double sigma = 0.5 / found.semi_major_px;  // of half a pixel, relative
     found.covariance.setIdentity();
     found.covariance.topLeftCorner<3, 3>() *= std::pow(sigma * distance_m, 2);

@@ -11,11 +11,11 @@ int main() {
       kestrel::PlanLandingScenario("calm", {}, calibration, /*seed=*/1);
   const cv::Mat view = plan.render(0);
   const kestrel::LandingPatternDetector detector(kestrel::CameraModel(calibration.intrinsics), {});
-  const kestrel::LandingReport report = detector.Detect(view);
+  const kestrel::TargetReport report = detector.Detect(view);
   if (!report.detection) {
     std::cout << "no pattern: " << report.reason << "\n";
     return 1;
   }
-  std::cout << "found " << report.detection->camera_from_pattern.translation.norm() << " m away\n";
+  std::cout << "found " << report.detection->camera_from_target.translation.norm() << " m away\n";
   return 0;
 }

@@ -7,8 +7,8 @@
 //   HelipadDetectorOptions options;
 //   options.height_m = 2;
 //   const HelipadDetector detector(CameraModel(PaperCamera()), options);
-//   if (const LandingReport report = detector.Detect(image); report.detection) {
-//     std::cout << report.detection->camera_from_pattern.translation.transpose() << " m\n";
+//   if (const TargetReport report = detector.Detect(image); report.detection) {
+//     std::cout << report.detection->camera_from_target.translation.transpose() << " m\n";
 //   }
 
 #include "kestrel/vision/helipad/helipad_detector.h"  // IWYU pragma: export

@@ -7,9 +7,9 @@
 // Example:
 //   const LandingPatternDetector detector(CameraModel(PaperCamera()), {});
 //   LandingWorkspace workspace;
-//   const LandingReport report = detector.Detect(image, /*hint=*/{}, workspace);
+//   const TargetReport report = detector.Detect(image, /*hint=*/{}, workspace);
 //   if (report.detection) {
-//     std::cout << report.detection->camera_from_pattern.translation.transpose() << " m\n";
+//     std::cout << report.detection->camera_from_target.translation.transpose() << " m\n";
 //   } else {
 //     std::cout << ToString(report.reached) << ": " << report.reason << "\n";
 //   }

@@ -9,7 +9,7 @@
 //   target.id = 3;
 //   target.size_m = 0.5;
 //   const auto detector = MakeTargetDetector(CameraModel(PaperCamera()), target);
-//   const LandingReport report = detector->Detect(image);
+//   const TargetReport report = detector->Detect(image);
 //   std::cout << (report.detection ? "found" : report.reason) << "\n";
 
 #include "kestrel/vision/targets/make_target_detector.h"  // IWYU pragma: export

@@ -6,8 +6,8 @@
 // Example:
 //   const TagBoard board{{BoardTag{.family = "tag36h11", .id = 3, .size_m = 0.5}}};
 //   const TagBoardDetector detector(CameraModel(PaperCamera()), board, {});
-//   if (const LandingReport report = detector.Detect(image); report.detection) {
-//     std::cout << report.detection->camera_from_pattern.translation.transpose() << " m\n";
+//   if (const TargetReport report = detector.Detect(image); report.detection) {
+//     std::cout << report.detection->camera_from_target.translation.transpose() << " m\n";
 //   }
 
 #include "kestrel/vision/tags/tag_board_detector.h"  // IWYU pragma: export

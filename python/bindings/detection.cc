@@ -69,32 +69,32 @@ void BindShape(py::module_& module) {
 }
 
 void BindHint(py::module_& module) {
-  const auto rotation = [](const LandingHint& self) -> std::optional<Eigen::Vector4d> {
+  const auto rotation = [](const TargetHint& self) -> std::optional<Eigen::Vector4d> {
     if (!self.rotation_in_camera) return std::nullopt;
     const auto& q = *self.rotation_in_camera;
     return Eigen::Vector4d(q.w(), q.x(), q.y(), q.z());
   };
-  const auto set_rotation = [](const py::handle& value, LandingHint* hint) {
+  const auto set_rotation = [](const py::handle& value, TargetHint* hint) {
     hint->rotation_in_camera.reset();
     if (value.is_none()) return;
     const auto q = value.cast<Eigen::Vector4d>();
     hint->rotation_in_camera = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
   };
-  ValueClass<LandingHint>(module, "LandingHint",
-                          "What is known about a frame before it is searched. Everything may be "
-                          "None; it may be wrong, and a pad in plain view is found all the same.")
-      .Field("center_in_camera", &LandingHint::center_in_camera,
+  ValueClass<TargetHint>(module, "TargetHint",
+                         "What is known about a frame before it is searched. Everything may be "
+                         "None; it may be wrong, and a pad in plain view is found all the same.")
+      .Field("center_in_camera", &TargetHint::center_in_camera,
              "Expected centre of the pad, camera frame, float64 of 3, m.")
-      .Field("center_sigma_m", &LandingHint::center_sigma_m, "Its standard deviation per axis, m.")
+      .Field("center_sigma_m", &TargetHint::center_sigma_m, "Its standard deviation per axis, m.")
       .Field("rotation_in_camera", rotation, set_rotation,
-             "Expected orientation camera_from_pattern, quaternion w, x, y, z.")
-      .Field("id", &LandingHint::id, "Which pad it is.")
-      .Field("altitude_m", &LandingHint::altitude_m, "Height of the camera above the pad, m.")
-      .Field("up_in_camera", &LandingHint::up_in_camera,
+             "Expected orientation camera_from_target, quaternion w, x, y, z.")
+      .Field("id", &TargetHint::id, "Which pad it is.")
+      .Field("altitude_m", &TargetHint::altitude_m, "Height of the camera above the pad, m.")
+      .Field("up_in_camera", &TargetHint::up_in_camera,
              "Unit vector away from the ground, camera frame.")
-      .Field("first_step", &LandingHint::first_step,
+      .Field("first_step", &TargetHint::first_step,
              "SearchDiagnostics.next_step of the frame before.")
-      .Field("max_search_ms", &LandingHint::max_search_ms, "Time limit, ms; 0: none.");
+      .Field("max_search_ms", &TargetHint::max_search_ms, "Time limit, ms; 0: none.");
 }
 
 void BindEvidence(py::module_& module) {
@@ -120,7 +120,7 @@ void BindEvidence(py::module_& module) {
 }
 
 void BindLandingDetection(py::module_& module) {
-  using Detection = LandingDetection;
+  using Detection = TargetDetection;
   ValueClass<SeenPart>(module, "SeenPart", "A part of a pad that was recognised.")
       .Field("name", &SeenPart::name, "'ring', 'tag', ...")
       .Field("tag", &SeenPart::tag, "Index in TargetShape.tags, or None.")
@@ -142,16 +142,16 @@ void BindLandingDetection(py::module_& module) {
              "Largest misfit that agrees with print and lens, px.")
       .Field("seen", &Diagnostics::seen, "SeenPrint or None.")
       .Field("calibration", &Diagnostics::calibration, "CalibrationEvidence.")
-      .Field("mirror_camera_from_pattern", &Diagnostics::mirror_camera_from_pattern,
+      .Field("mirror_camera_from_target", &Diagnostics::mirror_camera_from_target,
              "The other pose under which the print looks the same, or None.")
       .Derived("is_misfit", &Diagnostics::is_misfit,
                "True when lens or print are not as described.");
   Detection blank{};
   blank.center_px.setZero();
   blank.covariance.setZero();
-  ValueClass<Detection>(module, "LandingDetection", "A pad in an image.", blank)
+  ValueClass<Detection>(module, "TargetDetection", "A pad in an image.", blank)
       .Field("center_px", &Detection::center_px, "Its centre, float64 of 2, px.")
-      .Field("camera_from_pattern", &Detection::camera_from_pattern,
+      .Field("camera_from_target", &Detection::camera_from_target,
              "RigidTransform from the pad's frame to the camera's (x right, y down, z forward), m.")
       .Field("covariance", &Detection::covariance,
              "Of the pose's error, float64 6 x 6: translation in the camera frame (m^2), rotation "
@@ -167,7 +167,7 @@ void BindLandingDetection(py::module_& module) {
       .Field("diagnostics", &Detection::diagnostics, "DetectionDiagnostics.")
       .Derived(
           "center_in_camera",
-          [](const Detection& self) { return self.camera_from_pattern.translation; },
+          [](const Detection& self) { return self.camera_from_target.translation; },
           "Its centre in the camera frame, float64 of 3, m.")
       .Derived(
           "sigma_in_camera",
@@ -175,7 +175,7 @@ void BindLandingDetection(py::module_& module) {
             return self.covariance.diagonal().head<3>().cwiseSqrt();
           },
           "Standard deviations of that, m.")
-      .Repr([](const Detection& self) { return "<LandingDetection: " + InWords(self) + ">"; });
+      .Repr([](const Detection& self) { return "<TargetDetection: " + InWords(self) + ">"; });
 }
 
 void BindReport(py::module_& module) {
@@ -191,29 +191,29 @@ void BindReport(py::module_& module) {
           "Time in each stage, ns, by the stages' names.")
       .Field("next_step", &Diagnostics::next_step,
              "Step at which the search ran out of time; 0: it did not.");
-  ValueClass<SeenReport>(module, "LandingReport",
+  ValueClass<SeenReport>(module, "TargetReport",
                          "The result of a search for a pad: the detection, or why there is none.")
-      .Field("detection", &SeenReport::detection, "LandingDetection or None.")
+      .Field("detection", &SeenReport::detection, "TargetDetection or None.")
       .Field("reached", &SeenReport::reached,
              "LandingStage: FOUND, or the stage at which the best candidate fell.")
       .Field("reason", &SeenReport::reason, "Why it fell; empty when found.")
       .Field("diagnostics", &SeenReport::diagnostics, "SearchDiagnostics.")
       .Field("view", &SeenReport::view, "PadView for drawing it, or None.")
-      .Repr([](const SeenReport& self) { return "<LandingReport: " + InWords(self) + ">"; })
+      .Repr([](const SeenReport& self) { return "<TargetReport: " + InWords(self) + ">"; })
       .py()
       .def("__bool__", [](const SeenReport& self) { return self.detection.has_value(); });
 }
 
 }  // namespace
 
-std::string InWords(const LandingDetection& detection) {
+std::string InWords(const TargetDetection& detection) {
   return fmt::format(
       "at ({:.1f}, {:.1f}) px, {:.2f} m away, quality {:.2f}, by {}{}", detection.center_px.x(),
-      detection.center_px.y(), detection.camera_from_pattern.translation.norm(), detection.quality,
+      detection.center_px.y(), detection.camera_from_target.translation.norm(), detection.quality,
       ToString(detection.method), detection.id ? fmt::format(", id {}", *detection.id) : "");
 }
 
-std::string InWords(const LandingReport& report) {
+std::string InWords(const TargetReport& report) {
   if (report.detection) return "found " + InWords(*report.detection);
   return fmt::format("not found: {}", MissInWords(report));
 }

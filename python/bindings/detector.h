@@ -19,7 +19,7 @@ class Detector {
   Detector& operator=(const Detector&) = delete;
 
   // Searches a gray image of the camera's size. Does not hold the interpreter while it does.
-  SeenReport Detect(const pybind11::handle& image, const LandingHint& hint);
+  SeenReport Detect(const pybind11::handle& image, const TargetHint& hint);
 
   const std::shared_ptr<const TargetDetector>& target() const { return detector_; }
   const std::shared_ptr<PadView>& view() const { return view_; }
@@ -38,8 +38,8 @@ class SharedDetector : public TargetDetector {
   explicit SharedDetector(std::shared_ptr<const TargetDetector> detector)
       : detector_(std::move(detector)) {}
 
-  LandingReport Detect(const cv::Mat& image, const LandingHint& hint,
-                       TargetWorkspace& workspace) const override {
+  TargetReport Detect(const cv::Mat& image, const TargetHint& hint,
+                      TargetWorkspace& workspace) const override {
     return detector_->Detect(image, hint, workspace);
   }
   std::unique_ptr<TargetWorkspace> MakeWorkspace() const override {

@@ -31,13 +31,13 @@ Detector::Detector(std::shared_ptr<const TargetDetector> detector)
     : detector_(std::move(detector)),
       view_(std::make_shared<PadView>(PadView{detector_->camera(), detector_->shape()})) {}
 
-SeenReport Detector::Detect(const pybind11::handle& image, const LandingHint& hint) {
+SeenReport Detector::Detect(const pybind11::handle& image, const TargetHint& hint) {
   const cv::Mat pixels = GrayImage(image, detector_->camera().intrinsics());
   std::unique_ptr<TargetWorkspace> workspace = TakeWorkspace();
   SeenReport report;
   {
     const pybind11::gil_scoped_release release;
-    static_cast<LandingReport&>(report) = detector_->Detect(pixels, hint, *workspace);
+    static_cast<TargetReport&>(report) = detector_->Detect(pixels, hint, *workspace);
   }
   idle_.push_back(std::move(workspace));
   report.view = view_;
@@ -79,14 +79,13 @@ class CalledDetector : public TargetDetector {
   CalledDetector(CameraModel camera, TargetShape shape, py::function find)
       : camera_(std::move(camera)), shape_(std::move(shape)), find_(std::move(find)) {}
 
-  LandingReport Detect(const cv::Mat& image, const LandingHint& hint,
-                       TargetWorkspace& /*workspace*/) const override {
+  TargetReport Detect(const cv::Mat& image, const TargetHint& hint,
+                      TargetWorkspace& /*workspace*/) const override {
     const py::gil_scoped_acquire acquire;
-    LandingReport report;
+    TargetReport report;
     try {
       // The function may keep the image: the pixels are its own.
-      report.detection =
-          find_(ArrayOf(image.clone()), hint).cast<std::optional<LandingDetection>>();
+      report.detection = find_(ArrayOf(image.clone()), hint).cast<std::optional<TargetDetection>>();
       report.reason = "the function has found nothing";
     } catch (const std::exception& error) {
       report.reason = Interned(error.what());
@@ -136,10 +135,10 @@ void BindBase(py::module_& module) {
       module, "TargetDetector",
       "Finds one kind of pad in gray images of one camera. Any number of threads may use one at "
       "the same time.")
-      .def("detect", &Detector::Detect, py::arg("image"), py::arg("hint") = LandingHint(),
+      .def("detect", &Detector::Detect, py::arg("image"), py::arg("hint") = TargetHint(),
            "Searches an image.\n\nimage: uint8 of shape (rows, columns), of the camera's size, "
            "gray; its pixels are not copied. Rows may be apart, as in a part of an array.\nhint: "
-           "LandingHint, what is known before.\nReturns a LandingReport. Raises TypeError for "
+           "TargetHint, what is known before.\nReturns a TargetReport. Raises TypeError for "
            "another kind of array, InputError for another size. Lets other threads run.")
       .def_property_readonly(
           "camera", [](const Detector& self) { return self.view()->camera; }, "The CameraModel.")
@@ -280,7 +279,7 @@ void BindOwnPad(py::module_& module) {
            py::arg("camera"), py::arg("shape"), py::arg("find"),
            "shape: TargetShape, for pictures and the track.\nfind: function of an image (uint8, "
            "rows "
-           "x columns) and a LandingHint that returns a LandingDetection, or None. What it raises "
+           "x columns) and a TargetHint that returns a TargetDetection, or None. What it raises "
            "is the reason in the report.");
 }
 

@@ -58,7 +58,7 @@ void BindDrawing(py::module_& module) {
       "Returns a copy of an image with a result drawn in, uint8 BGR: of a pad its outlines, axes, "
       "distance and quality, or the stage at which the best candidate fell, and why; of objects "
       "their outlines, classes and distances.\n\nimage: the image that was searched.\nobservation: "
-      "LandingReport, LandingObservation, ObjectReport or HuntObservation.";
+      "TargetReport, LandingObservation, ObjectReport or HuntObservation.";
   module.def("draw", &DrawLanding, py::arg("image"), py::arg("observation"), kDraw);
   module.def("draw", &DrawReport, py::arg("image"), py::arg("observation"));
   module.def("draw", &DrawHunt, py::arg("image"), py::arg("observation"));

@@ -42,7 +42,7 @@ void BindEnums(py::module_& module) {
       "letter of a helipad, its appearance at the expected place, or a detector of one's own.");
   BindEnum<LandingStage>(module,
                          "Stages of a search for a pad, in order. Before FOUND: where the best "
-                         "candidate fell (LandingReport.reached).");
+                         "candidate fell (TargetReport.reached).");
   BindEnum<MeasurementFate>(module, "What a TargetTracker did with a measurement.");
   BindEnum<TrackState>(module, "State of a track: never seen, seen, predicted, or lost.");
   BindEnum<PoseLookup>(module, "Whether a PoseHistory has a pose at a time, or why not.");

@@ -91,7 +91,7 @@ void BindLandingObservation(py::module_& module) {
             return SeenReport{self.report, self.view};
           },
           [](const py::handle& value, Seen* self) { self->report = value.cast<SeenReport>(); },
-          "LandingReport: the detection in the camera frame, or why there is none.")
+          "TargetReport: the detection in the camera frame, or why there is none.")
       .Field("world_from_camera", &Seen::world_from_camera,
              "RigidTransform, or None without a pose.")
       .Field("pose", &Seen::pose, "'found', 'predicted', or why there is no pose.")

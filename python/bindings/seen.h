@@ -19,7 +19,7 @@ struct PadView {
 };
 
 // Results together with what they are drawn by, which they share with their detector.
-struct SeenReport : LandingReport {
+struct SeenReport : TargetReport {
   std::shared_ptr<PadView> view;
 };
 struct SeenLanding : LandingObservation {
@@ -33,7 +33,7 @@ struct SeenHunt : HuntObservation {
 };
 
 // Describe a result in a line.
-std::string InWords(const LandingDetection& detection);
-std::string InWords(const LandingReport& report);
+std::string InWords(const TargetDetection& detection);
+std::string InWords(const TargetReport& report);
 
 }  // namespace kestrel::python

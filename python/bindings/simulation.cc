@@ -173,7 +173,7 @@ struct RenderQuality {
   double haze;
 };
 
-py::array Render(const CameraModel& camera, const RigidTransform& camera_from_pattern,
+py::array Render(const CameraModel& camera, const RigidTransform& camera_from_target,
                  const py::dict& pattern, const RenderQuality& quality, std::uint64_t seed) {
   LandingPattern drawn;
   SetFields(pattern, FieldsOf(drawn));
@@ -188,7 +188,7 @@ py::array Render(const CameraModel& camera, const RigidTransform& camera_from_pa
   cv::Mat image;
   {
     const py::gil_scoped_release release;
-    image = SceneRenderer(camera).Render(scene, camera_from_pattern, imaging);
+    image = SceneRenderer(camera).Render(scene, camera_from_target, imaging);
   }
   return ArrayOf(image);
 }
@@ -196,17 +196,17 @@ py::array Render(const CameraModel& camera, const RigidTransform& camera_from_pa
 void BindRendering(py::module_& module) {
   module.def(
       "render_pattern",
-      [](const CameraArgument& camera, const RigidTransform& camera_from_pattern,
+      [](const CameraArgument& camera, const RigidTransform& camera_from_target,
          const py::dict& pattern, double blur_sigma_px, double noise, double haze,
          std::uint64_t seed) {
-        return Render(*camera.model, camera_from_pattern, pattern, {blur_sigma_px, noise, haze},
+        return Render(*camera.model, camera_from_target, pattern, {blur_sigma_px, noise, haze},
                       seed);
       },
-      py::arg("camera"), py::arg("camera_from_pattern"), py::arg("pattern") = py::dict(),
+      py::arg("camera"), py::arg("camera_from_target"), py::arg("pattern") = py::dict(),
       py::arg("blur_sigma_px") = 0.5, py::arg("noise") = 0, py::arg("haze") = 0,
       py::arg("seed") = 1,
       "Returns an image of the landing pattern on level ground, uint8 of the camera's size.\n\n"
-      "camera_from_pattern: RigidTransform; the camera is above the pattern (its z axis is up).\n"
+      "camera_from_target: RigidTransform; the camera is above the pattern (its z axis is up).\n"
       "pattern: dict by the names of landing.detector.pattern.\nblur_sigma_px: of the optics, px. "
       "noise: standard deviation, gray values. haze: part of the light, 0 to 1.\nRaises InputError "
       "for a view from below.");

@@ -120,7 +120,7 @@ def test_detectors_of_all_kinds(calibration, tmp_path):
 
 def test_a_hint_and_what_is_drawn(calibration, drawn, below):
     detector = kestrel.LandingPatternDetector(calibration)
-    hint = kestrel.LandingHint(center_in_camera=below.translation, altitude_m=4,
+    hint = kestrel.TargetHint(center_in_camera=below.translation, altitude_m=4,
                                up_in_camera=[0, 0, -1])
     report = detector.detect(drawn, hint)
     picture = kestrel.draw(drawn, report)
@@ -128,7 +128,7 @@ def test_a_hint_and_what_is_drawn(calibration, drawn, below):
     # Outlines are coloured.
     assert (picture.max(axis=2) != picture.min(axis=2)).sum() > 300
     with pytest.raises(kestrel.InputError, match="result of a detector"):
-        kestrel.draw(drawn, kestrel.LandingReport())
+        kestrel.draw(drawn, kestrel.TargetReport())
 
 
 def test_objects_are_found(hunt_flight):
@@ -173,7 +173,7 @@ def test_the_corners_are_in_the_order_of_the_pose(tag_image):
     corners = kestrel.detect_tags(tag_image, ["tag36h11"])[0].corners_px
     tag = {"family": "tag36h11", "id": 3, "size_m": 0.5}
     calibration = kestrel.paper_calibration()
-    pose = kestrel.TagBoardDetector(calibration, [tag]).detect(tag_image).detection.camera_from_pattern
+    pose = kestrel.TagBoardDetector(calibration, [tag]).detect(tag_image).detection.camera_from_target
     places = 0.25 * np.array([[-1, 1, 0], [1, 1, 0], [1, -1, 0], [-1, -1, 0]])
     expected = kestrel.CameraModel(calibration).project(pose @ places)
     np.testing.assert_allclose(corners, expected, atol=1)

@@ -50,8 +50,8 @@ def test_a_pad_of_ones_own(calibration):
             return None
         ray = camera.unproject([columns.mean(), rows.mean()])
         pose = kestrel.RigidTransform(translation=4 * ray / ray[2], quaternion=[0, 1, 0, 0])
-        return kestrel.LandingDetection(
-            center_px=[columns.mean(), rows.mean()], camera_from_pattern=pose, method="other",
+        return kestrel.TargetDetection(
+            center_px=[columns.mean(), rows.mean()], camera_from_target=pose, method="other",
             covariance=1e-4 * np.eye(6), quality=0.9, heading_symmetry=0)
 
     camera = kestrel.CameraModel(calibration)

@@ -71,7 +71,7 @@ def test_ten_thousand_detections_leave_memory_and_references_as_they_are(calibra
 
     def references():
         gc.collect()
-        return [sys.getrefcount(each) for each in (part, detector, kestrel.LandingReport, None)]
+        return [sys.getrefcount(each) for each in (part, detector, kestrel.TargetReport, None)]
 
     detect(500)
     before, memory = references(), resident_kb()

@@ -46,7 +46,7 @@ def results(calibration, drawn, hunt_flight, flight):
         event,
         flight.poses()[0],
         flight.true_patterns[0],
-        kestrel.LandingHint(altitude_m=3, rotation_in_camera=[1, 0, 0, 0]),
+        kestrel.TargetHint(altitude_m=3, rotation_in_camera=[1, 0, 0, 0]),
         kestrel.TargetMeasurement(time_ns=5, position_in_world=[1, 2, 3]),
     ]
 

@@ -54,7 +54,7 @@ int main() {
     std::cout << seen.report.reason << "\n";
     return 1;
   }
-  const double distance = seen.report.detection->camera_from_pattern.translation.norm();
+  const double distance = seen.report.detection->camera_from_target.translation.norm();
   std::cout << "the pattern is " << distance << " m away\n";
   return std::abs(distance - kHeight_m) < 0.02 * kHeight_m ? 0 : 1;
 }

@@ -104,14 +104,14 @@ def _search(source: kestrel.Recording, detector: kestrel.TargetDetector,
     return images
 
 
-def _level_hint(camera: kestrel.RigidTransform | None) -> kestrel.LandingHint:
+def _level_hint(camera: kestrel.RigidTransform | None) -> kestrel.TargetHint:
     """Returns the direction of up, or None: it steadies the tilt of far pads."""
     if camera is None:
-        return kestrel.LandingHint()
-    return kestrel.LandingHint(up_in_camera=camera.rotation[2])
+        return kestrel.TargetHint()
+    return kestrel.TargetHint(up_in_camera=camera.rotation[2])
 
 
-def _seen(detection: kestrel.LandingDetection | None) -> _Seen | None:
+def _seen(detection: kestrel.TargetDetection | None) -> _Seen | None:
     if detection is None:
         return None
     return _Seen(detection.center_in_camera, detection.center_px,

@@ -27,12 +27,12 @@ class CalibrateLensCommandTest : public CommandTest {
   void WriteLevelViews() const {
     const CameraModel camera({640, 480, 400, 400, 319.5, 239.5, DistortionModel::kNone, {}});
     for (int i = 0; i < 12; ++i) {
-      const RigidTransform camera_from_pattern = {
+      const RigidTransform camera_from_target = {
           Eigen::Quaterniond(Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitX())) *
               Eigen::AngleAxisd(0.4 * i, Eigen::Vector3d::UnitZ()),
           {0.5 * (i % 4) - 0.75, 0.5 * (i / 4) - 0.5, 2 + 0.1 * i}};
       WriteTestImage(folder_, fmt::format("level/{:03}.png", i),
-                     DrawPattern(camera, LandingPattern(), camera_from_pattern));
+                     DrawPattern(camera, LandingPattern(), camera_from_target));
     }
   }
 };

@@ -48,11 +48,11 @@ class KestrelCommandTest : public CommandTest {
   // Writes two frames with poses. The pattern is 1 m in diameter, 3 m below the camera. 'channels':
   // 1 or 3.
   std::string WriteRecording(int channels = 1) const {
-    const RigidTransform camera_from_pattern = {
+    const RigidTransform camera_from_target = {
         Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX())),
         {0.3, 0.2, 3}};
     const CameraModel camera({640, 480, 400, 400, 319.5, 239.5, DistortionModel::kNone, {}});
-    const cv::Mat image = DrawPattern(camera, LandingPattern(), camera_from_pattern);
+    const cv::Mat image = DrawPattern(camera, LandingPattern(), camera_from_target);
     const auto write = [&](const std::string& name, const cv::Mat& gray) {
       cv::Mat shown;
       cv::merge(std::vector<cv::Mat>(static_cast<std::size_t>(channels), gray), shown);

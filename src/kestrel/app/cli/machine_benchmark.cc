@@ -89,13 +89,13 @@ StepTimes InWholeImages(const std::string& step, const TargetDetector& detector,
 StepTimes NearItsLastPlace(const std::string& step, const TargetDetector& detector,
                            const Images& images) {
   const std::unique_ptr<TargetWorkspace> workspace = detector.MakeWorkspace();
-  std::vector<LandingHint> hints;
+  std::vector<TargetHint> hints;
   Images seen;
   for (const cv::Mat& image : images) {
-    const LandingReport report = detector.Detect(image, {}, *workspace);
+    const TargetReport report = detector.Detect(image, {}, *workspace);
     if (!report.detection) continue;
-    LandingHint hint;
-    hint.center_in_camera = report.detection->camera_from_pattern.translation;
+    TargetHint hint;
+    hint.center_in_camera = report.detection->camera_from_target.translation;
     hint.center_sigma_m = 0.1;
     seen.push_back(image);
     hints.push_back(hint);

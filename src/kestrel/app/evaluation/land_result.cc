@@ -32,16 +32,16 @@ auto KindIn(const CsvTable& table, std::size_t row, std::size_t column, const Ki
   table.Fail(row, fmt::format("'{}' is none that `kestrel land` writes", table.Text(row, column)));
 }
 
-LandingDetection DetectionOf(const DetectionRow::Pattern& pattern,
-                             const std::optional<RigidTransform>& world_from_camera) {
-  LandingDetection detection{};
+TargetDetection DetectionOf(const DetectionRow::Pattern& pattern,
+                            const std::optional<RigidTransform>& world_from_camera) {
+  TargetDetection detection{};
   detection.center_px = pattern.center_px;
   // The pattern is level and has the yaw of the table, or none if the table has none.
-  detection.camera_from_pattern = {
+  detection.camera_from_target = {
       Eigen::Quaterniond(Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitX())),
       pattern.center_in_camera};
   if (world_from_camera && pattern.yaw_in_world) {
-    detection.camera_from_pattern.rotation =
+    detection.camera_from_target.rotation =
         world_from_camera->rotation.conjugate() *
         Eigen::AngleAxisd(*pattern.yaw_in_world, Eigen::Vector3d::UnitZ());
   }
@@ -110,7 +110,7 @@ LandingObservation LandResult::Next(Time time,
   observation.detect_time = row.detect_time;
   observation.report.reached = row.reached;
   if (const auto& pattern = row.detection.pattern) {
-    LandingDetection& detection =
+    TargetDetection& detection =
         observation.report.detection.emplace(DetectionOf(*pattern, world_from_camera));
     detection.method = row.method;
     detection.quality = row.quality;

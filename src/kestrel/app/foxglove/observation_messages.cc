@@ -166,13 +166,13 @@ foxglove::TextPrimitive TextAt(const Eigen::Vector3d& position, std::string text
   return message;
 }
 
-foxglove::Detection DetectionMessage(const LandingDetection& found,
+foxglove::Detection DetectionMessage(const TargetDetection& found,
                                      const std::optional<Eigen::Vector3d>& center_in_world) {
   foxglove::Detection message;
   message.name = ToString(found.method);
   message.probability = found.quality;
   message.center = PixelOf(found.center_px.x(), found.center_px.y());
-  message.position_in_camera = VectorOf(found.camera_from_pattern.translation);
+  message.position_in_camera = VectorOf(found.camera_from_target.translation);
   message.covariance_in_camera = RowByRow(found.covariance.topLeftCorner<3, 3>());
   if (center_in_world) message.position_in_world = VectorOf(*center_in_world);
   return message;

@@ -49,7 +49,7 @@ void ObservationWriter::Write(const Frame& frame, const LandingObservation& obse
   if (const auto& found = observation.report.detection) {
     sink_->Write(kTransformsTopic, time,
                  foxglove::FrameTransforms{{FoxgloveTransform(
-                     time, kFoxgloveCamera, kFoxglovePattern, found->camera_from_pattern)}});
+                     time, kFoxgloveCamera, kFoxglovePattern, found->camera_from_target)}});
   }
   if (observation.target) {
     sink_->Write(kTargetTopic, time, PoseInWorld(time, PoseOf(*observation.target)));

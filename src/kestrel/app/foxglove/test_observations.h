@@ -39,9 +39,9 @@ inline Frame ObservedFrame(int index) {
 inline LandingObservation ObservedLanding(Time time) {
   LandingObservation observation;
   observation.time = time;
-  LandingDetection found{};
+  TargetDetection found{};
   found.center_px = {31.5, 23.5};
-  found.camera_from_pattern.translation = {0, 0, 2};
+  found.camera_from_target.translation = {0, 0, 2};
   found.covariance.setIdentity();
   found.covariance *= 0.01;
   found.method = DetectionMethod::kRing;

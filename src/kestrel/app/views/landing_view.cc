@@ -111,12 +111,12 @@ const char* InWords(DetectionMethod method) {
   return "";
 }
 
-std::string InWords(const LandingDetection& found) {
+std::string InWords(const TargetDetection& found) {
   return found.id ? fmt::format("{}, id {}", InWords(found.method), *found.id)
                   : InWords(found.method);
 }
 
-std::string MisfitInWords(const LandingDetection& detection) {
+std::string MisfitInWords(const TargetDetection& detection) {
   if (detection.diagnostics.misfit_px == 0) return "";
   return fmt::format(
       "{:.2f} px{}", detection.diagnostics.misfit_px,
@@ -176,7 +176,7 @@ std::vector<OverlayShape> LandingShapes(const LandingView& view,
                   OverlayLayer::kPrediction, &no_label, &shapes);
   }
   if (!observation.report.detection) return shapes;
-  const LandingDetection& found = *observation.report.detection;
+  const TargetDetection& found = *observation.report.detection;
   const bool is_rejected = observation.fate == MeasurementFate::kFarFromTrack;
   const OverlayLayer layer = is_rejected ? OverlayLayer::kRejected : OverlayLayer::kDetection;
   const std::string label = fmt::format("{}, {:.0f} %{}", InWords(found), 100 * found.quality,
@@ -186,7 +186,7 @@ std::vector<OverlayShape> LandingShapes(const LandingView& view,
     const PlaneWarp warp = found.diagnostics.seen->Warp(view.camera);
     AddOutlines(view.shape, AsSeen(warp), layer, label + ", as seen", &shapes);
   }
-  AddOutlines(view.shape, ByPose(view.camera, found.camera_from_pattern),
+  AddOutlines(view.shape, ByPose(view.camera, found.camera_from_target),
               is_seen_elsewhere ? OverlayLayer::kRejected : layer,
               is_seen_elsewhere
                   ? fmt::format("by the calibration: {:.1f} px beside", found.diagnostics.misfit_px)
@@ -214,7 +214,7 @@ std::vector<ImageView> LandingImageViews() {
 }
 
 ViewStatus LandingStatus(const LandingObservation& observation) {
-  const LandingReport& report = observation.report;
+  const TargetReport& report = observation.report;
   ViewStatus status;
   status.state = ToString(observation.track_state);
   // One sighting is no track yet.

@@ -22,12 +22,11 @@ LandingObservation Seen() {
   world_from_camera.rotation = Eigen::Quaterniond(Eigen::Vector4d(1, 0, 0, 0));  // x y z w
   world_from_camera.translation = {0, 0, 5};
   observation.world_from_camera = world_from_camera;
-  LandingDetection detection{};
+  TargetDetection detection{};
   detection.center_px.setZero();
   detection.covariance.setZero();
-  detection.camera_from_pattern = world_from_camera.Inverse();
-  detection.camera_from_pattern.translation =
-      world_from_camera.Inverse() * Eigen::Vector3d(1, 0, 0);
+  detection.camera_from_target = world_from_camera.Inverse();
+  detection.camera_from_target.translation = world_from_camera.Inverse() * Eigen::Vector3d(1, 0, 0);
   detection.quality = 0.9;
   observation.report.detection = detection;
   TargetEstimate target{};
@@ -103,14 +102,14 @@ TEST(LandingViewTest, DrawsNoLineAcrossPad) {
 TEST(LandingViewTest, LineEndsAtFieldOfViewOfLens) {
   // A pad so near, beside a lens that shows a part of the world only.
   LandingObservation observation = Seen();
-  observation.report.detection->camera_from_pattern.translation = {0.6, 0, 0.05};
+  observation.report.detection->camera_from_target.translation = {0.6, 0, 0.05};
   observation.target.reset();
   LandingView view = View();
   CameraIntrinsics narrow = PaperCamera();
   narrow.distortion_model = DistortionModel::kNone;
   narrow.distortion.clear();
   view.camera = CameraModel(narrow);
-  observation.report.detection->camera_from_pattern.rotation =
+  observation.report.detection->camera_from_target.rotation =
       Eigen::Quaterniond(Eigen::AngleAxisd(1.2, Eigen::Vector3d::UnitY()));
   const auto shapes = LandingShapes(view, observation);
   ASSERT_GT(shapes.size(), 1U);
@@ -129,9 +128,9 @@ TEST(LandingViewTest, ShowsDetectionFarFromTrackAsRejected) {
 
 TEST(LandingViewTest, ShowsBothOutlinesOfMisfit) {
   LandingObservation observation = Seen();
-  LandingDetection& detection = *observation.report.detection;
+  TargetDetection& detection = *observation.report.detection;
   detection.diagnostics.seen =
-      SeenPrint{detection.camera_from_pattern, PlaneWarp::Coefficients::Zero(), 0.5};
+      SeenPrint{detection.camera_from_target, PlaneWarp::Coefficients::Zero(), 0.5};
   detection.diagnostics.seen->displacement_px(1, 0) = 25;
   detection.diagnostics.misfit_px = 20;
   detection.diagnostics.misfit_bound_px = 1;

@@ -335,7 +335,7 @@ double MisfitOf(const LensView& view, const CameraModel& lens) {
   for (const LensEdge& edge : view.edges) {
     Eigen::Vector2d pixel;
     const Eigen::Vector3d point =
-        view.camera_from_pattern * Eigen::Vector3d(edge.on_print.x(), edge.on_print.y(), 0);
+        view.camera_from_target * Eigen::Vector3d(edge.on_print.x(), edge.on_print.y(), 0);
     if (lens.Project(point, &pixel) == ProjectionStatus::kOutsideModel) return lens.width_px();
     sum += (pixel - edge.pixel).norm();
   }
@@ -352,7 +352,7 @@ std::optional<LensView> FindBoard(const std::string& name, const cv::Mat& image,
   LensView view{name, EdgesOf(corners), {}};
   const auto pose = PoseOf(view, camera);
   if (!pose) return std::nullopt;
-  view.camera_from_pattern = *pose;
+  view.camera_from_target = *pose;
   return view;
 }
 
@@ -363,7 +363,7 @@ std::vector<LensView> PosedBy(const CameraIntrinsics& lens, std::span<const Lens
     const auto pose = PoseOf(view, camera);
     if (!pose) continue;
     posed.push_back(view);
-    posed.back().camera_from_pattern = *pose;
+    posed.back().camera_from_target = *pose;
   }
   return posed;
 }

@@ -44,7 +44,7 @@ void RequireViews(std::size_t count) {
 double UsualTilt(const std::vector<LensView>& views) {
   std::vector<double> tilts;
   for (const LensView& view : views) {
-    const Eigen::Vector3d normal = view.camera_from_pattern.rotation * Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d normal = view.camera_from_target.rotation * Eigen::Vector3d::UnitZ();
     tilts.push_back(std::acos(std::clamp(-normal.z(), -1.0, 1.0)));
   }
   std::sort(tilts.begin(), tilts.end());

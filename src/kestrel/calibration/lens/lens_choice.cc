@@ -75,7 +75,7 @@ std::optional<CameraIntrinsics> Converted(const CameraIntrinsics& camera, Distor
 }
 
 void SetPoses(const std::vector<RigidTransform>& poses, std::vector<LensView>* views) {
-  for (std::size_t i = 0; i < views->size(); ++i) (*views)[i].camera_from_pattern = poses[i];
+  for (std::size_t i = 0; i < views->size(); ++i) (*views)[i].camera_from_target = poses[i];
 }
 
 double SumOfMagnitudes(const std::vector<double>& residuals) {
@@ -108,15 +108,15 @@ std::vector<DistortionModel> LensChoice::Kinds() const {
 bool LensChoice::Resect(const CameraIntrinsics& lens) {
   constexpr LensFreedom kNothing{.focal = false, .aspect = false, .principal = false};
   std::vector<LensView> mirrored = views_;
-  for (LensView& view : mirrored) view.camera_from_pattern = MirrorPose(view.camera_from_pattern);
+  for (LensView& view : mirrored) view.camera_from_target = MirrorPose(view.camera_from_target);
   const auto fit = FitLens(views_, lens, kNothing, edge_sigma_px_);
   if (!fit) return false;
-  SetPoses(fit->camera_from_pattern, &views_);
+  SetPoses(fit->camera_from_target, &views_);
   const auto other = FitLens(mirrored, lens, kNothing, edge_sigma_px_);
   if (!other) return true;
   for (std::size_t i = 0; i < views_.size(); ++i) {
     if (SumOfMagnitudes(other->residuals_px[i]) < SumOfMagnitudes(fit->residuals_px[i])) {
-      views_[i].camera_from_pattern = other->camera_from_pattern[i];
+      views_[i].camera_from_target = other->camera_from_target[i];
     }
   }
   return true;
@@ -148,7 +148,7 @@ std::optional<LensFit> LensChoice::Choose(const CameraIntrinsics& start) {
   const double alike = std::max(1.0, best->optimism / best->freedom.count());
   edge_sigma_px_ *= std::sqrt(alike);
   best = Refit(*best, best->intrinsics, best->freedom);
-  if (best) SetPoses(best->camera_from_pattern, &views_);
+  if (best) SetPoses(best->camera_from_target, &views_);
   return best;
 }
 
@@ -190,7 +190,7 @@ std::optional<LensFit> LensChoice::FitOrder(const LensFit& fit, int order) const
 std::optional<LensFit> LensChoice::Refit(const LensFit& fit, const CameraIntrinsics& start,
                                          const LensFreedom& freedom) const {
   std::vector<LensView> views = views_;
-  SetPoses(fit.camera_from_pattern, &views);
+  SetPoses(fit.camera_from_target, &views);
   return FitLens(views, start, freedom, edge_sigma_px_);
 }
 
@@ -207,7 +207,7 @@ void LensChoice::Clean(const LensFit& fit) {
   std::vector<LensView> kept;
   for (std::size_t i = 0; i < views_.size(); ++i) {
     if (errors[i] > kOutlierView * usual) continue;
-    LensView view{views_[i].name, {}, fit.camera_from_pattern[i]};
+    LensView view{views_[i].name, {}, fit.camera_from_target[i]};
     for (std::size_t k = 0; k < views_[i].edges.size(); ++k) {
       if (std::abs(fit.residuals_px[i][k]) > kOutlier * edge_sigma_px_) continue;
       view.edges.push_back(views_[i].edges[k]);

@@ -163,8 +163,8 @@ class Adjustment {
     LensFit fit{IntrinsicsOf(lens_, start_), freedom_, LensVector::Zero(), {}, {}, cost_};
     for (std::size_t i = 0; i < views_.size(); ++i) {
       const ViewVector& state = states_[i];
-      fit.camera_from_pattern.push_back(
-          {(RotationBy(state.head<3>()) * views_[i].camera_from_pattern.rotation).normalized(),
+      fit.camera_from_target.push_back(
+          {(RotationBy(state.head<3>()) * views_[i].camera_from_target.rotation).normalized(),
            state.segment<3>(3)});
       fit.residuals_px.push_back(ResidualsOf(i));
     }
@@ -176,11 +176,11 @@ class Adjustment {
   void AddView(std::size_t index) {
     const LensView& view = views_[index];
     ViewVector& state = states_[index];
-    state << Eigen::Vector3d::Zero(), view.camera_from_pattern.translation, 0;
+    state << Eigen::Vector3d::Zero(), view.camera_from_target.translation, 0;
     for (const LensEdge& edge : view.edges) {
       using Cost = ceres::AutoDiffCostFunction<EdgeError, 1, kLensParameters, kViewParameters>;
       view_blocks_[index].push_back(problem_.AddResidualBlock(
-          new Cost(new EdgeError{start_.distortion_model, edge, view.camera_from_pattern,
+          new Cost(new EdgeError{start_.distortion_model, edge, view.camera_from_target,
                                  edge_sigma_px_}),
           new ceres::HuberLoss(kHuber), lens_.data(), state.data()));
     }
@@ -206,7 +206,7 @@ class Adjustment {
     std::vector<double> residuals;
     for (const LensEdge& edge : view.edges) {
       double residual = 0;
-      EdgeError{start_.distortion_model, edge, view.camera_from_pattern, 1}(
+      EdgeError{start_.distortion_model, edge, view.camera_from_target, 1}(
           lens_.data(), states_[index].data(), &residual);
       residuals.push_back(residual);
     }

@@ -35,8 +35,8 @@ struct LensFit {
   // Standard deviations of the parameters (fx, fy / fx, cx, cy, coefficients), from the scatter of
   // the views' gradients; 0 for those that were not estimated.
   Eigen::Vector<double, kLensParameters> sigmas;
-  std::vector<RigidTransform> camera_from_pattern;  // for each view
-  std::vector<std::vector<double>> residuals_px;    // for each view's edges, across the outline
+  std::vector<RigidTransform> camera_from_target;  // for each view
+  std::vector<std::vector<double>> residuals_px;   // for each view's edges, across the outline
   double cost = 0;  // robust: half of the squared residuals over the variance of an edge
   // Amount by which the fit to these views is better than the fit to others will be: trace of the
   // inverse Hessian times the variance of the views' gradients (Takeuchi 1976).

@@ -86,7 +86,7 @@ void LensGuide::Count(const LensView& view, const CameraIntrinsics& camera) {
   variety_.near += share >= kNearShare;
   variety_.far += share <= kFarShare;
   // Points out of the print, to the camera. The side that it turns away from is nearer.
-  const Eigen::Vector3d out = view.camera_from_pattern.rotation * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d out = view.camera_from_target.rotation * Eigen::Vector3d::UnitZ();
   const double least = std::sin(kLeastTilt);
   variety_.left += out.x() > least;
   variety_.right += out.x() < -least;

@@ -65,7 +65,7 @@ TEST_F(LensGuideTest, AcceptsManyDifferentViewsAsEnough) {
 TEST_F(LensGuideTest, CountsViewsTiltedToEachSide) {
   const auto tilted = [](double about_x, double about_y) {
     LensView view = MakeLensViews(Lens(), {.count = 1, .share_of_image = 0.1}).front();
-    view.camera_from_pattern = {
+    view.camera_from_target = {
         RotationBy({about_x, about_y, 0}) *
             Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX())),
         {0, 0, 1}};
@@ -73,14 +73,14 @@ TEST_F(LensGuideTest, CountsViewsTiltedToEachSide) {
   };
   // Turned by the right-hand rule about y, which points down, its right side goes away.
   const LensView view = tilted(0, -0.5);
-  const Eigen::Vector3d left = view.camera_from_pattern * Eigen::Vector3d(-0.3, 0, 0);
-  const Eigen::Vector3d right = view.camera_from_pattern * Eigen::Vector3d(0.3, 0, 0);
+  const Eigen::Vector3d left = view.camera_from_target * Eigen::Vector3d(-0.3, 0, 0);
+  const Eigen::Vector3d right = view.camera_from_target * Eigen::Vector3d(0.3, 0, 0);
   ASSERT_LT(left.z(), right.z());
   Show(view);
   EXPECT_EQ(guide_.variety().left, 1);
   EXPECT_EQ(guide_.variety().right, 0);
   Show(Moved(tilted(0.5, 0), 200));
-  const Eigen::Vector3d top = tilted(0.5, 0).camera_from_pattern * Eigen::Vector3d(0, 0.3, 0);
+  const Eigen::Vector3d top = tilted(0.5, 0).camera_from_target * Eigen::Vector3d(0, 0.3, 0);
   EXPECT_EQ(top.z() < 1 ? guide_.variety().top : guide_.variety().bottom, 1);
 }
 

@@ -40,19 +40,19 @@ LensViewFinder::LensViewFinder(LensViewFinder&&) noexcept = default;
 LensViewFinder& LensViewFinder::operator=(LensViewFinder&&) noexcept = default;
 
 std::optional<LensView> LensViewFinder::Find(const std::string& name, const cv::Mat& image) {
-  const LandingReport report = detector_.Detect(image, {}, workspace_);
+  const TargetReport report = detector_.Detect(image, {}, workspace_);
   if (!report.detection || 2 * report.detection->semi_major_px < kMinRingPx) {
     return std::nullopt;
   }
-  const LandingDetection& seen = *report.detection;
+  const TargetDetection& seen = *report.detection;
   const CameraModel camera(
       Recalibrated(detector_.camera().intrinsics(), seen.diagnostics.calibration));
-  PrintAlignment alignment{PlaneWarp(camera, seen.camera_from_pattern, outline_->radius_m()), {}};
+  PrintAlignment alignment{PlaneWarp(camera, seen.camera_from_target, outline_->radius_m()), {}};
   const double reach_px = std::max(kLeastReachPx, kReachShare * 2 * seen.semi_major_px);
   if (!AlignPrint(image, image, {}, outline_->all(), reach_px, kMinStep, &alignment)) {
     return std::nullopt;
   }
-  LensView view{name, {}, seen.camera_from_pattern};
+  LensView view{name, {}, seen.camera_from_target};
   for (const PrintEdge& edge : alignment.edges.all()) {
     if (std::abs(alignment.edges.ResidualOf(edge)) > kInPlacePx) continue;
     view.edges.push_back({edge.place->point, edge.pixel(), edge.across});

@@ -29,7 +29,7 @@ struct LensEdge {
 struct LensView {
   std::string name;
   std::vector<LensEdge> edges;
-  RigidTransform camera_from_pattern;  // approximate
+  RigidTransform camera_from_target;  // approximate
 };
 
 // Finds the edges of the pattern in images.

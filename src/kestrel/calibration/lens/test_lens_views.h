@@ -69,7 +69,7 @@ inline std::vector<LensView> MakeLensViews(const CameraIntrinsics& intrinsics,
           {place.point, pixel + options.noise_px * random.Normal() * across, across});
     }
     if (view.edges.size() < kMinEdges) continue;
-    view.camera_from_pattern =
+    view.camera_from_target =
         Moved(pose, 0.03 * random.Normal() * pose.translation,
               0.05 * Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal()));
     views.push_back(std::move(view));

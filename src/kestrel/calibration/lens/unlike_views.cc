@@ -17,7 +17,7 @@ ViewFeatures FeaturesOf(const LensView& view, int width_px) {
   Eigen::Vector2d center = Eigen::Vector2d::Zero();
   for (const LensEdge& edge : view.edges) center += edge.pixel;
   center /= static_cast<double>(view.edges.size()) * width_px;
-  const RigidTransform& pose = view.camera_from_pattern;
+  const RigidTransform& pose = view.camera_from_target;
   ViewFeatures features;
   features << center, 0.3 * std::log(pose.translation.norm()),
       pose.rotation * Eigen::Vector3d::UnitZ();

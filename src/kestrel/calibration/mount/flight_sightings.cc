@@ -52,9 +52,9 @@ FlightSightings::FlightSightings(const CameraIntrinsics& camera,
       noise_(options.noise) {}
 
 void FlightSightings::Add(const cv::Mat& image, Time time) {
-  const LandingReport report = detector_->Detect(image, {}, *workspace_);
+  const TargetReport report = detector_->Detect(image, {}, *workspace_);
   if (!report.detection) return;
-  const RigidTransform& pose = report.detection->camera_from_pattern;
+  const RigidTransform& pose = report.detection->camera_from_target;
   const Eigen::Matrix3d covariance =
       CovarianceInWorld(report.detection->covariance.topLeftCorner<3, 3>(), pose.translation,
                         Eigen::Quaterniond::Identity(), noise_);

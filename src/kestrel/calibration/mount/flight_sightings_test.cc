@@ -15,15 +15,15 @@ using ::testing::HasSubstr;
 TEST(FlightSightings, KeepsImagesThatShowPattern) {
   const CameraIntrinsics camera{640, 480, 400, 400, 319.5, 239.5, DistortionModel::kNone, {}};
   // The camera looks straight down from 3 m.
-  const RigidTransform camera_from_pattern{Eigen::Quaterniond(0, 1, 0, 0), {0.3, 0.15, 3}};
+  const RigidTransform camera_from_target{Eigen::Quaterniond(0, 1, 0, 0), {0.3, 0.15, 3}};
   FlightSightings flight(camera, LandingPipelineOptions());
-  flight.Add(DrawPattern(CameraModel(camera), LandingPattern(), camera_from_pattern),
+  flight.Add(DrawPattern(CameraModel(camera), LandingPattern(), camera_from_target),
              TimeFromNanoseconds(7));
   flight.Add(cv::Mat(480, 640, CV_8UC1, 90.0), TimeFromNanoseconds(8));
   ASSERT_EQ(flight.sightings().size(), 1u);
   const TargetSighting& sighting = flight.sightings()[0];
   EXPECT_EQ(sighting.time, TimeFromNanoseconds(7));
-  EXPECT_LT((sighting.center_in_camera - camera_from_pattern.translation).norm(), 0.03);
+  EXPECT_LT((sighting.center_in_camera - camera_from_target.translation).norm(), 0.03);
   EXPECT_GT(sighting.sigma_m, 0);
   ASSERT_EQ(flight.places().size(), 1u);
   EXPECT_NEAR(flight.places()[0].pixel.x, 319.5 + 40, 0.5);

@@ -157,8 +157,8 @@ class LineFit {
     print.camera.fy_px *= zoom;
     Eigen::Matrix3d turn;
     ceres::AngleAxisToRotationMatrix(&state_[kTurn], turn.data());
-    print.camera_from_pattern = {(Eigen::Quaterniond(turn) * pose().rotation).normalized(),
-                                 Eigen::Vector3d(&state_[kTranslation])};
+    print.camera_from_target = {(Eigen::Quaterniond(turn) * pose().rotation).normalized(),
+                                Eigen::Vector3d(&state_[kTranslation])};
     print.pattern.ring_width_m = print.pattern.outer_radius_m() - state_[kInnerRadius];
     print.pattern.arm_width_m = state_[kArmWidth];
     print.pattern.arm_half_length_m = state_[kArmHalfLength];
@@ -170,7 +170,7 @@ class LineFit {
   }
 
  private:
-  const RigidTransform& pose() const { return start_.camera_from_pattern; }
+  const RigidTransform& pose() const { return start_.camera_from_target; }
 
   PrintMeasurement Measured(const FoundPrint& print, bool with_ends) const {
     const auto length = [this](double value, int parameter) {
@@ -183,7 +183,7 @@ class LineFit {
     if (with_ends) {
       measured.arm_half_length = length(print.pattern.arm_half_length_m, kArmHalfLength);
     }
-    const Eigen::Vector3d& center = print.camera_from_pattern.translation;
+    const Eigen::Vector3d& center = print.camera_from_target.translation;
     const Eigen::Vector3d toward = center.normalized();
     const Eigen::Matrix3d spread = covariance_.block<3, 3>(kTranslation, kTranslation);
     measured.distance = {center.norm(), std::sqrt(toward.dot(spread * toward))};

@@ -13,7 +13,7 @@ namespace kestrel {
 // An approximate or measured print: its pose, its pattern and the camera.
 struct FoundPrint {
   CameraIntrinsics camera;
-  RigidTransform camera_from_pattern;
+  RigidTransform camera_from_target;
   LandingPattern pattern;
   double pixel_m;  // size of a pixel on the print
 };

@@ -23,8 +23,8 @@ constexpr double kSmoothing_px = 0.8;
 class PrintLines {
  public:
   PrintLines(const cv::Mat& image, const CameraModel& camera,
-             const RigidTransform& camera_from_pattern)
-      : camera_(camera), pose_(camera_from_pattern) {
+             const RigidTransform& camera_from_target)
+      : camera_(camera), pose_(camera_from_target) {
     cv::GaussianBlur(image, image_, cv::Size(), kSmoothing_px);
   }
 
@@ -154,9 +154,9 @@ void FindArms(const LandingPattern& pattern, PrintLines* lines, std::vector<Prin
 }  // namespace
 
 std::vector<PrintLineEdge> FindPrintLineEdges(const cv::Mat& image, const CameraModel& camera,
-                                              const RigidTransform& camera_from_pattern,
+                                              const RigidTransform& camera_from_target,
                                               const LandingPattern& pattern) {
-  PrintLines lines(image, camera, camera_from_pattern);
+  PrintLines lines(image, camera, camera_from_target);
   std::vector<PrintLineEdge> edges;
   FindCircles(pattern, &lines, &edges);
   FindArms(pattern, &lines, &edges);

@@ -26,7 +26,7 @@ struct PrintLineEdge {
 // to the white beside them, along lines across all outlines of the print. It takes the edge
 // wherever it is on the line, not only near its expected place. 'image' is CV_8UC1.
 std::vector<PrintLineEdge> FindPrintLineEdges(const cv::Mat& image, const CameraModel& camera,
-                                              const RigidTransform& camera_from_pattern,
+                                              const RigidTransform& camera_from_target,
                                               const LandingPattern& pattern);
 
 }  // namespace kestrel

@@ -79,10 +79,10 @@ class PrintSearch {
   std::optional<PrintFit> Measure(const CameraIntrinsics& camera, const LensPrior& lens,
                                   const LandingPatternDetectorOptions& options) {
     const LandingPatternDetector detector(CameraModel(Scaled(camera, small_.size())), options);
-    const LandingReport report = detector.Detect(small_, {}, workspace_);
+    const TargetReport report = detector.Detect(small_, {}, workspace_);
     if (!report.detection) return std::nullopt;
     const double ring_px = 2 * report.detection->semi_major_px * image_.cols / small_.cols;
-    const FoundPrint found{camera, report.detection->camera_from_pattern, options.pattern,
+    const FoundPrint found{camera, report.detection->camera_from_target, options.pattern,
                            options.pattern.outer_diameter_m / ring_px};
     // Repeated with the measured pattern, whose lines cross the outlines better.
     std::optional<PrintFit> fit = Fit(found, lens);
@@ -92,7 +92,7 @@ class PrintSearch {
 
  private:
   std::optional<PrintFit> Fit(const FoundPrint& print, const LensPrior& lens) const {
-    return FitPrint(FindPrintLineEdges(image_, CameraModel(print.camera), print.camera_from_pattern,
+    return FitPrint(FindPrintLineEdges(image_, CameraModel(print.camera), print.camera_from_target,
                                        print.pattern),
                     lens, print);
   }

@@ -24,19 +24,19 @@ Quaternion ToWire(const Eigen::Quaterniond& rotation) {
 }
 
 // Rotation to NED from the target's own frame: forward, right, down.
-Eigen::Quaterniond NedFromTarget(const TargetReport& report) {
+Eigen::Quaterniond NedFromTarget(const TargetState& report) {
   const double heading = std::numbers::pi / 2 - report.yaw.value_or(std::numbers::pi / 2);
   return Eigen::Quaterniond(Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ()));
 }
 
-Eigen::Quaterniond NedFromBody(const TargetReport& report) {
+Eigen::Quaterniond NedFromBody(const TargetState& report) {
   return NedFrdFromEnuFlu(report.world_from_body.rotation);
 }
 
 float ToFloat(double value) { return static_cast<float>(value); }
 
 // Makes the part of LANDING_TARGET that is the same in both frames.
-mavlink::LandingTarget MakeLandingTarget(const TargetReport& report, std::uint64_t stamp_us,
+mavlink::LandingTarget MakeLandingTarget(const TargetState& report, std::uint64_t stamp_us,
                                          std::uint8_t frame, const Eigen::Vector3d& position,
                                          const Eigen::Quaterniond& rotation) {
   const Eigen::Vector3d in_frd = FrdFromFlu(report.position_in_body());
@@ -93,7 +93,7 @@ LinkProfile ProfileFor(AutopilotKind kind) {
   return kind == AutopilotKind::kPx4 ? LinkProfile::kPx4 : LinkProfile::kArduPilot;
 }
 
-mavlink::LandingTarget LandingTargetForArduPilot(const TargetReport& report,
+mavlink::LandingTarget LandingTargetForArduPilot(const TargetState& report,
                                                  std::uint64_t stamp_us) {
   const Eigen::Quaterniond rotation = report.yaw
                                           ? NedFromBody(report).conjugate() * NedFromTarget(report)
@@ -102,12 +102,12 @@ mavlink::LandingTarget LandingTargetForArduPilot(const TargetReport& report,
                            FrdFromFlu(report.position_in_body()), rotation);
 }
 
-mavlink::LandingTarget LandingTargetForPx4(const TargetReport& report, std::uint64_t stamp_us) {
+mavlink::LandingTarget LandingTargetForPx4(const TargetState& report, std::uint64_t stamp_us) {
   return MakeLandingTarget(report, stamp_us, mavlink::kFrameLocalNed,
                            NedFromEnu(report.position_in_world), NedFromTarget(report));
 }
 
-mavlink::TargetRelative TargetRelativeForPx4(const TargetReport& report, std::uint64_t stamp_us) {
+mavlink::TargetRelative TargetRelativeForPx4(const TargetState& report, std::uint64_t stamp_us) {
   constexpr double kLeastSigma_m = 0.01;
   const Eigen::Vector3d in_frd = FrdFromFlu(report.position_in_body());
   const Eigen::Matrix3d world_from_body = report.world_from_body.rotation.toRotationMatrix();
@@ -129,7 +129,7 @@ mavlink::TargetRelative TargetRelativeForPx4(const TargetReport& report, std::ui
   return message;
 }
 
-std::optional<mavlink::DistanceSensor> DistanceSensorOf(const TargetReport& report, double max_m,
+std::optional<mavlink::DistanceSensor> DistanceSensorOf(const TargetState& report, double max_m,
                                                         std::uint32_t boot_ms) {
   constexpr double kMin_m = 0.1;
   constexpr double kLeastUpright = 0.5;  // cosine of the tilt
@@ -153,7 +153,7 @@ std::optional<mavlink::DistanceSensor> DistanceSensorOf(const TargetReport& repo
   return message;
 }
 
-mavlink::FollowTarget FollowTargetOf(const TargetReport& report, AutopilotKind kind,
+mavlink::FollowTarget FollowTargetOf(const TargetState& report, AutopilotKind kind,
                                      const GlobalPosition& origin, std::uint64_t boot_ms) {
   constexpr std::uint8_t kHasPosition = 1;
   constexpr std::uint8_t kHasVelocity = 2;
@@ -172,9 +172,8 @@ mavlink::FollowTarget FollowTargetOf(const TargetReport& report, AutopilotKind k
   return message;
 }
 
-bool SendTarget(LinkProfile profile, const TargetMessageOptions& options,
-                const TargetReport& report, const Autopilot& autopilot, Time now,
-                Connection* connection) {
+bool SendTarget(LinkProfile profile, const TargetMessageOptions& options, const TargetState& report,
+                const Autopilot& autopilot, Time now, Connection* connection) {
   constexpr std::uint64_t kUsPerMs = 1000;
   const bool is_vte = profile == LinkProfile::kPx4Vte;
   const Time time = is_vte ? std::min(report.time, now) : report.time;

@@ -33,7 +33,7 @@ LinkProfile ProfileFor(AutopilotKind kind);
 
 // Target and UAV at an instant, usually a predicted one: the time at which the autopilot uses the
 // report.
-struct TargetReport {
+struct TargetState {
   Time time;                       // local clock
   RigidTransform world_from_body;  // UAV (FLU) in the world (ENU)
   Eigen::Vector3d position_in_world{0, 0, 0};
@@ -49,19 +49,18 @@ struct TargetReport {
 
 // Make the messages. 'stamp_us' is the report's time on the autopilot's clock (see
 // TimeSync::ToRemote), in us; 0 where that is not known.
-mavlink::LandingTarget LandingTargetForArduPilot(const TargetReport& report,
-                                                 std::uint64_t stamp_us);
-mavlink::LandingTarget LandingTargetForPx4(const TargetReport& report, std::uint64_t stamp_us);
-mavlink::TargetRelative TargetRelativeForPx4(const TargetReport& report, std::uint64_t stamp_us);
+mavlink::LandingTarget LandingTargetForArduPilot(const TargetState& report, std::uint64_t stamp_us);
+mavlink::LandingTarget LandingTargetForPx4(const TargetState& report, std::uint64_t stamp_us);
+mavlink::TargetRelative TargetRelativeForPx4(const TargetState& report, std::uint64_t stamp_us);
 
 // Returns the distance that a rangefinder under the UAV would measure to the target's plane;
 // nothing when the plane is not below, or beyond 'max_m'. 'boot_ms': the report's time on the
 // autopilot's clock.
-std::optional<mavlink::DistanceSensor> DistanceSensorOf(const TargetReport& report, double max_m,
+std::optional<mavlink::DistanceSensor> DistanceSensorOf(const TargetState& report, double max_m,
                                                         std::uint32_t boot_ms);
 
 // Returns the target's position on the Earth, for follow modes.
-mavlink::FollowTarget FollowTargetOf(const TargetReport& report, AutopilotKind kind,
+mavlink::FollowTarget FollowTargetOf(const TargetState& report, AutopilotKind kind,
                                      const GlobalPosition& origin, std::uint64_t boot_ms);
 
 // Messages that are sent beside that of the profile.
@@ -84,8 +83,7 @@ struct TargetMessageOptions {
 // message was not sent: the line did not accept it, or kPx4Vte does not know the autopilot's clock
 // yet. PX4's estimator refuses times in the future: with kPx4Vte a report should not be later than
 // 'now'; a later one is stamped with 'now'.
-bool SendTarget(LinkProfile profile, const TargetMessageOptions& options,
-                const TargetReport& report, const Autopilot& autopilot, Time now,
-                Connection* connection);
+bool SendTarget(LinkProfile profile, const TargetMessageOptions& options, const TargetState& report,
+                const Autopilot& autopilot, Time now, Connection* connection);
 
 }  // namespace kestrel

@@ -17,8 +17,8 @@ constexpr float kTolerance = 1e-5f;
 
 // A UAV 5 m above the ground that heads north. The target is 2 m north and 1 m east of it on a
 // board of 1 m, and heads east.
-TargetReport Report() {
-  TargetReport report;
+TargetState Report() {
+  TargetState report;
   report.time = TimeFromNanoseconds(1'000'000'000);
   report.world_from_body.translation = {10, 20, 5};
   report.world_from_body.rotation =
@@ -52,7 +52,7 @@ TEST(TargetProfileTest, SendsArduPilotTargetRelativeToBody) {
 }
 
 TEST(TargetProfileTest, AccountsForTiltOfBody) {
-  TargetReport report = Report();
+  TargetState report = Report();
   report.position_in_world = report.world_from_body.translation - Eigen::Vector3d(0, 0, 4);
   // Nose down by 0.2 rad.
   report.world_from_body.rotation =
@@ -95,7 +95,7 @@ TEST(TargetProfileTest, MeasuresDistanceDown) {
   EXPECT_EQ(message->orientation, mavlink::kOrientationDown);
   EXPECT_EQ(message->covariance, 9);
   EXPECT_FALSE(DistanceSensorOf(Report(), 3, 99));
-  TargetReport above = Report();
+  TargetState above = Report();
   above.position_in_world.z() = 6;
   EXPECT_FALSE(DistanceSensorOf(above, 40, 99));
 }

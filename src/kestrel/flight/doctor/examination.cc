@@ -259,10 +259,10 @@ void Examination::SummarizeParameters(ParameterValues* values) const {
   }
 }
 
-PatternSample PatternSampleOf(const LandingDetection& detection) {
+PatternSample PatternSampleOf(const TargetDetection& detection) {
   PatternSample sample;
-  sample.camera_from_pattern = detection.camera_from_pattern;
-  sample.mirror_camera_from_pattern = detection.diagnostics.mirror_camera_from_pattern;
+  sample.camera_from_target = detection.camera_from_target;
+  sample.mirror_camera_from_target = detection.diagnostics.mirror_camera_from_target;
   sample.ring_px = 2 * detection.semi_minor_px;
   sample.misfit_px = detection.diagnostics.misfit_px;
   sample.contradicts = detection.diagnostics.calibration.contradicts;

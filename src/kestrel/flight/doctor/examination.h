@@ -92,7 +92,7 @@ class Examination {
 };
 
 // Returns the part of a detection that the checks use; the caller adds its time and the UAV's pose.
-PatternSample PatternSampleOf(const LandingDetection& detection);
+PatternSample PatternSampleOf(const TargetDetection& detection);
 
 // Runs all checks, in the order in which a set-up is put right.
 std::vector<Finding> Check(const DoctorObservations& observations);

@@ -37,8 +37,8 @@ class FlightExaminationTest : public ::testing::Test {
     observation.time = FrameTime(i);
     observation.detect_time = milliseconds(3);
     observation.world_from_camera = world_from_body * *calibration_.body_from_camera;
-    LandingDetection& detection = observation.report.detection.emplace();
-    detection.camera_from_pattern = (world_from_body * true_mount).Inverse();
+    TargetDetection& detection = observation.report.detection.emplace();
+    detection.camera_from_target = (world_from_body * true_mount).Inverse();
     detection.semi_minor_px = 50;
     detection.diagnostics.misfit_px = 0.2;
     return observation;

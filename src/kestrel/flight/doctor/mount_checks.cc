@@ -33,8 +33,8 @@ std::vector<const PatternSample*> PosedPatterns(const VisionObservations& vision
 }
 
 // Returns the angle between the pattern's normal and the vertical, rad.
-double TiltOf(const RigidTransform& camera_from_pattern, const Quaterniond& world_from_camera) {
-  const Vector3d normal = world_from_camera * (camera_from_pattern.rotation * Vector3d::UnitZ());
+double TiltOf(const RigidTransform& camera_from_target, const Quaterniond& world_from_camera) {
+  const Vector3d normal = world_from_camera * (camera_from_target.rotation * Vector3d::UnitZ());
   return std::acos(std::clamp(normal.z(), -1.0, 1.0));
 }
 
@@ -44,9 +44,9 @@ double MedianTilt(const std::vector<const PatternSample*>& patterns,
   std::vector<double> tilts;
   for (const PatternSample* pattern : patterns) {
     const Quaterniond world_from_camera = pattern->world_from_body->rotation * body_from_camera;
-    double tilt = TiltOf(pattern->camera_from_pattern, world_from_camera);
-    if (pattern->mirror_camera_from_pattern) {
-      tilt = std::min(tilt, TiltOf(*pattern->mirror_camera_from_pattern, world_from_camera));
+    double tilt = TiltOf(pattern->camera_from_target, world_from_camera);
+    if (pattern->mirror_camera_from_target) {
+      tilt = std::min(tilt, TiltOf(*pattern->mirror_camera_from_target, world_from_camera));
     }
     tilts.push_back(tilt);
   }
@@ -62,7 +62,7 @@ double Wandering(const std::vector<const PatternSample*>& patterns,
   for (Eigen::Index i = 0; i < rows; ++i) {
     const PatternSample& pattern = *patterns[static_cast<std::size_t>(i)];
     places.row(i) =
-        (*pattern.world_from_body * (body_from_camera * pattern.camera_from_pattern.translation))
+        (*pattern.world_from_body * (body_from_camera * pattern.camera_from_target.translation))
             .transpose();
     if (target_moves) motion(i, 1) = ToSeconds(pattern.time - patterns.front()->time);
   }

@@ -59,8 +59,8 @@ struct CameraObservations {
 // The pattern in one frame, found without mount and attitude.
 struct PatternSample {
   Time time;  // time of the frame on the navigation's clock
-  RigidTransform camera_from_pattern;
-  std::optional<RigidTransform> mirror_camera_from_pattern;
+  RigidTransform camera_from_target;
+  std::optional<RigidTransform> mirror_camera_from_target;
   double ring_px = 0;        // smaller diameter of the ring
   double misfit_px = 0;      // distance of the edges from where pose and lens place them
   bool contradicts = false;  // the calibration cannot explain the detection

@@ -42,7 +42,7 @@ inline std::vector<PatternSample> PatternsSeen(const RigidTransform& true_mount,
     PatternSample sample;
     sample.time = FrameTime(i);
     sample.world_from_body = HeldPose(kPeriod_s * i, tilt_deg);
-    sample.camera_from_pattern = (*sample.world_from_body * true_mount).Inverse();
+    sample.camera_from_target = (*sample.world_from_body * true_mount).Inverse();
     sample.ring_px = 100;
     sample.misfit_px = 0.2;
     patterns.push_back(sample);

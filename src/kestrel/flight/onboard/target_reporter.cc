@@ -11,14 +11,14 @@ TargetReporter::TargetReporter(const TargetReporterOptions& options,
                                const TargetTrackerOptions& tracker)
     : options_(Checked(options)), noise_(Checked(tracker).Noise()), contact_(options.contact) {}
 
-std::optional<TargetReport> TargetReporter::Report(Time now, Duration until_use,
-                                                   const TrackSnapshot& track,
-                                                   const PoseHistory& poses) {
+std::optional<TargetState> TargetReporter::Report(Time now, Duration until_use,
+                                                  const TrackSnapshot& track,
+                                                  const PoseHistory& poses) {
   const Time time_of_use = now + until_use;
   const auto pose =
       poses.Predict(time_of_use, DurationFromSeconds(TargetReporterOptions::kMaxPoseAge_s), {});
   if (!pose) return std::nullopt;
-  TargetReport report;
+  TargetState report;
   report.time = time_of_use;
   report.world_from_body = pose->world_from_body;
   const Eigen::Vector3d& body_velocity = pose->motion.velocity_in_world;
@@ -42,7 +42,7 @@ std::optional<TargetReport> TargetReporter::Report(Time now, Duration until_use,
   return std::nullopt;
 }
 
-bool TargetReporter::PredictTarget(const TrackSnapshot& track, TargetReport* report) const {
+bool TargetReporter::PredictTarget(const TrackSnapshot& track, TargetState* report) const {
   if (!track.target || track.state == TrackState::kSearching) return false;
   const double ahead_s = ToSeconds(report->time - track.captured);
   const TurnState target = Propagate(track.target->motion, std::max(ahead_s, 0.0), noise_);
@@ -58,8 +58,7 @@ bool TargetReporter::PredictTarget(const TrackSnapshot& track, TargetReport* rep
          report->position_in_world.allFinite();
 }
 
-TargetReport TargetReporter::Below(TargetReport report,
-                                   const Eigen::Vector3d& body_velocity) const {
+TargetState TargetReporter::Below(TargetState report, const Eigen::Vector3d& body_velocity) const {
   report.position_in_world = report.world_from_body.translation;
   report.position_in_world.z() -= TargetReporterOptions::kContactBelow_m;
   report.velocity_in_world = body_velocity;

@@ -46,8 +46,8 @@ class TargetReporter {
   // Returns the target 'until_use' after 'now': later by the link's delay, or earlier where the
   // autopilot takes a measurement as one of some time ago. 'poses': the newest poses of the UAV.
   // Nothing while the target or the pose is not known well enough. Call it in order of time.
-  std::optional<TargetReport> Report(Time now, Duration until_use, const TrackSnapshot& track,
-                                     const PoseHistory& poses);
+  std::optional<TargetState> Report(Time now, Duration until_use, const TrackSnapshot& track,
+                                    const PoseHistory& poses);
 
   // Says whether the UAV may stand on the deck: guidance may know that it hovers there.
   void set_may_stand(bool may_stand) { may_stand_ = may_stand; }
@@ -57,8 +57,8 @@ class TargetReporter {
   double height_m() const { return height_m_; }
 
  private:
-  bool PredictTarget(const TrackSnapshot& track, TargetReport* report) const;
-  TargetReport Below(TargetReport report, const Eigen::Vector3d& body_velocity) const;
+  bool PredictTarget(const TrackSnapshot& track, TargetState* report) const;
+  TargetState Below(TargetState report, const Eigen::Vector3d& body_velocity) const;
 
   TargetReporterOptions options_;
   TurnNoise noise_;

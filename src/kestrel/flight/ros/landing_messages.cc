@@ -58,7 +58,7 @@ MarkerMessage PatternMarker(const LandingObservation& observation, const TargetS
     marker.action = MarkerMessage::kDelete;
     return marker;
   }
-  marker.pose = PoseMessageOf(observation.report.detection->camera_from_pattern);
+  marker.pose = PoseMessageOf(observation.report.detection->camera_from_target);
   marker.scale = {shape.diameter_m, shape.diameter_m, kBoardThickness_m};
   marker.color = {0, 1, 0, 0.6F};
   return marker;
@@ -105,24 +105,24 @@ Detection3DArrayMessage DetectionsOf(const LandingObservation& observation,
   Detection3DMessage& found = message.detections.emplace_back();
   found.header = message.header;
   if (detection->id) found.id = std::to_string(*detection->id);
-  found.box = {PoseMessageOf(detection->camera_from_pattern),
+  found.box = {PoseMessageOf(detection->camera_from_target),
                {shape.board_size_m, shape.board_size_m, kBoardThickness_m}};
   found.results.push_back({{"landing_pattern", detection->quality},
                            {found.box.center, NumbersOf(detection->covariance)}});
   return message;
 }
 
-PoseWithCovarianceStampedMessage TargetPoseOf(const LandingDetection& detection, Time stamp,
+PoseWithCovarianceStampedMessage TargetPoseOf(const TargetDetection& detection, Time stamp,
                                               const std::string& camera_frame) {
   return {HeaderOf(stamp, camera_frame),
-          {PoseMessageOf(detection.camera_from_pattern), NumbersOf(detection.covariance)}};
+          {PoseMessageOf(detection.camera_from_target), NumbersOf(detection.covariance)}};
 }
 
-TfMessage PatternTransformOf(const LandingDetection& detection, Time stamp,
+TfMessage PatternTransformOf(const TargetDetection& detection, Time stamp,
                              const std::string& camera_frame, const std::string& pattern_frame) {
   TfMessage message;
   message.transforms.push_back({HeaderOf(stamp, camera_frame), pattern_frame,
-                                TransformMessageOf(detection.camera_from_pattern)});
+                                TransformMessageOf(detection.camera_from_target)});
   return message;
 }
 

@@ -9,7 +9,7 @@
 #include "kestrel/io/ros_messages/messages.h"
 #include "kestrel/io/ros_messages/result_messages.h"
 #include "kestrel/vision/pipeline/landing_pipeline.h"
-#include "kestrel/vision/target/landing_detection.h"
+#include "kestrel/vision/target/target_detection.h"
 #include "kestrel/vision/target/target_shape.h"
 #include "kestrel/vision/tracking/target_tracker.h"
 #include "kestrel/vision/tracking/turn_motion.h"
@@ -25,11 +25,11 @@ Detection3DArrayMessage DetectionsOf(const LandingObservation& observation,
                                      const std::string& camera_frame, const TargetShape& shape);
 
 // The pose of the pattern in the camera's frame, with its covariance.
-PoseWithCovarianceStampedMessage TargetPoseOf(const LandingDetection& detection, Time stamp,
+PoseWithCovarianceStampedMessage TargetPoseOf(const TargetDetection& detection, Time stamp,
                                               const std::string& camera_frame);
 
 // The same for tf.
-TfMessage PatternTransformOf(const LandingDetection& detection, Time stamp,
+TfMessage PatternTransformOf(const TargetDetection& detection, Time stamp,
                              const std::string& camera_frame, const std::string& pattern_frame);
 
 // The track: the target's pose in the world, headed along its velocity; velocities in its own

@@ -58,7 +58,7 @@ TEST(LandingMessages, StandingTargetHasUnknownHeading) {
 
 TEST(LandingMessages, DetectionNamesPad) {
   LandingObservation observation;
-  LandingDetection detection{};
+  TargetDetection detection{};
   observation.report.detection = detection;
   const TargetShape shape = ShapeOf(LandingPattern());
   EXPECT_EQ(DetectionsOf(observation, "camera", shape).detections.at(0).id, "");

@@ -17,7 +17,7 @@ constexpr double kMarginOfCertainty = 100;
 
 // Calls 'take' with each tag that was seen.
 template <class Take>
-void ForEachSeenTag(const LandingDetection& detection, const TargetShape& shape, const Take& take) {
+void ForEachSeenTag(const TargetDetection& detection, const TargetShape& shape, const Take& take) {
   for (const SeenPart& part : detection.parts.all()) {
     if (part.tag) take(shape.tags.at(*part.tag));
   }
@@ -30,9 +30,9 @@ ImagePointMessage ImagePointOf(const CameraModel& camera, const Eigen::Vector3d&
   return {pixel.x() + 0.5, pixel.y() + 0.5};
 }
 
-TagMessage TagOf(const TargetTag& tag, const LandingDetection& detection,
+TagMessage TagOf(const TargetTag& tag, const TargetDetection& detection,
                  const CameraModel& camera) {
-  const RigidTransform camera_from_tag = detection.camera_from_pattern * tag.pattern_from_tag;
+  const RigidTransform camera_from_tag = detection.camera_from_target * tag.pattern_from_tag;
   const double half = 0.5 * tag.size_m;
   TagMessage message;
   message.family = tag.family;
@@ -79,7 +79,7 @@ TfMessage TagTransformsOf(const LandingObservation& observation, const TargetSha
     TransformStampedMessage& transform = message.transforms.emplace_back();
     transform.header = {0, observation.time, camera_frame};
     transform.child_frame_id = fmt::format("{}:{}", tag.family, tag.id);
-    transform.transform = TransformMessageOf(detection->camera_from_pattern * tag.pattern_from_tag);
+    transform.transform = TransformMessageOf(detection->camera_from_target * tag.pattern_from_tag);
   });
   return message;
 }

@@ -139,7 +139,7 @@ TEST_F(TagMessagesTest, MissGivesEmptyList) {
   const TagBoard board = BoardOf({7});
   LandingObservation observation;
   observation.time = kTaken;
-  LandingDetection without_tags{};
+  TargetDetection without_tags{};
   without_tags.parts.Add({"ring and cross", std::nullopt, 100});
   LandingObservation of_ring = observation;
   of_ring.report.detection = without_tags;

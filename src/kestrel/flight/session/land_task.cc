@@ -56,7 +56,7 @@ class LandingVision : public Vision {
  private:
   void LimitSearch(const Frame& frame);
   void UpdateSnapshot(const LandingObservation& observation);
-  std::optional<TargetReport> Sighting(const LandingObservation& observation) const;
+  std::optional<TargetState> Sighting(const LandingObservation& observation) const;
   std::string LensWarning() const;
 
   LandingPipeline pipeline_;
@@ -121,26 +121,26 @@ void LandingVision::UpdateSnapshot(const LandingObservation& observation) {
   snapshot_.area = PatternArea(*detection, detector.shape(), detector.camera());
   if (!observation.camera_from_body) return;
   snapshot_.sight = {snapshot_.captured,
-                     detection->camera_from_pattern.Inverse() * *observation.camera_from_body};
+                     detection->camera_from_target.Inverse() * *observation.camera_from_body};
 }
 
-std::optional<TargetReport> LandingVision::Sighting(const LandingObservation& observation) const {
+std::optional<TargetState> LandingVision::Sighting(const LandingObservation& observation) const {
   const auto& detection = observation.report.detection;
   if (!detection || !observation.world_from_camera || !observation.camera_from_body) {
     return std::nullopt;
   }
   const RigidTransform& world_from_camera = *observation.world_from_camera;
-  const Eigen::Vector3d& center = detection->camera_from_pattern.translation;
+  const Eigen::Vector3d& center = detection->camera_from_target.translation;
   // Relative to the UAV only the pose's attitude counts, including the errors that all frames
   // share.
   MeasurementNoise noise = pipeline_.options().noise;
   noise.pose_sigma_m = noise.pose_bias_m = 0;
-  TargetReport report;
+  TargetState report;
   report.time = snapshot_.captured;
   report.world_from_body = world_from_camera * *observation.camera_from_body;
   report.position_in_world = world_from_camera * center;
   report.normal_in_world = world_from_camera.rotation *
-                           (detection->camera_from_pattern.rotation * Eigen::Vector3d::UnitZ());
+                           (detection->camera_from_target.rotation * Eigen::Vector3d::UnitZ());
   report.covariance = CovarianceInWorld(detection->covariance.topLeftCorner<3, 3>(), center,
                                         world_from_camera.rotation, noise) +
                       SharedCovarianceInWorld(center, world_from_camera.rotation, noise);

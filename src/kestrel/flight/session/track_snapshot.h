@@ -20,7 +20,7 @@ struct TrackSnapshot {
   TrackState state = TrackState::kSearching;
   std::optional<TargetEstimate> target;  // at 'captured', in the world
   // The target in this frame alone, seen from the UAV's pose at that time.
-  std::optional<TargetReport> sighting;
+  std::optional<TargetState> sighting;
   // The newest frame that showed the target, without any pose: where the UAV's body was then.
   struct Sight {
     Time time;

@@ -36,9 +36,9 @@ RigidTransform BodyOf(const ExplainedScene& scene) {
   return {EnuFluFromNedFrd(ned_from_frd), EnuFromNed(scene.uav_in_ned)};
 }
 
-TargetReport ReportOf(const ExplainedScene& scene) {
+TargetState ReportOf(const ExplainedScene& scene) {
   constexpr double kSigma_m = 0.03;
-  TargetReport report;
+  TargetState report;
   report.world_from_body = BodyOf(scene);
   report.position_in_world = report.world_from_body * FluFromFrd(scene.pattern_in_body);
   report.covariance = kSigma_m * kSigma_m * Eigen::Matrix3d::Identity();
@@ -77,7 +77,7 @@ void AskArduPilot(const ExplainedScene& scene, LinkProfile profile, Understandin
   if (profile == LinkProfile::kPx4Vte) return;
   const AutopilotParameters parameters(AutopilotFirmware::kArduPilot);
   ArduPilotTarget target(parameters, KeepLast(&understanding->ardupilot_text));
-  const TargetReport report = ReportOf(scene);
+  const TargetState report = ReportOf(scene);
   TellFor(scene, &target, [&](const FlightState& state) {
     const auto stamp_us = static_cast<std::uint64_t>(state.boot_us);
     target.Handle(profile == LinkProfile::kArduPilot ? LandingTargetForArduPilot(report, stamp_us)
@@ -95,7 +95,7 @@ void AskPx4(const ExplainedScene& scene, LinkProfile profile, Understanding* und
   if (const auto estimator = parameters.Find("VTE_EN")) parameters.Set(*estimator, is_vte ? 1 : 0);
   const Px4TimeSync clock;
   Px4Target target(parameters, clock, KeepLast(&understanding->px4_text));
-  const TargetReport report = ReportOf(scene);
+  const TargetState report = ReportOf(scene);
   TellFor(scene, &target, [&](const FlightState& state) {
     const auto stamp_us = static_cast<std::uint64_t>(state.boot_us);
     if (is_vte) {
@@ -146,7 +146,7 @@ std::string Fields(const Message& message) {
 }
 
 std::string MessageOf(const ExplainedScene& scene, LinkProfile profile) {
-  const TargetReport report = ReportOf(scene);
+  const TargetState report = ReportOf(scene);
   const auto stamp_us = static_cast<std::uint64_t>(kBoot_us);
   switch (profile) {
     case LinkProfile::kArduPilot:
@@ -183,7 +183,7 @@ Understanding UnderstandingOf(const ExplainedScene& scene, LinkProfile profile) 
 }
 
 std::string Explain(const ExplainedScene& scene) {
-  const TargetReport report = ReportOf(scene);
+  const TargetState report = ReportOf(scene);
   std::string text = fmt::format(
       "A pattern {:g} m ahead, {:g} m right, {:g} m below a UAV that is {:g} m north, {:g} m east, "
       "{:g} m up\nof its origin, level, its nose {:g} deg clockwise from north. The pattern is "

@@ -74,7 +74,7 @@ TEST_F(SimulatedCameraTest, ShowsPatternAtItsPlace) {
     const auto frame = camera.Capture(capture);
     ASSERT_TRUE(frame);
     EXPECT_EQ(frame->time, capture);
-    const LandingReport report = detector.Detect(frame->image, {}, workspace);
+    const TargetReport report = detector.Detect(frame->image, {}, workspace);
     ASSERT_TRUE(report.detection) << altitude_m << " m: " << report.reason;
     const Vector3d start = world_.PatternAt(kStart).translation + Vector3d(-0.2, 0.3, altitude_m);
     const Eigen::Vector2d expected = TruePixel(camera, PoseOver(start, capture), frame->time);

@@ -28,8 +28,8 @@ constexpr int kMaxTries = 2000;
 
 Vector3d OnPlane(const Vector2d& point) { return {point.x(), point.y(), 0}; }
 
-Vector3d UpInCamera(const RigidTransform& camera_from_pattern) {
-  return camera_from_pattern.rotation * Vector3d::UnitZ();
+Vector3d UpInCamera(const RigidTransform& camera_from_target) {
+  return camera_from_target.rotation * Vector3d::UnitZ();
 }
 
 struct ImageExtent {
@@ -40,14 +40,14 @@ struct ImageExtent {
 // Returns the largest and smallest width of the image of a circle on the plane; nothing when the
 // camera model does not cover all of it.
 std::optional<ImageExtent> ExtentOfCircle(const CameraModel& camera,
-                                          const RigidTransform& camera_from_pattern,
+                                          const RigidTransform& camera_from_target,
                                           const Vector2d& center, double radius) {
   constexpr int kPoints = 90;
   std::vector<Vector2d> pixels(kPoints);
   for (int i = 0; i < kPoints; ++i) {
     const double angle = 2 * kPi * i / kPoints;
     const Vector2d point = center + radius * Vector2d(std::cos(angle), std::sin(angle));
-    if (camera.Project(camera_from_pattern * OnPlane(point), &pixels[i]) ==
+    if (camera.Project(camera_from_target * OnPlane(point), &pixels[i]) ==
         ProjectionStatus::kOutsideModel) {
       return std::nullopt;
     }
@@ -96,14 +96,14 @@ std::optional<RigidTransform> RandomPose(const CameraModel& camera, double altit
 // Returns a point of the plane that the camera sees or that lies up to 'margin_px' beside its
 // image, or nothing.
 std::optional<Vector2d> RandomPlacePoint(const CameraModel& camera,
-                                         const RigidTransform& camera_from_pattern,
-                                         double margin_px, Random* random) {
+                                         const RigidTransform& camera_from_target, double margin_px,
+                                         Random* random) {
   Vector3d ray;
   if (camera.Unproject(RandomPixel(camera, margin_px, random), &ray) ==
       ProjectionStatus::kOutsideModel) {
     return std::nullopt;
   }
-  const RigidTransform pattern_from_camera = camera_from_pattern.Inverse();
+  const RigidTransform pattern_from_camera = camera_from_target.Inverse();
   const Vector3d direction = pattern_from_camera.rotation * ray;
   if (direction.z() > -0.05) return std::nullopt;
   const Vector3d& camera_in_pattern = pattern_from_camera.translation;
@@ -120,13 +120,13 @@ LensOptions LensOf(const LandingStillOptions& options, bool legs) {
 
 // Adds, in every second image, a motion across the view of up to two pixels, less for small
 // patterns.
-void AddRandomMotion(const CameraModel& camera, const RigidTransform& camera_from_pattern,
+void AddRandomMotion(const CameraModel& camera, const RigidTransform& camera_from_target,
                      double size_px, Random* random, ImagingOptions* imaging) {
   if (!random->Chance(0.5)) return;
-  const double range = camera_from_pattern.translation.norm();
+  const double range = camera_from_target.translation.norm();
   const double motion_px = random->Uniform(0, std::min(2.0, 0.06 * size_px));
   const double angle = motion_px / camera.intrinsics().fx_px;
-  const Vector3d ray = camera_from_pattern.translation / range;
+  const Vector3d ray = camera_from_target.translation / range;
   const Vector3d across = ray.unitOrthogonal();
   const double direction = random->Uniform(0, 2 * kPi);
   const Vector3d motion = std::cos(direction) * across + std::sin(direction) * ray.cross(across);
@@ -134,14 +134,14 @@ void AddRandomMotion(const CameraModel& camera, const RigidTransform& camera_fro
 }
 
 // Adds a motion across the view during the read-out: it shifts the image by 'skew' px per row.
-void AddRollingShutter(const CameraModel& camera, const RigidTransform& camera_from_pattern,
+void AddRollingShutter(const CameraModel& camera, const RigidTransform& camera_from_target,
                        double skew, Random* random, ImagingOptions* imaging) {
   if (skew == 0) return;
   imaging->readout_s = 0.033;
   imaging->exposure_s = 0.001;  // causes hardly any blur
-  const double range = camera_from_pattern.translation.norm();
+  const double range = camera_from_target.translation.norm();
   const double rate = skew * camera.height_px() / imaging->readout_s / camera.intrinsics().fx_px;
-  const Vector3d ray = camera_from_pattern.translation / range;
+  const Vector3d ray = camera_from_target.translation / range;
   const Vector3d across = ray.unitOrthogonal();
   const double direction = random->Uniform(0, 2 * kPi);
   imaging->velocity_in_camera =
@@ -149,14 +149,14 @@ void AddRollingShutter(const CameraModel& camera, const RigidTransform& camera_f
 }
 
 // Returns the pixel of the print's middle: on the sheet's relief, at its row's time.
-Vector2d CenterPx(const CameraModel& camera, const RigidTransform& camera_from_pattern,
+Vector2d CenterPx(const CameraModel& camera, const RigidTransform& camera_from_target,
                   const Relief& relief, const ImagingOptions& imaging) {
   const Vector3d center(0, 0, relief.HeightAt({0, 0}));
   Vector2d pixel(0, 0.5 * (camera.height_px() - 1));
   constexpr int kSteps = 5;
   for (int i = 0; i < kSteps; ++i) {
     const double time = RowTime(imaging, pixel.y(), camera.height_px());
-    camera.Project(PoseAt(camera_from_pattern, imaging, time) * center, &pixel);
+    camera.Project(PoseAt(camera_from_target, imaging, time) * center, &pixel);
   }
   return pixel;
 }
@@ -169,13 +169,13 @@ struct LookalikePlace {
 
 // Returns the part of a circle that is in view.
 double SeenShare(const Vector2d& center, double radius, const Lens& lens,
-                 const RigidTransform& camera_from_pattern) {
+                 const RigidTransform& camera_from_target) {
   constexpr int kPoints = 24;
   int seen = 0;
   for (int i = 0; i < kPoints; ++i) {
     const double angle = 2 * kPi * i / kPoints;
     const Vector2d point = center + radius * Vector2d(std::cos(angle), std::sin(angle));
-    seen += lens.Sees(camera_from_pattern * OnPlane(point));
+    seen += lens.Sees(camera_from_target * OnPlane(point));
   }
   return static_cast<double>(seen) / kPoints;
 }
@@ -184,22 +184,22 @@ double SeenShare(const Vector2d& center, double radius, const Lens& lens,
 // no other one, or nothing when the chosen place is not good.
 std::optional<LookalikePlace> RandomPlace(const LandingStillOptions& options,
                                           const SceneRenderer& renderer,
-                                          const RigidTransform& camera_from_pattern,
+                                          const RigidTransform& camera_from_target,
                                           const std::vector<LookalikePlace>& taken,
                                           Random* random) {
   const double radius = 0.15 * std::pow(8, random->Uniform());  // 0.15 to 1.2 m
   const CameraModel& camera = renderer.camera();
   const bool whole = options.min_lookalike_visible == 1;
   const double margin_px = whole ? 0 : 0.2 * camera.height_px();
-  const auto center = RandomPlacePoint(camera, camera_from_pattern, margin_px, random);
+  const auto center = RandomPlacePoint(camera, camera_from_target, margin_px, random);
   if (!center) return std::nullopt;
   const auto overlaps = [&](const LookalikePlace& other) {
     return (*center - other.center).norm() < 2.2 * (radius + other.radius);
   };
   if (std::any_of(taken.begin(), taken.end(), overlaps)) return std::nullopt;
-  const double seen = SeenShare(*center, 1.1 * radius, renderer.lens(), camera_from_pattern);
+  const double seen = SeenShare(*center, 1.1 * radius, renderer.lens(), camera_from_target);
   if (whole ? seen < 1 : seen == 1 || seen < options.min_lookalike_visible) return std::nullopt;
-  const auto extent = ExtentOfCircle(camera, camera_from_pattern, *center, radius);
+  const auto extent = ExtentOfCircle(camera, camera_from_target, *center, radius);
   if (!extent || extent->major_px < options.min_lookalike_major_px ||
       extent->minor_px < options.min_lookalike_minor_px ||
       extent->minor_px > options.max_lookalike_minor_px) {
@@ -210,12 +210,12 @@ std::optional<LookalikePlace> RandomPlace(const LandingStillOptions& options,
 
 std::vector<LookalikePlace> RandomPlaces(const LandingStillOptions& options,
                                          const SceneRenderer& renderer,
-                                         const RigidTransform& camera_from_pattern, int wanted,
+                                         const RigidTransform& camera_from_target, int wanted,
                                          Random* random) {
   constexpr int kTriesPerPose = 40;
   std::vector<LookalikePlace> places;
   for (int i = 0; i < kTriesPerPose && std::ssize(places) < wanted; ++i) {
-    const auto place = RandomPlace(options, renderer, camera_from_pattern, places, random);
+    const auto place = RandomPlace(options, renderer, camera_from_target, places, random);
     if (place) places.push_back(*place);
   }
   return places;
@@ -229,30 +229,30 @@ const LandingStillOptions& Valid(const LandingStillOptions& options) {
 // Returns the truth of a still for a pose, or nothing when it shows too little of the pattern.
 std::optional<LandingStill> TruthOf(const LandingStillOptions& options,
                                     const SceneRenderer& renderer, const LandingPattern& pattern,
-                                    const RigidTransform& camera_from_pattern) {
+                                    const RigidTransform& camera_from_target) {
   const CameraModel& camera = renderer.camera();
-  const auto ring = ExtentOfCircle(camera, camera_from_pattern, {0, 0}, pattern.outer_radius_m());
+  const auto ring = ExtentOfCircle(camera, camera_from_target, {0, 0}, pattern.outer_radius_m());
   if (!ring || ring->major_px < options.min_ring_major_px ||
       ring->minor_px < options.min_ring_minor_px) {
     return std::nullopt;
   }
   Vector2d center_px;
-  if (camera.Project(camera_from_pattern.translation, &center_px) ==
+  if (camera.Project(camera_from_target.translation, &center_px) ==
       ProjectionStatus::kOutsideModel) {
     return std::nullopt;
   }
   const double visible_fraction =
-      VisibleFraction(PrintOf(pattern), camera_from_pattern, renderer.lens());
+      VisibleFraction(PrintOf(pattern), camera_from_target, renderer.lens());
   if (visible_fraction < options.min_visible_fraction ||
       visible_fraction > options.max_visible_fraction) {
     return std::nullopt;
   }
   return LandingStill{.image = {},
                       .pattern = pattern,
-                      .camera_from_pattern = camera_from_pattern,
+                      .camera_from_target = camera_from_target,
                       .center_px = center_px,
-                      .altitude_m = camera_from_pattern.Inverse().translation.z(),
-                      .up_in_camera = UpInCamera(camera_from_pattern),
+                      .altitude_m = camera_from_target.Inverse().translation.z(),
+                      .up_in_camera = UpInCamera(camera_from_target),
                       .visible_fraction = visible_fraction,
                       .ring_major_px = ring->major_px,
                       .ring_minor_px = ring->minor_px};
@@ -363,15 +363,15 @@ LandingStill LandingStillMaker::PreparePattern(std::uint64_t seed, View* view) c
   still.has_shadow = !view->scene.shadows.empty();
   still.has_highlight = !view->scene.glares.empty();
   view->imaging = RandomImaging(light, &random);
-  AddRandomMotion(camera_, still.camera_from_pattern, still.ring_minor_px, &random, &view->imaging);
+  AddRandomMotion(camera_, still.camera_from_target, still.ring_minor_px, &random, &view->imaging);
   const double board_m = still.pattern.board_size_m;
   view->scene.relief = {board_m, options_.bulge * board_m, options_.fold * board_m};
-  AddRollingShutter(camera_, still.camera_from_pattern, options_.rolling_skew, &random,
+  AddRollingShutter(camera_, still.camera_from_target, options_.rolling_skew, &random,
                     &view->imaging);
-  still.center_px = CenterPx(camera_, still.camera_from_pattern, view->scene.relief, view->imaging);
+  still.center_px = CenterPx(camera_, still.camera_from_target, view->scene.relief, view->imaging);
 
   const double beside_legs =
-      VisibleFraction(PrintOf(still.pattern), still.camera_from_pattern, with_legs_.lens());
+      VisibleFraction(PrintOf(still.pattern), still.camera_from_target, with_legs_.lens());
   const bool legs = random.Chance(0.3) && beside_legs > 0.9 * still.visible_fraction;
   if (legs) still.visible_fraction = beside_legs;
   view->renderer = legs ? &with_legs_ : &plain_;
@@ -386,7 +386,7 @@ LandingStill LandingStillMaker::PlacePattern(std::uint64_t seed) const {
 LandingStill LandingStillMaker::MakePattern(std::uint64_t seed) const {
   View view;
   LandingStill still = PreparePattern(seed, &view);
-  still.image = view.renderer->Render(view.scene, still.camera_from_pattern, view.imaging);
+  still.image = view.renderer->Render(view.scene, still.camera_from_target, view.imaging);
   return still;
 }
 
@@ -398,7 +398,7 @@ LookalikeStill LandingStillMaker::PlaceLookalikes(std::uint64_t seed) const {
 LookalikeStill LandingStillMaker::MakeLookalikes(std::uint64_t seed) const {
   View view;
   LookalikeStill still = PrepareLookalikes(seed, &view);
-  still.image = view.renderer->Render(view.scene, still.camera_from_pattern, view.imaging);
+  still.image = view.renderer->Render(view.scene, still.camera_from_target, view.imaging);
   return still;
 }
 
@@ -412,7 +412,7 @@ LookalikeStill LandingStillMaker::PrepareLookalikes(std::uint64_t seed, View* vi
     still.altitude_m = random.Uniform(options_.min_altitude_m, options_.max_altitude_m);
     const auto pose = RandomPose(camera_, still.altitude_m, options_.max_tilt_deg, 0, &random);
     if (!pose) continue;
-    still.camera_from_pattern = *pose;
+    still.camera_from_target = *pose;
     places = RandomPlaces(options_, *view->renderer, *pose, wanted, &random);
   }
   if (places.empty()) {
@@ -420,7 +420,7 @@ LookalikeStill LandingStillMaker::PrepareLookalikes(std::uint64_t seed, View* vi
         "no look-alike can be seen from {} to {} m, expected a lower altitude or a wider image",
         options_.min_altitude_m, options_.max_altitude_m));
   }
-  still.up_in_camera = UpInCamera(still.camera_from_pattern);
+  still.up_in_camera = UpInCamera(still.camera_from_target);
   view->scene = RandomGround(&random);
   for (const LookalikePlace& place : places) {
     still.names.emplace_back(
@@ -438,7 +438,7 @@ LookalikeStill LandingStillMaker::PrepareLookalikes(std::uint64_t seed, View* vi
   AddRandomShadows(light, &random, &view->scene);
   if (options_.condition == StillCondition::kGlare) AddRandomGlares(light, &random, &view->scene);
   view->imaging = RandomImaging(light, &random);
-  AddRandomMotion(camera_, still.camera_from_pattern, size_px, &random, &view->imaging);
+  AddRandomMotion(camera_, still.camera_from_target, size_px, &random, &view->imaging);
   return still;
 }
 

@@ -78,13 +78,13 @@ struct LandingStillOptions {
 
 // One rendered image of the landing pattern with its truth.
 struct LandingStill {
-  cv::Mat image;                       // CV_8UC1
-  LandingPattern pattern;              // as drawn
-  RigidTransform camera_from_pattern;  // true pose in the middle of the exposure
-  Eigen::Vector2d center_px;           // projection of the pattern's origin; may be outside
-  double altitude_m;                   // height of the camera above the pattern's plane
-  Eigen::Vector3d up_in_camera;        // unit vector away from the ground
-  double visible_fraction;             // visible share of ring and cross, see VisibleFraction
+  cv::Mat image;                      // CV_8UC1
+  LandingPattern pattern;             // as drawn
+  RigidTransform camera_from_target;  // true pose in the middle of the exposure
+  Eigen::Vector2d center_px;          // projection of the pattern's origin; may be outside
+  double altitude_m;                  // height of the camera above the pattern's plane
+  Eigen::Vector3d up_in_camera;       // unit vector away from the ground
+  double visible_fraction;            // visible share of ring and cross, see VisibleFraction
   bool has_shadow = false;  // shadow of the UAV, or the edge of a larger one, on or near the ring
   bool has_highlight = false;  // a mirror image of the sun on or near the ring
   double ring_major_px;        // largest and smallest width of the outer ring's image,
@@ -93,8 +93,8 @@ struct LandingStill {
 
 // One rendered image without the landing pattern.
 struct LookalikeStill {
-  cv::Mat image;                       // CV_8UC1
-  RigidTransform camera_from_pattern;  // pose of the plane
+  cv::Mat image;                      // CV_8UC1
+  RigidTransform camera_from_target;  // pose of the plane
   double altitude_m;
   Eigen::Vector3d up_in_camera;
   std::vector<std::string> names;  // names of its look-alikes, at least one

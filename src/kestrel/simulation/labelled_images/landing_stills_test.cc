@@ -33,7 +33,7 @@ TEST(LandingStillMakerTest, StillsKeepTheirOptions) {
     EXPECT_GE(still.ring_major_px, 13);
     const double tilt = std::acos(-still.up_in_camera.z());
     EXPECT_LE(tilt, 40.001 * std::numbers::pi / 180);
-    const Vector3d camera_in_pattern = still.camera_from_pattern.Inverse().translation;
+    const Vector3d camera_in_pattern = still.camera_from_target.Inverse().translation;
     EXPECT_NEAR(camera_in_pattern.z(), still.altitude_m, 1e-9);
   }
 }
@@ -46,7 +46,7 @@ double MeanOnPattern(const LandingStill& still, const CameraModel& camera, bool 
   for (double angle = std::numbers::pi / 4; angle < 7; angle += std::numbers::pi / 2) {
     const Vector3d point(radius * std::cos(angle), radius * std::sin(angle), 0);
     Vector2d pixel;
-    if (camera.Project(still.camera_from_pattern * point, &pixel) != ProjectionStatus::kOk) {
+    if (camera.Project(still.camera_from_target * point, &pixel) != ProjectionStatus::kOk) {
       continue;
     }
     sum += still.image.at<std::uint8_t>(std::lround(pixel.y()), std::lround(pixel.x()));
@@ -84,9 +84,9 @@ TEST(LandingStillMakerTest, TruthLiesOnSheetAtItsTime) {
     for (int seed = 0; seed < 5; ++seed) {
       const LandingStill still = maker.MakePattern(seed);
       Vector2d of_flat, of_bulge;
-      maker.camera().Project(still.camera_from_pattern.translation, &of_flat);
+      maker.camera().Project(still.camera_from_target.translation, &of_flat);
       const double height_m = options.bulge * still.pattern.board_size_m;
-      maker.camera().Project(still.camera_from_pattern * Vector3d(0, 0, height_m), &of_bulge);
+      maker.camera().Project(still.camera_from_target * Vector3d(0, 0, height_m), &of_bulge);
       if (options.rolling_skew == 0) {
         EXPECT_LT((still.center_px - of_bulge).norm(), 1e-6) << "seed " << seed;
         continue;

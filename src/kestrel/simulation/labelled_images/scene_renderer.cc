@@ -49,11 +49,11 @@ cv::Mat Expose(const ImagingOptions& imaging, const cv::Mat& radiance) {
   return image;
 }
 
-void CheckPose(const RigidTransform& camera_from_pattern) {
-  const double height = camera_from_pattern.Inverse().translation.z();
+void CheckPose(const RigidTransform& camera_from_target) {
+  const double height = camera_from_target.Inverse().translation.z();
   if (!(height > 0 && std::isfinite(height))) {
     throw InputError(
-        fmt::format("camera_from_pattern puts the camera {} m above the pattern's plane, expected "
+        fmt::format("camera_from_target puts the camera {} m above the pattern's plane, expected "
                     "a positive height",
                     height));
   }
@@ -61,9 +61,9 @@ void CheckPose(const RigidTransform& camera_from_pattern) {
 
 }  // namespace
 
-RigidTransform PoseAt(const RigidTransform& camera_from_pattern, const ImagingOptions& imaging,
+RigidTransform PoseAt(const RigidTransform& camera_from_target, const ImagingOptions& imaging,
                       double time_s) {
-  return Moved(camera_from_pattern, time_s * imaging.velocity_in_camera,
+  return Moved(camera_from_target, time_s * imaging.velocity_in_camera,
                time_s * imaging.angular_velocity_in_camera);
 }
 
@@ -121,15 +121,15 @@ class SceneRenderer::PlanePainter {
  public:
   // The arguments must outlive the painter.
   PlanePainter(const Scene& scene, const GroundTexture& texture,
-               const RigidTransform& camera_from_pattern, const ImagingOptions& imaging)
-      : scene_(scene), texture_(texture), middle_(camera_from_pattern, scene.relief) {
+               const RigidTransform& camera_from_target, const ImagingOptions& imaging)
+      : scene_(scene), texture_(texture), middle_(camera_from_target, scene.relief) {
     const bool moving = imaging.exposure_s > 0 && !(imaging.velocity_in_camera.isZero() &&
                                                     imaging.angular_velocity_in_camera.isZero());
     cells_per_side_ = moving ? kCellsPerSideMoving : kCellsPerSideStill;
     const int times = moving ? kTimesMoving : 1;
     for (int i = 0; i < times; ++i) {
       const double time = ((i + 0.5) / times - 0.5) * imaging.exposure_s;
-      const RigidTransform pose = PoseAt(camera_from_pattern, imaging, time);
+      const RigidTransform pose = PoseAt(camera_from_target, imaging, time);
       CheckPose(pose);
       views_.emplace_back(pose, scene.relief);
     }
@@ -152,9 +152,9 @@ class SceneRenderer::PlanePainter {
     Eigen::Vector3d camera_in_pattern;
     const Relief& relief;
 
-    PlaneView(const RigidTransform& camera_from_pattern, const Relief& sheet)
-        : pattern_from_camera(camera_from_pattern.rotation.conjugate().toRotationMatrix()),
-          camera_in_pattern(camera_from_pattern.Inverse().translation),
+    PlaneView(const RigidTransform& camera_from_target, const Relief& sheet)
+        : pattern_from_camera(camera_from_target.rotation.conjugate().toRotationMatrix()),
+          camera_in_pattern(camera_from_target.Inverse().translation),
           relief(sheet) {}
 
     // Finds the point of the plane that a ray of any length sees; false when it sees none.
@@ -277,17 +277,17 @@ class SceneRenderer::PlanePainter {
   int cells_per_side_ = 1;
 };
 
-cv::Mat SceneRenderer::Render(const Scene& scene, const RigidTransform& camera_from_pattern,
+cv::Mat SceneRenderer::Render(const Scene& scene, const RigidTransform& camera_from_target,
                               const ImagingOptions& imaging) const {
   RequireValid(scene);
   RequireValid(imaging);
-  CheckPose(camera_from_pattern);
-  cv::Mat radiance = PaintRadiance(scene, camera_from_pattern, imaging);
+  CheckPose(camera_from_target);
+  cv::Mat radiance = PaintRadiance(scene, camera_from_target, imaging);
   PassLens(imaging, &radiance);
   return Expose(imaging, radiance);
 }
 
-cv::Mat SceneRenderer::PaintRadiance(const Scene& scene, const RigidTransform& camera_from_pattern,
+cv::Mat SceneRenderer::PaintRadiance(const Scene& scene, const RigidTransform& camera_from_target,
                                      const ImagingOptions& imaging) const {
   const GroundTexture texture(scene.texture_seed);
   std::optional<PlanePainter> painter;
@@ -295,7 +295,7 @@ cv::Mat SceneRenderer::PaintRadiance(const Scene& scene, const RigidTransform& c
   for (int v = 0; v < radiance.rows; ++v) {
     if (!painter || imaging.readout_s > 0) {
       const double time = RowTime(imaging, v, radiance.rows);
-      painter.emplace(scene, texture, PoseAt(camera_from_pattern, imaging, time), imaging);
+      painter.emplace(scene, texture, PoseAt(camera_from_target, imaging, time), imaging);
     }
     for (int u = 0; u < radiance.cols; ++u) {
       if (lens_.gain().at<float>(v, u) <= 0) continue;

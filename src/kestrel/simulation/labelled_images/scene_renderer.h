@@ -78,7 +78,7 @@ struct ImagingOptions {
 
 // Returns the plane's pose in the camera 'time_s' after the middle of the exposure of the middle
 // row.
-RigidTransform PoseAt(const RigidTransform& camera_from_pattern, const ImagingOptions& imaging,
+RigidTransform PoseAt(const RigidTransform& camera_from_target, const ImagingOptions& imaging,
                       double time_s);
 
 // Returns the time of the exposure of 'row' of 'rows', s after the middle one; fractions allowed.
@@ -94,9 +94,9 @@ class SceneRenderer {
   explicit SceneRenderer(const CameraModel& camera, const LensOptions& lens = {})
       : lens_(camera, lens) {}
 
-  // Returns CV_8UC1 of the camera's size. 'camera_from_pattern' must see the plane from above.
+  // Returns CV_8UC1 of the camera's size. 'camera_from_target' must see the plane from above.
   // Throws InputError when scene, pose or imaging are not valid.
-  cv::Mat Render(const Scene& scene, const RigidTransform& camera_from_pattern,
+  cv::Mat Render(const Scene& scene, const RigidTransform& camera_from_target,
                  const ImagingOptions& imaging) const;
 
   const CameraModel& camera() const { return lens_.camera(); }
@@ -105,7 +105,7 @@ class SceneRenderer {
  private:
   class PlanePainter;
 
-  cv::Mat PaintRadiance(const Scene& scene, const RigidTransform& camera_from_pattern,
+  cv::Mat PaintRadiance(const Scene& scene, const RigidTransform& camera_from_target,
                         const ImagingOptions& imaging) const;
   void PassLens(const ImagingOptions& imaging, cv::Mat* radiance) const;
 

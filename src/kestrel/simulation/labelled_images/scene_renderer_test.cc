@@ -125,13 +125,13 @@ EdgeErrors MeasureRing(const ShownAt& shown_at, const cv::Mat& image) {
 }
 
 // The same for a flat print that stands still.
-EdgeErrors MeasureRing(const CameraModel& camera, const RigidTransform& camera_from_pattern,
+EdgeErrors MeasureRing(const CameraModel& camera, const RigidTransform& camera_from_target,
                        const cv::Mat& image) {
   return MeasureRing(
       [&](const Vector2d& point) -> std::optional<Vector2d> {
         Vector2d pixel;
         const Vector3d on_plane(point.x(), point.y(), 0);
-        if (camera.Project(camera_from_pattern * on_plane, &pixel) != ProjectionStatus::kOk) {
+        if (camera.Project(camera_from_target * on_plane, &pixel) != ProjectionStatus::kOk) {
           return std::nullopt;
         }
         return pixel;

@@ -70,10 +70,10 @@ RecordingPlan PlanStills(const StillsOptions& options, const LandingPattern& pat
     plan.times.push_back(time);
     RigidTransform camera_from_world;
     if (lookalikes) {
-      camera_from_world = maker->PlaceLookalikes(Hash(seed, i)).camera_from_pattern;
+      camera_from_world = maker->PlaceLookalikes(Hash(seed, i)).camera_from_target;
     } else {
       const LandingStill still = maker->PlacePattern(Hash(seed, i));
-      camera_from_world = still.camera_from_pattern;
+      camera_from_world = still.camera_from_target;
       truth += TruthRow(time, still);
     }
     poses.push_back({time, camera_from_world.Inverse() * camera_from_body});

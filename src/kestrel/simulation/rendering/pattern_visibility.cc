@@ -30,11 +30,11 @@ std::vector<Vector2d> InkPoints(const TargetPrint& print) {
 
 }  // namespace
 
-double VisibleFraction(const TargetPrint& print, const RigidTransform& camera_from_pattern,
+double VisibleFraction(const TargetPrint& print, const RigidTransform& camera_from_target,
                        const Lens& lens) {
   const std::vector<Vector2d> points = InkPoints(print);
   const auto seen = std::count_if(points.begin(), points.end(), [&](const Vector2d& point) {
-    return lens.Sees(camera_from_pattern * Eigen::Vector3d(point.x(), point.y(), 0));
+    return lens.Sees(camera_from_target * Eigen::Vector3d(point.x(), point.y(), 0));
   });
   return static_cast<double>(seen) / static_cast<double>(points.size());
 }

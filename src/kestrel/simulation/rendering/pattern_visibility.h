@@ -9,7 +9,7 @@ namespace kestrel {
 
 // Returns the part (0 to 1) of the area of a pad's ink that is visible in the image: inside of
 // it and of the lens circle, not behind the airframe.
-double VisibleFraction(const TargetPrint& print, const RigidTransform& camera_from_pattern,
+double VisibleFraction(const TargetPrint& print, const RigidTransform& camera_from_target,
                        const Lens& lens);
 
 }  // namespace kestrel

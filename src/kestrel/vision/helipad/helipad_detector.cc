@@ -33,8 +33,8 @@ HelipadDetector::~HelipadDetector() = default;
 HelipadDetector::HelipadDetector(HelipadDetector&&) noexcept = default;
 HelipadDetector& HelipadDetector::operator=(HelipadDetector&&) noexcept = default;
 
-LandingReport HelipadDetector::Detect(const cv::Mat& image, const LandingHint& hint,
-                                      TargetWorkspace& workspace) const {
+TargetReport HelipadDetector::Detect(const cv::Mat& image, const TargetHint& hint,
+                                     TargetWorkspace& workspace) const {
   constexpr double kPartFactor = 1.5, kPartMarginPx = 12;
   const HelipadSearchModels models{{impl_->camera, impl_->alignment, impl_->pad.radius_m,
                                     impl_->options.level_sigma_deg, kPartFactor, kPartMarginPx},

@@ -43,8 +43,8 @@ class HelipadDetector final : public TargetDetector {
 
   // As of TargetDetector. Does not allocate once the workspace has warmed up.
   using TargetDetector::Detect;
-  LandingReport Detect(const cv::Mat& image, const LandingHint& hint,
-                       TargetWorkspace& workspace) const override;
+  TargetReport Detect(const cv::Mat& image, const TargetHint& hint,
+                      TargetWorkspace& workspace) const override;
   std::unique_ptr<TargetWorkspace> MakeWorkspace() const override;
   const CameraModel& camera() const override;
   const TargetShape& shape() const override;

@@ -34,7 +34,7 @@ class HelipadDetectorTest : public ::testing::Test {
   cv::Mat Image(const RigidTransform& pose, std::uint64_t seed) const {
     return renderer_.Render(PrintOf(options_), pose, taken_, seed);
   }
-  LandingReport Detect(const cv::Mat& image, const LandingHint& hint = {}) {
+  TargetReport Detect(const cv::Mat& image, const TargetHint& hint = {}) {
     return detector_->Detect(image, hint, *workspace_);
   }
   // Returns the number of 'count' random views in which the pad is found at its place. The hint is
@@ -44,7 +44,7 @@ class HelipadDetectorTest : public ::testing::Test {
     Random random(seed);
     for (int i = 0; i < count; ++i) {
       const RigidTransform pose = RandomPadBelow(altitude, &random);
-      LandingHint hint;
+      TargetHint hint;
       hint.up_in_camera = pose.rotation * Vector3d::UnitZ();
       if (sigma_m > 0) {
         const double x = random.Normal();
@@ -55,9 +55,9 @@ class HelipadDetectorTest : public ::testing::Test {
         hint.rotation_in_camera =
             Eigen::Quaterniond(Eigen::AngleAxisd(0.03, Vector3d::UnitZ())) * pose.rotation;
       }
-      const LandingReport report = Detect(Image(pose, seed + i), hint);
+      const TargetReport report = Detect(Image(pose, seed + i), hint);
       if (!report.detection) continue;
-      const RigidTransform& seen = report.detection->camera_from_pattern;
+      const RigidTransform& seen = report.detection->camera_from_target;
       const double off = (seen.translation - pose.translation).norm();
       const double turn = seen.rotation.angularDistance(pose.rotation);
       const bool right = off < 0.1 * altitude && std::min(turn, kPi - turn) < Radians(12);
@@ -114,14 +114,14 @@ TEST_F(HelipadDetectorTest, FollowsSingleLegDownToGround) {
       const double sigma = 0.005 + 0.02 * height;
       const double x = random.Normal();
       const double y = random.Normal();
-      LandingHint hint;
+      TargetHint hint;
       hint.center_in_camera = pose.translation + sigma * Vector3d(x, y, 0);
       hint.center_sigma_m = sigma;
       hint.rotation_in_camera = RotationBy({0, 0, 0.02}) * pose.rotation;
       hint.up_in_camera = pose.rotation * Vector3d::UnitZ();
-      const LandingReport report = Detect(Image(pose, 3), hint);
+      const TargetReport report = Detect(Image(pose, 3), hint);
       ASSERT_TRUE(report.detection) << frame << ", " << height << " m: " << report.reason;
-      const RigidTransform& seen = report.detection->camera_from_pattern;
+      const RigidTransform& seen = report.detection->camera_from_target;
       EXPECT_LT((seen.translation - pose.translation).norm(), 0.01) << frame << ", " << height;
       EXPECT_LT(seen.rotation.angularDistance(pose.rotation), Radians(1))
           << frame << ", " << height;
@@ -160,11 +160,11 @@ TEST_F(HelipadDetectorTest, CovarianceMatchesErrors) {
   for (int i = 0; i < kViews; ++i) {
     const double altitude = random.Uniform(1.5, 5);
     const RigidTransform pose = RandomPadBelow(altitude, &random);
-    LandingHint hint;
+    TargetHint hint;
     hint.up_in_camera = pose.rotation * Vector3d::UnitZ();
-    const LandingReport report = Detect(Image(pose, 100 + i), hint);
+    const TargetReport report = Detect(Image(pose, 100 + i), hint);
     ASSERT_TRUE(report.detection);
-    const RigidTransform& seen = report.detection->camera_from_pattern;
+    const RigidTransform& seen = report.detection->camera_from_target;
     EXPECT_EQ(report.detection->heading_symmetry, 2);
     Eigen::Quaterniond turn = seen.rotation * pose.rotation.conjugate();
     if (Eigen::AngleAxisd(turn).angle() > kPi / 2) {
@@ -185,16 +185,16 @@ TEST_F(HelipadDetectorTest, HintResolvesHeading) {
   const RigidTransform pose = RandomPadBelow(2, &random);
   const cv::Mat image = Image(pose, 1);
   for (const bool turned : {false, true}) {
-    LandingHint hint;
+    TargetHint hint;
     hint.center_in_camera = pose.translation;
     hint.center_sigma_m = 0.05;
     hint.rotation_in_camera =
         turned ? pose.rotation * Eigen::Quaterniond(0, 0, 0, 1) : pose.rotation;
-    const LandingReport report = Detect(image, hint);
+    const TargetReport report = Detect(image, hint);
     ASSERT_TRUE(report.detection);
     EXPECT_EQ(report.detection->method, DetectionMethod::kFollowed);
     EXPECT_LT(
-        report.detection->camera_from_pattern.rotation.angularDistance(*hint.rotation_in_camera),
+        report.detection->camera_from_target.rotation.angularDistance(*hint.rotation_in_camera),
         Radians(2));
   }
 }
@@ -219,7 +219,7 @@ TEST_F(HelipadDetectorTest, RejectsLookalikes) {
       const LookalikeBoard board = RandomLookalikeBoard(white, &random);
       const double altitude = random.Uniform(1.5, 8);
       const RigidTransform pose = RandomPadBelow(altitude, &random);
-      const LandingReport report = Detect(renderer_.Render(board.print, pose, taken_, i));
+      const TargetReport report = Detect(renderer_.Render(board.print, pose, taken_, i));
       EXPECT_FALSE(report.detection) << "board " << i << ", white " << white;
     }
   }

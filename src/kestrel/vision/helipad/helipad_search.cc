@@ -33,7 +33,7 @@ RigidTransform HalfTurned(const RigidTransform& pose) {
 }  // namespace
 
 HelipadSearch::HelipadSearch(const HelipadSearchModels& models, const cv::Mat& image,
-                             const LandingHint& hint, HelipadSearchBuffers* buffers)
+                             const TargetHint& hint, HelipadSearchBuffers* buffers)
     : PadSearch(models.search, image, hint, &buffers->pad),
       helipad_(models),
       candidates_(buffers->candidates) {}
@@ -160,9 +160,9 @@ void HelipadSearch::Take(const RigidTransform& pose, double prior, DetectionMeth
 void HelipadSearch::Report(const AlignedPad& found, double quality, DetectionMethod method) {
   AlignedPad aligned = found;
   const std::optional<RigidTransform> mirror = ResolveMirror(&aligned);
-  LandingDetection detection = DetectionOf(aligned, quality, method);
-  detection.diagnostics.mirror_camera_from_pattern = mirror;
-  RigidTransform& pose = detection.camera_from_pattern;
+  TargetDetection detection = DetectionOf(aligned, quality, method);
+  detection.diagnostics.mirror_camera_from_target = mirror;
+  RigidTransform& pose = detection.camera_from_target;
   if (hint_.rotation_in_camera &&
       pose.rotation.angularDistance(*hint_.rotation_in_camera) > kPi / 2) {
     pose = HalfTurned(pose);

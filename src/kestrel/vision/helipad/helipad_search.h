@@ -30,7 +30,7 @@ struct HelipadSearchBuffers : TargetWorkspace {
 // The search of one image for a helipad.
 class HelipadSearch final : public PadSearch {
  public:
-  HelipadSearch(const HelipadSearchModels& models, const cv::Mat& image, const LandingHint& hint,
+  HelipadSearch(const HelipadSearchModels& models, const cv::Mat& image, const TargetHint& hint,
                 HelipadSearchBuffers* buffers);
 
  private:

@@ -16,12 +16,12 @@ namespace {
 using LandingHintTest = LandingPatternDetectorTest;
 
 TEST_F(LandingHintTest, ImageOverridesContradictoryUp) {
-  LandingHint hint;
+  TargetHint hint;
   const Eigen::Vector3d normal = pose_.rotation * Eigen::Vector3d::UnitZ();
   hint.up_in_camera = Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitX()) * normal;  // 23 degrees off
-  const LandingReport report = Detect(image_, hint);
+  const TargetReport report = Detect(image_, hint);
   ASSERT_TRUE(report.detection) << report.reason;
-  EXPECT_LT(PoseError(report.detection->camera_from_pattern, pose_).head<3>().norm(), 0.015);
+  EXPECT_LT(PoseError(report.detection->camera_from_target, pose_).head<3>().norm(), 0.015);
 }
 
 TEST_F(LandingHintTest, HintFitsPatternThatFillsFisheyeImage) {
@@ -33,13 +33,13 @@ TEST_F(LandingHintTest, HintFitsPatternThatFillsFisheyeImage) {
   for (const double distance : {0.45, 0.6, 1.0}) {
     const RigidTransform truth = PrintPose({0.02, 0.03, distance}, 0.1, 1, 0.3);
     const cv::Mat image = DrawPrint(fisheye, pattern_, SpokedPrint(pattern_, 4), truth);
-    LandingHint hint;
+    TargetHint hint;
     hint.center_in_camera = truth.translation;
     hint.center_sigma_m = 0.1;
     hint.altitude_m = distance + 2;  // above the ground, while the print is on a roof
-    const LandingReport report = detector.Detect(image, hint, workspace_);
+    const TargetReport report = detector.Detect(image, hint, workspace_);
     ASSERT_TRUE(report.detection) << distance << " m: " << report.reason;
-    EXPECT_LT(PoseError(report.detection->camera_from_pattern, truth).head<3>().norm(), 0.005);
+    EXPECT_LT(PoseError(report.detection->camera_from_target, truth).head<3>().norm(), 0.005);
   }
 }
 
@@ -51,12 +51,12 @@ TEST_F(LandingHintTest, HintSelectsOneOfTwoPatterns) {
   const cv::Rect half(image.cols / 2, 0, image.cols / 2, image.rows);
   Draw(SpokedPrint(pattern_, 4), right)(half).copyTo(image(half));
   for (const RigidTransform& pose : {left, right}) {
-    LandingHint hint;
+    TargetHint hint;
     hint.center_in_camera = pose.translation + Eigen::Vector3d(0.05, 0.05, 0.1);
     hint.center_sigma_m = 0.1;
-    const LandingReport report = Detect(image, hint);
+    const TargetReport report = Detect(image, hint);
     ASSERT_TRUE(report.detection) << report.reason;
-    EXPECT_LT((report.detection->camera_from_pattern.translation - pose.translation).norm(), 0.05);
+    EXPECT_LT((report.detection->camera_from_target.translation - pose.translation).norm(), 0.05);
   }
 }
 
@@ -64,21 +64,21 @@ TEST_F(LandingHintTest, HintSelectsOneOfTwoPatterns) {
 TEST_F(LandingHintTest, WrongHintDoesNotHidePattern) {
   struct Told {
     const char* what;
-    LandingHint hint;
+    TargetHint hint;
   };
   const auto center = [](const Eigen::Vector3d& at) {
-    LandingHint hint;
+    TargetHint hint;
     hint.center_in_camera = at;
     hint.center_sigma_m = 0.1;
     return hint;
   };
   const auto altitude = [](double altitude_m) {
-    LandingHint hint;
+    TargetHint hint;
     hint.altitude_m = altitude_m;
     return hint;
   };
   const auto up = [](const Eigen::Vector3d& in_camera) {
-    LandingHint hint;
+    TargetHint hint;
     hint.up_in_camera = in_camera;
     return hint;
   };
@@ -90,7 +90,7 @@ TEST_F(LandingHintTest, WrongHintDoesNotHidePattern) {
     const Eigen::Vector3d normal = truth.rotation * Eigen::Vector3d::UnitZ();
     Eigen::Vector3d turned_round = normal;
     turned_round.head<2>() *= -1;
-    LandingHint all_wrong = center({-0.5 * distance, 0.1, 2 * distance});
+    TargetHint all_wrong = center({-0.5 * distance, 0.1, 2 * distance});
     all_wrong.up_in_camera = -normal;
     all_wrong.altitude_m = distance + 500;
     const Told wrong[] = {
@@ -114,12 +114,12 @@ TEST_F(LandingHintTest, WrongHintDoesNotHidePattern) {
     Eigen::Vector2d center_px;
     camera_.Project(at, &center_px);
     for (const Told& told : wrong) {
-      const LandingReport report = Detect(image, told.hint);
+      const TargetReport report = Detect(image, told.hint);
       ASSERT_TRUE(report.detection) << told.what << " at " << distance << " m: " << report.reason;
       EXPECT_LT((report.detection->center_px - center_px).norm(), 0.2)
           << told.what << " at " << distance << " m";
       // A wrong 'up' may choose the mirror pose, which agrees better with it.
-      EXPECT_LT((report.detection->camera_from_pattern.translation - at).norm(), 0.1 * distance)
+      EXPECT_LT((report.detection->camera_from_target.translation - at).norm(), 0.1 * distance)
           << told.what << " at " << distance << " m";
     }
   }
@@ -131,36 +131,36 @@ TEST_F(LandingHintTest, GoodPredictionNeedsNoSearch) {
     const RigidTransform truth =
         PrintPose({0.03 * distance, 0.02 * distance, distance}, 0.1, 2, 0.5);
     const cv::Mat image = Draw(SpokedPrint(pattern_, 4), truth);
-    LandingHint hint;
+    TargetHint hint;
     hint.up_in_camera = truth.rotation * Eigen::Vector3d::UnitZ();
-    const LandingReport searched = Detect(image, hint);
+    const TargetReport searched = Detect(image, hint);
     ASSERT_TRUE(searched.detection);
     EXPECT_GT(searched.diagnostics.candidates[kAreas], 0);
     hint.center_in_camera = truth.translation + Eigen::Vector3d(0.03, -0.02, 0.02 * distance);
-    const LandingReport predicted = Detect(image, hint);
+    const TargetReport predicted = Detect(image, hint);
     ASSERT_TRUE(predicted.detection);
     EXPECT_EQ(predicted.diagnostics.candidates[kAreas], 0) << distance << " m";
     EXPECT_EQ(predicted.detection->method, searched.detection->method);
     EXPECT_LT((predicted.detection->center_px - searched.detection->center_px).norm(), 0.05);
-    EXPECT_LT((predicted.detection->camera_from_pattern.translation -
-               searched.detection->camera_from_pattern.translation)
+    EXPECT_LT((predicted.detection->camera_from_target.translation -
+               searched.detection->camera_from_target.translation)
                   .norm(),
               0.002 * distance);
     // Half a ring off: within three sigma, so the search finds it.
     hint.center_in_camera = truth.translation + Eigen::Vector3d(0.3, -0.2, 0);
     hint.center_sigma_m = 0.2;
-    const LandingReport around = Detect(image, hint);
+    const TargetReport around = Detect(image, hint);
     ASSERT_TRUE(around.detection);
     EXPECT_GT(around.diagnostics.candidates[kAreas], 0);
   }
 }
 
 TEST_F(LandingHintTest, QualityDependsOnImageOnly) {
-  LandingHint hint;
+  TargetHint hint;
   hint.altitude_m = 3;
-  const LandingReport right = Detect(image_, hint);
+  const TargetReport right = Detect(image_, hint);
   hint.altitude_m = 9;
-  const LandingReport wrong = Detect(image_, hint);
+  const TargetReport wrong = Detect(image_, hint);
   ASSERT_TRUE(right.detection && wrong.detection);
   EXPECT_EQ(right.detection->quality, Detect(image_).detection->quality);
   EXPECT_EQ(wrong.detection->quality, right.detection->quality);
@@ -173,14 +173,14 @@ TEST_F(LandingHintTest, SearchOutOfTimeContinuesInNextFrame) {
   const LandingPatternDetector bounded(camera_, options);
   const RigidTransform truth = PrintPose({0.3, -0.2, 12}, 0.2, 1, 0.3);
   const cv::Mat image = Draw(SpokedPrint(pattern_, 4), truth);
-  LandingHint hint;
+  TargetHint hint;
   int frames = 0;
   for (;; ++frames) {
     ASSERT_LT(frames, static_cast<int>(kSearchSteps));
-    const LandingReport report = bounded.Detect(image, hint, workspace_);
+    const TargetReport report = bounded.Detect(image, hint, workspace_);
     if (report.detection) {
       EXPECT_EQ(report.diagnostics.next_step, 0);
-      EXPECT_LT((report.detection->camera_from_pattern.translation - truth.translation).norm(),
+      EXPECT_LT((report.detection->camera_from_target.translation - truth.translation).norm(),
                 0.03 * truth.translation.norm());
       break;
     }
@@ -196,11 +196,11 @@ TEST_F(LandingHintTest, BoundedSearchOfEmptyImageTakesStepsInTurn) {
   const LandingPatternDetector bounded(camera_, options);
   const cv::Mat image = Draw(SpokedPrint(pattern_, 3), pose_);
   for (const bool is_told : {false, true}) {
-    LandingHint hint;
+    TargetHint hint;
     if (is_told) hint.center_in_camera = pose_.translation;
     std::set<int> steps;
     for (int frame = 0; frame < 2 * static_cast<int>(kSearchSteps); ++frame) {
-      const LandingReport report = bounded.Detect(image, hint, workspace_);
+      const TargetReport report = bounded.Detect(image, hint, workspace_);
       EXPECT_FALSE(report.detection);
       steps.insert(report.diagnostics.next_step);
       hint.first_step = report.diagnostics.next_step;
@@ -221,13 +221,13 @@ TEST_F(LandingHintTest, UnboundedSearchIsComplete) {
   const cv::Mat far = Draw(SpokedPrint(pattern_, 4), PrintPose({0.3, -0.2, 9}, 0.2, 1, 0.3));
   const cv::Mat other = Draw(SpokedPrint(pattern_, 3), pose_);
   for (const cv::Mat& image : {image_, far, other}) {
-    const LandingReport whole = Detect(image);
+    const TargetReport whole = Detect(image);
     EXPECT_EQ(whole.diagnostics.next_step, 0);
     ExpectSame(generous.Detect(image, {}, workspace_), whole);
     for (const int first_step : {1, 7, 19, 30, -5, 1000}) {
-      LandingHint hint;
+      TargetHint hint;
       hint.first_step = first_step;
-      const LandingReport report = Detect(image, hint);
+      const TargetReport report = Detect(image, hint);
       EXPECT_EQ(report.detection.has_value(), whole.detection.has_value()) << first_step;
       EXPECT_EQ(report.diagnostics.next_step, 0) << first_step;
     }
@@ -240,13 +240,13 @@ TEST_F(LandingHintTest, AttitudeResolvesMirrorPose) {
     const RigidTransform truth =
         PrintPose({0.2, 0.1, 7}, 0.5, random.Uniform(0, 6), random.Uniform(0, 6));
     const Eigen::Vector3d up = truth.rotation * Eigen::Vector3d::UnitZ();
-    LandingHint hint;
+    TargetHint hint;
     hint.up_in_camera = up;
-    const LandingReport report =
+    const TargetReport report =
         Detect(AddNoise(Draw(SpokedPrint(pattern_, 4), truth), 2, &random), hint);
     ASSERT_TRUE(report.detection) << trial << ": " << report.reason;
     const Eigen::Vector3d found =
-        report.detection->camera_from_pattern.rotation * Eigen::Vector3d::UnitZ();
+        report.detection->camera_from_target.rotation * Eigen::Vector3d::UnitZ();
     EXPECT_GT(found.dot(up), 0.95) << trial;
   }
 }

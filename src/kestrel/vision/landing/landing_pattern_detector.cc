@@ -37,10 +37,10 @@ std::unique_ptr<TargetWorkspace> LandingPatternDetector::MakeWorkspace() const {
   return std::make_unique<LandingWorkspace>();
 }
 
-LandingReport LandingPatternDetector::Detect(const cv::Mat& image, const LandingHint& hint,
-                                             TargetWorkspace& workspace) const {
+TargetReport LandingPatternDetector::Detect(const cv::Mat& image, const TargetHint& hint,
+                                            TargetWorkspace& workspace) const {
   const auto failure = [](std::string_view reason) {
-    LandingReport report;
+    TargetReport report;
     report.reason = reason;
     return report;
   };

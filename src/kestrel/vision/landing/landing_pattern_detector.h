@@ -10,7 +10,7 @@
 #include "kestrel/core/base/limits.h"
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/vision/landing/landing_pattern.h"
-#include "kestrel/vision/target/landing_detection.h"
+#include "kestrel/vision/target/target_detection.h"
 #include "kestrel/vision/target/target_detector.h"
 
 namespace kestrel {
@@ -64,8 +64,8 @@ class LandingPatternDetector final : public TargetDetector {
 
   // As of TargetDetector. 'workspace': a LandingWorkspace.
   using TargetDetector::Detect;
-  LandingReport Detect(const cv::Mat& image, const LandingHint& hint,
-                       TargetWorkspace& workspace) const override;
+  TargetReport Detect(const cv::Mat& image, const TargetHint& hint,
+                      TargetWorkspace& workspace) const override;
   std::unique_ptr<TargetWorkspace> MakeWorkspace() const override;
   const CameraModel& camera() const override;
   const TargetShape& shape() const override;

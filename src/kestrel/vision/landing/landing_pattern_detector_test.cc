@@ -30,7 +30,7 @@ TEST_F(LandingPatternDetectorTest, FindsSmallPatternsCutOffByImageBorder) {
     const double distance = 9;
     const RigidTransform truth =
         PrintPose({(center_px - 159.5) / 220 * distance, 0.4, distance}, 0.1, 2, 0.5);
-    const LandingReport report = Detect(Draw(SpokedPrint(pattern_, 4), truth));
+    const TargetReport report = Detect(Draw(SpokedPrint(pattern_, 4), truth));
     ASSERT_TRUE(report.detection) << center_px << " px: " << report.reason;
     Eigen::Vector2d center;
     camera_.Project(truth.translation, &center);
@@ -61,7 +61,7 @@ TEST_F(LandingPatternDetectorTest, FindsFlatPatternsUnderShadows) {
       }
     }
     cv::GaussianBlur(image, image, {}, 0.6);
-    const LandingReport report = Detect(AddNoise(image, 2, &random));
+    const TargetReport report = Detect(AddNoise(image, 2, &random));
     if (!report.detection) continue;
     ++found;
     EXPECT_LT((report.detection->center_px - center).norm(), 0.8) << i;
@@ -83,11 +83,10 @@ TEST_F(LandingPatternDetectorTest, LocatesCutOffPatterns) {
     const double yaw = random.Uniform(0, 6);
     const RigidTransform truth =
         PrintPose({(center_px - 159.5) / 220 * distance, 0, distance}, 0.4, tilt_axis, yaw);
-    const LandingReport report =
-        Detect(AddNoise(Draw(SpokedPrint(pattern_, 4), truth), 8, &random));
+    const TargetReport report = Detect(AddNoise(Draw(SpokedPrint(pattern_, 4), truth), 8, &random));
     if (!report.detection) continue;
     ++found;
-    const Eigen::Vector3d& position = report.detection->camera_from_pattern.translation;
+    const Eigen::Vector3d& position = report.detection->camera_from_target.translation;
     wrong += (position - truth.translation).norm() > 0.02;
   }
   EXPECT_GT(found, kImages / 2);
@@ -98,13 +97,13 @@ TEST_F(LandingPatternDetectorTest, FindsPatternOfAllSizes) {
   for (const double distance : {1.1, 3.0, 9.0}) {
     const RigidTransform truth =
         PrintPose({0.03 * distance, 0.02 * distance, distance}, 0.1, 2, 0.5);
-    const LandingReport report = Detect(Draw(SpokedPrint(pattern_, 4), truth));
+    const TargetReport report = Detect(Draw(SpokedPrint(pattern_, 4), truth));
     ASSERT_TRUE(report.detection) << distance << " m: " << report.reason;
     EXPECT_EQ(report.reached, LandingStage::kFound);
     EXPECT_EQ(report.reason, "");
-    const LandingDetection& detection = *report.detection;
+    const TargetDetection& detection = *report.detection;
     EXPECT_EQ(detection.method, DetectionMethod::kRing) << ToString(detection.method);
-    EXPECT_LT(PoseError(detection.camera_from_pattern, truth).head<3>().norm(), 0.02 * distance);
+    EXPECT_LT(PoseError(detection.camera_from_target, truth).head<3>().norm(), 0.02 * distance);
     Eigen::Vector2d center;
     camera_.Project(truth.translation, &center);
     EXPECT_LT((detection.center_px - center).norm(), 0.2);
@@ -127,7 +126,7 @@ TEST_F(LandingPatternDetectorTest, FindsNearPatternsInNoiseOfDarkFrames) {
     const RigidTransform truth = PrintPose(place, 0.2, axis, turn);
     cv::Mat image = Draw(SpokedPrint(pattern_, 4), truth);
     image.convertTo(image, CV_8U, 0.125);
-    const LandingReport report = Detect(AddNoise(image, 4, &random));
+    const TargetReport report = Detect(AddNoise(image, 4, &random));
     if (!report.detection) continue;
     ++found;
     Eigen::Vector2d center;
@@ -155,7 +154,7 @@ TEST_F(LandingPatternDetectorTest, RejectsOtherSigns) {
                                  cross_only,
                                  off_center};
   int taken = 0;  // taken for the pattern, with a doubtful score
-  const auto expect_doubtful = [&](const LandingReport& report, std::size_t sign, double distance) {
+  const auto expect_doubtful = [&](const TargetReport& report, std::size_t sign, double distance) {
     if (!report.detection) return;
     ++taken;
     EXPECT_LT(report.detection->quality, 0.8) << "sign " << sign << " at " << distance << " m";
@@ -164,9 +163,9 @@ TEST_F(LandingPatternDetectorTest, RejectsOtherSigns) {
     for (std::size_t i = 0; i < signs.size(); ++i) {
       const RigidTransform pose = PrintPose({0.1, 0.05, distance}, 0.2, 1, 0.4);
       // Too high for the search of a cross alone.
-      LandingHint hint;
+      TargetHint hint;
       hint.altitude_m = std::max(distance, 3.0);
-      const LandingReport report = Detect(Draw(signs[i], pose), hint);
+      const TargetReport report = Detect(Draw(signs[i], pose), hint);
       expect_doubtful(report, i, distance);
       EXPECT_NE(report.reason.empty(), !report.detection);
       // The same with a prediction at the sign.
@@ -218,7 +217,7 @@ TEST_F(LandingPatternDetectorTest, MeasuresRingSizeInImage) {
   truth.rotation = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), -direction);
   truth.translation = 3 * direction;
   const cv::Mat image = DrawPrint(fisheye, pattern_, SpokedPrint(pattern_, 4), truth);
-  const LandingReport report = detector.Detect(image, {}, workspace_);
+  const TargetReport report = detector.Detect(image, {}, workspace_);
   ASSERT_TRUE(report.detection) << report.reason;
   const double by_angle = 230 * std::atan2(pattern_.outer_radius_m(), 3);
   EXPECT_NEAR(report.detection->semi_minor_px, by_angle, 0.03 * by_angle);
@@ -226,7 +225,7 @@ TEST_F(LandingPatternDetectorTest, MeasuresRingSizeInImage) {
 }
 
 TEST_F(LandingPatternDetectorTest, RejectsFlatImageAtFirstStages) {
-  const LandingReport report = Detect(cv::Mat(240, 320, CV_8UC1, cv::Scalar(100)));
+  const TargetReport report = Detect(cv::Mat(240, 320, CV_8UC1, cv::Scalar(100)));
   EXPECT_FALSE(report.detection);
   EXPECT_EQ(report.reached, LandingStage::kBinarize);
   EXPECT_EQ(report.diagnostics.candidates[static_cast<int>(LandingStage::kRing)], 0);
@@ -235,7 +234,7 @@ TEST_F(LandingPatternDetectorTest, RejectsFlatImageAtFirstStages) {
 TEST_F(LandingPatternDetectorTest, ReportsImageOfAnotherCamera) {
   for (const cv::Mat& image : {cv::Mat(240, 320, CV_8UC3), cv::Mat(240, 319, CV_8UC1),
                                cv::Mat(240, 320, CV_16UC1), cv::Mat()}) {
-    const LandingReport report = Detect(image);
+    const TargetReport report = Detect(image);
     EXPECT_FALSE(report.detection);
     EXPECT_EQ(report.reached, LandingStage::kBinarize);
     EXPECT_THAT(std::string(report.reason), HasSubstr("not 8-bit gray"));
@@ -243,7 +242,7 @@ TEST_F(LandingPatternDetectorTest, ReportsImageOfAnotherCamera) {
 }
 
 TEST_F(LandingPatternDetectorTest, SameImageGivesSameReport) {
-  const LandingReport first = Detect(image_);
+  const TargetReport first = Detect(image_);
   ASSERT_TRUE(first.detection);
   // Other images in between.
   Random random(1);
@@ -262,8 +261,8 @@ TEST_F(LandingPatternDetectorTest, ThreadsShareDetector) {
                                    PrintPose({0.1 * i - 0.4, 0.1, 1.5 + 0.7 * i}, 0.1, i, 0.2 * i)),
                               3, &random));
   }
-  std::array<std::vector<LandingReport>, 3> reports;
-  const auto run = [&](std::vector<LandingReport>* into) {
+  std::array<std::vector<TargetReport>, 3> reports;
+  const auto run = [&](std::vector<TargetReport>* into) {
     LandingWorkspace workspace;
     for (int round = 0; round < 3; ++round) {
       for (const cv::Mat& image : images) {
@@ -287,7 +286,7 @@ TEST_F(LandingPatternDetectorTest, RespectsMinimumQuality) {
   for (const double least : {0.0, 0.3, 0.9, 1.0}) {
     LandingPatternDetectorOptions options;
     options.min_quality = least;
-    const LandingReport report =
+    const TargetReport report =
         LandingPatternDetector(camera_, options).Detect(image_, {}, workspace_);
     ASSERT_EQ(report.detection.has_value(), quality >= least) << least;
     EXPECT_GE(report.detection ? report.detection->quality : 1, least);
@@ -305,17 +304,17 @@ TEST_F(LandingPatternDetectorTest, CovarianceCoversMirrorPose) {
         {random.Uniform(-0.4, 0.4) * distance, random.Uniform(-0.3, 0.3) * distance, distance},
         random.Uniform(0.4, 0.7), random.Uniform(0, 6), random.Uniform(0, 6));
     const cv::Mat image = AddNoise(Draw(SpokedPrint(pattern_, 4), truth), 3, &random);
-    const LandingReport report = Detect(image);
+    const TargetReport report = Detect(image);
     ASSERT_TRUE(report.detection) << i << ": " << report.reason;
-    const LandingDetection& detection = *report.detection;
-    if (!detection.diagnostics.mirror_camera_from_pattern) continue;
+    const TargetDetection& detection = *report.detection;
+    if (!detection.diagnostics.mirror_camera_from_target) continue;
     ++mirrored;
-    const RigidTransform& mirror = *detection.diagnostics.mirror_camera_from_pattern;
+    const RigidTransform& mirror = *detection.diagnostics.mirror_camera_from_target;
     const auto tilt = [&](const RigidTransform& pose) {
       return PoseError(pose, truth).tail<3>().norm();
     };
-    wrong += tilt(detection.camera_from_pattern) > tilt(mirror);
-    const Eigen::Vector3d away = mirror.translation - detection.camera_from_pattern.translation;
+    wrong += tilt(detection.camera_from_target) > tilt(mirror);
+    const Eigen::Vector3d away = mirror.translation - detection.camera_from_target.translation;
     const Eigen::Matrix3d covariance = detection.covariance.topLeftCorner<3, 3>();
     EXPECT_LT(std::sqrt(away.dot(covariance.ldlt().solve(away))), 5) << i << ": sigma";
   }
@@ -324,7 +323,7 @@ TEST_F(LandingPatternDetectorTest, CovarianceCoversMirrorPose) {
 }
 
 TEST_F(LandingPatternDetectorTest, CountsAndTimesStages) {
-  const LandingReport report = Detect(image_);
+  const TargetReport report = Detect(image_);
   ASSERT_TRUE(report.detection);
   for (const LandingStage stage :
        {LandingStage::kAreas, LandingStage::kRing, LandingStage::kCross, LandingStage::kMatch,
@@ -359,7 +358,7 @@ TEST(LandingPatternDetectorOptions, ReportsEveryViolation) {
 
 TEST_F(LandingPatternDetectorTest, RefusesWorkspaceOfAnotherDetector) {
   TargetWorkspace other;
-  const LandingReport report = detector_.Detect(image_, {}, other);
+  const TargetReport report = detector_.Detect(image_, {}, other);
   EXPECT_FALSE(report.detection);
   EXPECT_EQ(report.reason, "the workspace is another detector's");
 }

@@ -29,7 +29,7 @@ void LandingWorkspace::Buffers::Reserve(const cv::Mat& image_of_that_size) {
 }
 
 LandingSearch::LandingSearch(const LandingModels& models, const cv::Mat& image,
-                             const LandingHint& hint, LandingWorkspace::Buffers* buffers,
+                             const TargetHint& hint, LandingWorkspace::Buffers* buffers,
                              const FindingObserver* observer)
     : models_(models),
       hint_(hint),
@@ -48,7 +48,7 @@ LandingSearch::LandingSearch(const LandingModels& models, const cv::Mat& image,
   buffers_.small_prints.tested.Clear();
 }
 
-LandingReport LandingSearch::Run() {
+TargetReport LandingSearch::Run() {
   report_.reason = "not in view";
   TestPrediction();
   if (!choice_.IsSure()) TakeSteps();

@@ -35,10 +35,10 @@ struct LandingWorkspace::Buffers {
 class LandingSearch {
  public:
   // 'observer' may be null (see DetectionChoice). The arguments must outlive the search.
-  LandingSearch(const LandingModels& models, const cv::Mat& image, const LandingHint& hint,
+  LandingSearch(const LandingModels& models, const cv::Mat& image, const TargetHint& hint,
                 LandingWorkspace::Buffers* buffers, const FindingObserver* observer = nullptr);
 
-  LandingReport Run();
+  TargetReport Run();
 
  private:
   void TestPrediction();
@@ -48,10 +48,10 @@ class LandingSearch {
   bool IsOutOfTime() const;
 
   const LandingModels& models_;
-  const LandingHint& hint_;
+  const TargetHint& hint_;
   LandingWorkspace::Buffers& buffers_;
   std::chrono::steady_clock::time_point start_;
-  LandingReport report_;
+  TargetReport report_;
   SearchLog log_;
   PriorKnowledge prior_;
   SearchedImage image_;

@@ -19,7 +19,7 @@ class LandingSearchTest : public ::testing::Test {
   std::vector<PrintFinding> Findings(const Print& print, const RigidTransform& pose) {
     std::vector<PrintFinding> findings;
     const FindingObserver observer = [&](const PrintFinding& f) { findings.push_back(f); };
-    const LandingHint nothing;
+    const TargetHint nothing;
     const cv::Mat image = DrawPrint(models_.camera, models_.options.pattern, print, pose);
     LandingSearch(models_, image, nothing, &buffers_, &observer).Run();
     return findings;
@@ -112,7 +112,7 @@ TEST_F(LandingSearchTest, FindsPatternsInFourFramesAtQuarterOfTime) {
   constexpr int kSteps = static_cast<int>(kSearchSteps), kFrames = 4;
   LandingModels bounded(TestPrintCamera(), {});
   bounded.now = &StepClock;
-  LandingHint hint;
+  TargetHint hint;
   hint.max_search_ms = (kSteps + kFrames - 1) / kFrames - 0.5;
   for (const double distance : {0.8, 1.7, 4.0, 9.0, 13.0}) {
     const cv::Mat image = DrawPrint(models_.camera, pattern_, SpokedPrint(pattern_, 4),
@@ -121,7 +121,7 @@ TEST_F(LandingSearchTest, FindsPatternsInFourFramesAtQuarterOfTime) {
       hint.first_step = first;
       int frames = 0;
       for (bool is_found = false; !is_found && frames <= kFrames; ++frames) {
-        const LandingReport report = LandingSearch(bounded, image, hint, &buffers_).Run();
+        const TargetReport report = LandingSearch(bounded, image, hint, &buffers_).Run();
         is_found = report.detection.has_value();
         hint.first_step = report.diagnostics.next_step;
       }

@@ -15,7 +15,7 @@ class LandingPatternDetectorTest : public ::testing::Test {
   cv::Mat Draw(const Print& print, const RigidTransform& pose) const {
     return DrawPrint(camera_, pattern_, print, pose);
   }
-  LandingReport Detect(const cv::Mat& image, const LandingHint& hint = {}) {
+  TargetReport Detect(const cv::Mat& image, const TargetHint& hint = {}) {
     return detector_.Detect(image, hint, workspace_);
   }
 
@@ -28,15 +28,15 @@ class LandingPatternDetectorTest : public ::testing::Test {
 };
 
 // Expects two reports of one image to be equal except for the times.
-inline void ExpectSame(const LandingReport& a, const LandingReport& b) {
+inline void ExpectSame(const TargetReport& a, const TargetReport& b) {
   EXPECT_EQ(a.reached, b.reached);
   EXPECT_EQ(a.reason, b.reason);
   EXPECT_EQ(a.diagnostics.candidates, b.diagnostics.candidates);
   ASSERT_EQ(a.detection.has_value(), b.detection.has_value());
   if (!a.detection) return;
   EXPECT_EQ(a.detection->center_px, b.detection->center_px);
-  EXPECT_EQ(a.detection->camera_from_pattern.translation,
-            b.detection->camera_from_pattern.translation);
+  EXPECT_EQ(a.detection->camera_from_target.translation,
+            b.detection->camera_from_target.translation);
   EXPECT_EQ(a.detection->covariance, b.detection->covariance);
   EXPECT_EQ(a.detection->quality, b.detection->quality);
   EXPECT_EQ(a.detection->method, b.detection->method);

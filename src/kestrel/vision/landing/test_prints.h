@@ -69,9 +69,9 @@ inline RigidTransform PrintPose(const Eigen::Vector3d& center, double tilt, doub
 // Draws the print on a white board on gray ground. A pixel is the mean of 8 x 8 rays where its
 // corners, sides and centre differ. 'height': of a board that is not flat.
 inline cv::Mat DrawPrint(const CameraModel& camera, const LandingPattern& pattern,
-                         const Print& print, const RigidTransform& camera_from_pattern,
+                         const Print& print, const RigidTransform& camera_from_target,
                          const SheetHeight& height = {}) {
-  const RigidTransform pattern_from_camera = camera_from_pattern.Inverse();
+  const RigidTransform pattern_from_camera = camera_from_target.Inverse();
   const Eigen::Matrix3d rotation = pattern_from_camera.rotation.toRotationMatrix();
   const Eigen::Vector3d& origin = pattern_from_camera.translation;
   const auto gray_at = [&](double u, double v) {

@@ -43,8 +43,8 @@ double CalibrationMonitor::Side::Surprise(const Eigen::Vector4d& error) const {
   return Trust() * std::max(0.0, surprise_0 + more);
 }
 
-CalibrationMonitor::Side* CalibrationMonitor::SideOf(const LandingDetection& detection) {
-  const RigidTransform& pose = detection.camera_from_pattern;
+CalibrationMonitor::Side* CalibrationMonitor::SideOf(const TargetDetection& detection) {
+  const RigidTransform& pose = detection.camera_from_target;
   const Eigen::Vector3d in_camera = pose.translation.normalized();
   const Eigen::Vector3d in_pattern = pose.rotation.conjugate() * in_camera;
   const auto part = [](double share) { return static_cast<int>(std::lround(share / kSideWidth)); };
@@ -58,14 +58,14 @@ CalibrationMonitor::Side* CalibrationMonitor::SideOf(const LandingDetection& det
   return &sides_[side_count_++];
 }
 
-void CalibrationMonitor::Add(const LandingDetection& detection) {
+void CalibrationMonitor::Add(const TargetDetection& detection) {
   if (detection.diagnostics.misfit_px > 0) ++misfits_.detections;
   if (detection.diagnostics.is_misfit()) ++misfits_.misfits;
   AddEvidence(detection);
 }
 
 // Views without evidence are ignored.
-void CalibrationMonitor::AddEvidence(const LandingDetection& detection) {
+void CalibrationMonitor::AddEvidence(const TargetDetection& detection) {
   const CalibrationEvidence& evidence = detection.diagnostics.calibration;
   if (!(evidence.edge_variance > 0) || !evidence.information.allFinite()) return;
   Side* const side = SideOf(detection);

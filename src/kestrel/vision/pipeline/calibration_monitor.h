@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "kestrel/vision/target/landing_detection.h"
+#include "kestrel/vision/target/target_detection.h"
 
 namespace kestrel {
 
@@ -31,7 +31,7 @@ struct MisfitCount {
 // focal length. Does not allocate, however long the run is.
 class CalibrationMonitor {
  public:
-  void Add(const LandingDetection& detection);
+  void Add(const TargetDetection& detection);
 
   // Returns the estimate from all detections; nothing when there are too few of them.
   std::optional<FocalFactor> Focal() const;
@@ -57,8 +57,8 @@ class CalibrationMonitor {
     double Trust() const { return 1 / (1 + shared); }
   };
 
-  void AddEvidence(const LandingDetection& detection);
-  Side* SideOf(const LandingDetection& detection);
+  void AddEvidence(const TargetDetection& detection);
+  Side* SideOf(const TargetDetection& detection);
   void Weigh();
 
   static constexpr std::size_t kMostSides = 128;

@@ -20,12 +20,12 @@ struct Views {
   double outliers = 0;                              // share of the views that are completely wrong
   double turn = 0.4;                                // rad
 
-  LandingDetection Next(Random* random) const {
-    LandingDetection detection{};
+  TargetDetection Next(Random* random) const {
+    TargetDetection detection{};
     const double angle = random->Uniform(0, 6.28);
-    detection.camera_from_pattern.rotation = Eigen::AngleAxisd(
+    detection.camera_from_target.rotation = Eigen::AngleAxisd(
         turn * random->Uniform(0.5, 1.5), Eigen::Vector3d(std::cos(angle), std::sin(angle), 0));
-    detection.camera_from_pattern.translation = {0, 0, 3};
+    detection.camera_from_target.translation = {0, 0, 3};
     detection.semi_major_px = 50;
     CalibrationEvidence& evidence = detection.diagnostics.calibration;
     evidence.edge_variance = 0.01;
@@ -114,7 +114,7 @@ TEST(CalibrationMonitor, IgnoresViewsWithoutEvidence) {
   CalibrationMonitor monitor;
   Random random(1);
   for (int i = 0; i < 20; ++i) {
-    LandingDetection detection = Views().Next(&random);
+    TargetDetection detection = Views().Next(&random);
     detection.diagnostics.calibration = {};
     monitor.Add(detection);
   }
@@ -129,7 +129,7 @@ TEST(LensWarning, NamesBothFocalLengths) {
 
 TEST(LensWarning, CountsMisfits) {
   CalibrationMonitor monitor;
-  LandingDetection detection{};
+  TargetDetection detection{};
   detection.diagnostics.misfit_px = 0.3;
   detection.diagnostics.misfit_bound_px = 0.5;
   for (int i = 0; i < 30; ++i) monitor.Add(detection);

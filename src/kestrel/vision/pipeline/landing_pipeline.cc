@@ -88,9 +88,9 @@ class LandingPipeline::Impl {
   void LookForOthers(const cv::Mat& image, LandingObservation* observation);
   GivenView GivenViewOf(const LandingObservation& observation) const;
   double AltitudeExcess() const;
-  void AddErrorOfFocalLength(LandingDetection* detection) const;
-  void AddTrack(const LandingObservation& observation, LandingHint* hint) const;
-  void AddLastSighting(const LandingObservation& observation, LandingHint* hint) const;
+  void AddErrorOfFocalLength(TargetDetection* detection) const;
+  void AddTrack(const LandingObservation& observation, TargetHint* hint) const;
+  void AddLastSighting(const LandingObservation& observation, TargetHint* hint) const;
   void LocateInWorld(LandingObservation* observation) const;
   Eigen::Vector3d SweepOf(const LandingObservation& observation) const;
   TargetMeasurement MeasurementOf(const LandingObservation& observation) const;
@@ -183,7 +183,7 @@ LandingObservation LandingPipeline::Impl::Process(const cv::Mat& image, Time tim
 
 void LandingPipeline::Impl::Detect(const cv::Mat& image, LandingObservation* observation) {
   const GivenView told = GivenViewOf(*observation);
-  LandingHint hint;
+  TargetHint hint;
   const double excess_m = AltitudeExcess();
   if (told.altitude_m > excess_m) hint.altitude_m = *told.altitude_m - excess_m;
   hint.up_in_camera = told.up_in_camera;
@@ -213,10 +213,10 @@ double LandingPipeline::Impl::AltitudeExcess() const {
 
 // A wrong focal length makes every distance wrong by the same share. Views that contradict the
 // calibration themselves were located with their own focal length and are left alone.
-void LandingPipeline::Impl::AddErrorOfFocalLength(LandingDetection* detection) const {
+void LandingPipeline::Impl::AddErrorOfFocalLength(TargetDetection* detection) const {
   const auto focal = calibration_monitor_.Contradiction();
   if (!focal || detection->diagnostics.calibration.contradicts) return;
-  const Eigen::Vector3d error_m = (focal->factor - 1) * detection->camera_from_pattern.translation;
+  const Eigen::Vector3d error_m = (focal->factor - 1) * detection->camera_from_target.translation;
   detection->covariance.topLeftCorner<3, 3>() += error_m * error_m.transpose();
 }
 
@@ -232,7 +232,7 @@ GivenView LandingPipeline::Impl::GivenViewOf(const LandingObservation& observati
 }
 
 void LandingPipeline::Impl::AddTrack(const LandingObservation& observation,
-                                     LandingHint* hint) const {
+                                     TargetHint* hint) const {
   const auto& world_from_camera = observation.world_from_camera;
   if (!world_from_camera || !is_track_trusted_) return;
   const std::optional<TargetEstimate> target = tracker_.Predict(observation.time);
@@ -253,7 +253,7 @@ void LandingPipeline::Impl::AddTrack(const LandingObservation& observation,
 }
 
 void LandingPipeline::Impl::AddLastSighting(const LandingObservation& observation,
-                                            LandingHint* hint) const {
+                                            TargetHint* hint) const {
   if (!last_ || observation.world_from_camera) return;
   const double age_s = ToSeconds(observation.time - last_->time);
   if (age_s < 0 || age_s > options_.hint_age_s) return;
@@ -267,7 +267,7 @@ void LandingPipeline::Impl::LocateInWorld(LandingObservation* observation) const
   const auto& detection = observation->report.detection;
   const auto& world_from_camera = observation->world_from_camera;
   if (!detection || !world_from_camera) return;
-  const RigidTransform world_from_pattern = *world_from_camera * detection->camera_from_pattern;
+  const RigidTransform world_from_pattern = *world_from_camera * detection->camera_from_target;
   if (detection->heading_symmetry > 0) {
     observation->yaw_in_world = PatternYaw(world_from_pattern, detection->heading_symmetry);
   }
@@ -290,15 +290,15 @@ Eigen::Vector3d LandingPipeline::Impl::SweepOf(const LandingObservation& observa
   constexpr Duration kStep = std::chrono::milliseconds(10);
   const auto before = poses_.At(observation.time - kStep);
   if (!before) return Eigen::Vector3d::Zero();
-  const Eigen::Vector3d& center = observation.report.detection->camera_from_pattern.translation;
+  const Eigen::Vector3d& center = observation.report.detection->camera_from_target.translation;
   return (*observation.world_from_camera * center - before->world_from_camera * center) /
          ToSeconds(kStep);
 }
 
 TargetMeasurement LandingPipeline::Impl::MeasurementOf(
     const LandingObservation& observation) const {
-  const LandingDetection& detection = *observation.report.detection;
-  const Eigen::Vector3d& center = detection.camera_from_pattern.translation;
+  const TargetDetection& detection = *observation.report.detection;
+  const Eigen::Vector3d& center = detection.camera_from_target.translation;
   const Eigen::Quaterniond& rotation = observation.world_from_camera->rotation;
   const MeasurementNoise noise = WithPose(options_.noise, observation.pose_uncertainty);
   const double clock_sigma_s = std::hypot(noise.clock_sigma_s, pose_time_sigma_s_);
@@ -332,7 +332,7 @@ void LandingPipeline::Impl::Remember(const LandingObservation& observation) {
   if (observation.fate == MeasurementFate::kStarted) heading_.reset();
   const auto& detection = observation.report.detection;
   if (!detection) return;
-  const RigidTransform& pose = detection->camera_from_pattern;
+  const RigidTransform& pose = detection->camera_from_target;
   last_ = {observation.time, pose.translation, {}, detection->id};
   if (detection->heading_symmetry == 0) return;
   last_->rotation_in_camera = pose.rotation;

@@ -88,8 +88,8 @@ std::string InWords(const OtherTag& other);
 
 // The result of one frame.
 struct LandingObservation {
-  Time time;             // time of the frame on the images' clock
-  LandingReport report;  // the detection in the camera frame, or the reason of a miss
+  Time time;            // time of the frame on the images' clock
+  TargetReport report;  // the detection in the camera frame, or the reason of a miss
   // With a miss, as long as the target was never found: another tag that was read.
   std::optional<OtherTag> other_tag = {};
   std::optional<RigidTransform> world_from_camera;  // when there is a pose for this time
@@ -111,7 +111,7 @@ struct LandingObservation {
 };
 
 // Returns in words why the target was not found in a frame: that another tag was, or else as
-// MissInWords(LandingReport).
+// MissInWords(TargetReport).
 std::string MissInWords(const LandingObservation& observation);
 
 // Locates the pad of an image in the world and predicts it: pose history, mount and clock offset,

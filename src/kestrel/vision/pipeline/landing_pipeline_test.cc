@@ -61,7 +61,7 @@ TEST_F(LandingPipelineTest, GivesPositionInCameraOnlyWithoutPose) {
   LandingPipeline pipeline(calibration_, options_);
   const LandingObservation observation = pipeline.Process(Draw(), kTime);
   ASSERT_TRUE(observation.report.detection) << observation.report.reason;
-  const Eigen::Vector3d center = observation.report.detection->camera_from_pattern.translation;
+  const Eigen::Vector3d center = observation.report.detection->camera_from_target.translation;
   EXPECT_LT((center - CameraFromPattern().translation).norm(), 0.03);
   EXPECT_FALSE(observation.center_in_world);
   EXPECT_FALSE(observation.yaw_in_world);
@@ -140,7 +140,7 @@ TEST_F(LandingPipelineTest, FindsPatternAgainAfterAnyJump) {
     world_from_pattern_.translation.x() = 10.2 + (i % 2 == 0 ? 0.6 : -0.6);
     const auto observation = pipeline.Process(Draw(), kTime + i * Duration(33'000'000));
     ASSERT_TRUE(observation.report.detection) << i;
-    const Eigen::Vector3d center = observation.report.detection->camera_from_pattern.translation;
+    const Eigen::Vector3d center = observation.report.detection->camera_from_target.translation;
     EXPECT_LT((center - CameraFromPattern().translation).norm(), 0.04) << i;
   }
 }
@@ -469,19 +469,19 @@ TEST_F(LandingPipelineTest, ChangedOptionsKeepTrack) {
 // Finds a pad in every image, at a given place, and remembers the hint.
 class FakeDetector : public TargetDetector {
  public:
-  FakeDetector(const CameraModel& camera, const RigidTransform& camera_from_pattern, int symmetry,
-               LandingHint* hint)
+  FakeDetector(const CameraModel& camera, const RigidTransform& camera_from_target, int symmetry,
+               TargetHint* hint)
       : camera_(camera), hint_(hint) {
-    detection_.camera_from_pattern = camera_from_pattern;
+    detection_.camera_from_target = camera_from_target;
     detection_.covariance = 1e-4 * Eigen::Matrix<double, 6, 6>::Identity();
     detection_.heading_symmetry = symmetry;
     detection_.id = 7;
   }
 
-  LandingReport Detect(const cv::Mat& /*image*/, const LandingHint& hint,
-                       TargetWorkspace& /*workspace*/) const override {
+  TargetReport Detect(const cv::Mat& /*image*/, const TargetHint& hint,
+                      TargetWorkspace& /*workspace*/) const override {
     *hint_ = hint;
-    LandingReport report;
+    TargetReport report;
     report.detection = detection_;
     return report;
   }
@@ -494,8 +494,8 @@ class FakeDetector : public TargetDetector {
  private:
   CameraModel camera_;
   TargetShape shape_;
-  LandingDetection detection_{};
-  LandingHint* hint_;
+  TargetDetection detection_{};
+  TargetHint* hint_;
 };
 
 class OwnDetectorTest : public LandingPipelineTest {
@@ -518,7 +518,7 @@ class OwnDetectorTest : public LandingPipelineTest {
   }
 
   static constexpr double kYaw = 2.5;
-  LandingHint hint_;
+  TargetHint hint_;
 };
 
 TEST_F(OwnDetectorTest, HeadingIsKnownAndReturnsAsHint) {

@@ -7,7 +7,7 @@
 
 namespace kestrel {
 
-cv::Rect PatternArea(const LandingDetection& detection, const TargetShape& shape,
+cv::Rect PatternArea(const TargetDetection& detection, const TargetShape& shape,
                      const CameraModel& camera) {
   constexpr int kPoints = 24;
   Eigen::Vector2d low(camera.width_px(), camera.height_px());
@@ -17,7 +17,7 @@ cv::Rect PatternArea(const LandingDetection& detection, const TargetShape& shape
     const Eigen::Vector3d point =
         shape.radius_m() * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
     Eigen::Vector2d pixel;
-    const ProjectionStatus status = camera.Project(detection.camera_from_pattern * point, &pixel);
+    const ProjectionStatus status = camera.Project(detection.camera_from_target * point, &pixel);
     if (status == ProjectionStatus::kOutsideModel) continue;
     low = low.cwiseMin(pixel);
     high = high.cwiseMax(pixel);

@@ -26,9 +26,9 @@ CameraModel Pinhole() {
 const TargetShape kShape = {.diameter_m = 1, .board_size_m = 1.5, .outlines = {}};
 
 // A detection of the pattern (1 m) straight ahead, facing the camera.
-LandingDetection At(const Vector3d& center_in_camera) {
-  LandingDetection detection{};
-  detection.camera_from_pattern = {
+TargetDetection At(const Vector3d& center_in_camera) {
+  TargetDetection detection{};
+  detection.camera_from_target = {
       Eigen::Quaterniond(AngleAxisd(std::numbers::pi, Vector3d::UnitX())), center_in_camera};
   return detection;
 }

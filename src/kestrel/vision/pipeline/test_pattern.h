@@ -30,9 +30,9 @@ inline double PatternGray(const LandingPattern& pattern, double x, double y) {
 
 // Draws the pattern as the camera sees it: 3 x 3 rays per pixel, then a slight blur as of a lens.
 inline cv::Mat DrawPattern(const CameraModel& camera, const LandingPattern& pattern,
-                           const RigidTransform& camera_from_pattern) {
+                           const RigidTransform& camera_from_target) {
   constexpr int kRays = 3;
-  const RigidTransform pattern_from_camera = camera_from_pattern.Inverse();
+  const RigidTransform pattern_from_camera = camera_from_target.Inverse();
   cv::Mat image(camera.height_px(), camera.width_px(), CV_8UC1);
   image.forEach<std::uint8_t>([&](std::uint8_t& gray, const int* position) {
     double sum = 0;

@@ -25,8 +25,8 @@ constexpr double kMaxSlope = Radians(15);
 constexpr double kMaxVehicleHeight_m = 3;
 
 // Direction out of the pattern's face, in the camera frame.
-Eigen::Vector3d Normal(const RigidTransform& camera_from_pattern) {
-  return camera_from_pattern.rotation * Eigen::Vector3d::UnitZ();
+Eigen::Vector3d Normal(const RigidTransform& camera_from_target) {
+  return camera_from_target.rotation * Eigen::Vector3d::UnitZ();
 }
 
 double AngleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -35,15 +35,15 @@ double AngleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 
 // Returns the smaller of the differences of both mirror poses from the given view.
 template <class DifferenceOf>
-double LeastDifference(const LandingDetection& seen, const DifferenceOf& difference_of) {
-  const double value = difference_of(seen.camera_from_pattern);
-  if (!seen.diagnostics.mirror_camera_from_pattern) return value;
-  const double mirrored = difference_of(*seen.diagnostics.mirror_camera_from_pattern);
+double LeastDifference(const TargetDetection& seen, const DifferenceOf& difference_of) {
+  const double value = difference_of(seen.camera_from_target);
+  if (!seen.diagnostics.mirror_camera_from_target) return value;
+  const double mirrored = difference_of(*seen.diagnostics.mirror_camera_from_target);
   return std::abs(mirrored) < std::abs(value) ? mirrored : value;
 }
 
 // Standard deviation of a direction, from the covariance of the rotation.
-double AngleSigma(const LandingDetection& seen) {
+double AngleSigma(const TargetDetection& seen) {
   return std::sqrt(seen.covariance.bottomRightCorner<3, 3>().trace());
 }
 
@@ -70,7 +70,7 @@ std::optional<Contradiction> ToldContradictions::Latest::Median() const {
   return Contradiction{value, std::hypot(sigma, scatter / std::sqrt(count)), count};
 }
 
-void ToldContradictions::Add(const GivenView& told, const LandingDetection& seen) {
+void ToldContradictions::Add(const GivenView& told, const TargetDetection& seen) {
   // Without an attitude the pattern is assumed to be level.
   const auto up_by = [&](const RigidTransform& pose) {
     return told.up_in_camera.value_or(Normal(pose));
@@ -86,7 +86,7 @@ void ToldContradictions::Add(const GivenView& told, const LandingDetection& seen
   const auto excess_m = [&](const RigidTransform& pose) {
     return *told.altitude_m + up_by(pose).dot(pose.translation);
   };
-  const RigidTransform& pose = seen.camera_from_pattern;
+  const RigidTransform& pose = seen.camera_from_target;
   const double aside_m = up_by(pose).cross(pose.translation).norm();
   const double position_variance = seen.covariance.topLeftCorner<3, 3>().trace();
   const double shared_m = std::hypot(kAltitudeSigma_m, kScaleSigma * pose.translation.norm());

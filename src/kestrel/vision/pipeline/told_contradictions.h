@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "kestrel/vision/target/landing_detection.h"
+#include "kestrel/vision/target/target_detection.h"
 
 namespace kestrel {
 
@@ -28,7 +28,7 @@ struct Contradiction {
 // detection count: agreement with one of them is no contradiction.
 class ToldContradictions {
  public:
-  void Add(const GivenView& told, const LandingDetection& seen);
+  void Add(const GivenView& told, const TargetDetection& seen);
 
   // Returns by how much (m) the given altitude is larger than the seen one. Nothing where they
   // agree, where too little was seen, or where the attitude is wrong, because the altitude depends

@@ -14,7 +14,7 @@ namespace {
 class ToldContradictionsTest : public ::testing::Test {
  protected:
   struct View {
-    LandingDetection seen;
+    TargetDetection seen;
     Eigen::Vector3d up_in_camera;
   };
 
@@ -27,8 +27,8 @@ class ToldContradictionsTest : public ::testing::Test {
     const Eigen::Vector3d center =
         camera_from_world * Eigen::Vector3d(random_.Uniform(-1, 1), 0.5, -5);
     const Eigen::Quaterniond turn = Rotation(0.02 * random_.Normal(), Eigen::Vector3d::UnitY());
-    view.seen.camera_from_pattern = {turn * camera_from_world,
-                                     center * (1 + 0.02 * random_.Normal())};
+    view.seen.camera_from_target = {turn * camera_from_world,
+                                    center * (1 + 0.02 * random_.Normal())};
     view.seen.covariance.setZero();
     view.seen.covariance.diagonal() << 1e-4, 1e-4, 1e-2, 4e-4, 4e-4, 1e-5;
     return view;
@@ -122,8 +122,8 @@ TEST_F(ToldContradictionsTest, MirrorPoseMayAgree) {
   ToldContradictions contradictions;
   for (int i = 0; i < 20; ++i) {
     View view = See();
-    view.seen.diagnostics.mirror_camera_from_pattern = view.seen.camera_from_pattern;
-    RigidTransform& told_first = view.seen.camera_from_pattern;
+    view.seen.diagnostics.mirror_camera_from_target = view.seen.camera_from_target;
+    RigidTransform& told_first = view.seen.camera_from_target;
     told_first.rotation = Rotation(0.9, Eigen::Vector3d::UnitX()) * told_first.rotation;
     contradictions.Add({5, view.up_in_camera}, view.seen);
   }

@@ -43,7 +43,7 @@ struct LevelPrior {
 
 struct AlignedPad {
   RigidTransform camera_from_pad;
-  Eigen::Matrix<double, 6, 6> covariance;  // as LandingDetection's
+  Eigen::Matrix<double, 6, 6> covariance;  // as TargetDetection's
   double rms_px = 0;      // distance of the edges from where the pose predicts them
   double prior_cost = 0;  // half of the prior's squared deviation, in standard deviations
   int edges = 0;          // number of edge points that the pose explains

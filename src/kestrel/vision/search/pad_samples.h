@@ -10,7 +10,7 @@
 
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/core/geometry/rigid_transform.h"
-#include "kestrel/vision/target/landing_detection.h"
+#include "kestrel/vision/target/target_detection.h"
 
 namespace kestrel {
 

@@ -21,7 +21,7 @@ constexpr double kMisfitBoundPx = 1;
 
 }  // namespace
 
-PadSearch::PadSearch(const PadSearchModels& models, const cv::Mat& image, const LandingHint& hint,
+PadSearch::PadSearch(const PadSearchModels& models, const cv::Mat& image, const TargetHint& hint,
                      PadSearchBuffers* buffers)
     : models_(models),
       image_(image),
@@ -29,7 +29,7 @@ PadSearch::PadSearch(const PadSearchModels& models, const cv::Mat& image, const 
       buffers_(*buffers),
       prior_{hint.up_in_camera, Radians(models.level_sigma_deg)} {}
 
-LandingReport PadSearch::Run() {
+TargetReport PadSearch::Run() {
   if (image_.type() != CV_8UC1 || image_.cols != models_.camera.width_px() ||
       image_.rows != models_.camera.height_px()) {
     report_.reason = "the image is not CV_8UC1 of the camera's size";
@@ -156,10 +156,10 @@ double PadSearch::Slant(const RigidTransform& pose) {
   return std::abs(face.dot(pose.translation)) / pose.translation.norm();
 }
 
-LandingDetection PadSearch::DetectionOf(const AlignedPad& aligned, double quality,
-                                        DetectionMethod method) const {
-  LandingDetection detection{};
-  detection.camera_from_pattern = aligned.camera_from_pad;
+TargetDetection PadSearch::DetectionOf(const AlignedPad& aligned, double quality,
+                                       DetectionMethod method) const {
+  TargetDetection detection{};
+  detection.camera_from_target = aligned.camera_from_pad;
   if (models_.camera.Project(aligned.camera_from_pad.translation, &detection.center_px) ==
       ProjectionStatus::kOutsideModel) {
     detection.center_px.setConstant(NAN);

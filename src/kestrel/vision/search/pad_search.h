@@ -14,8 +14,8 @@
 #include "kestrel/vision/search/pad_alignment.h"
 #include "kestrel/vision/search/pad_samples.h"
 #include "kestrel/vision/search/plane_borders.h"
-#include "kestrel/vision/target/landing_detection.h"
 #include "kestrel/vision/target/search_log.h"
+#include "kestrel/vision/target/target_detection.h"
 
 namespace kestrel {
 
@@ -46,10 +46,10 @@ class PadSearch {
   PadSearch(const PadSearch&) = delete;
   PadSearch& operator=(const PadSearch&) = delete;
 
-  LandingReport Run();
+  TargetReport Run();
 
  protected:
-  PadSearch(const PadSearchModels& models, const cv::Mat& image, const LandingHint& hint,
+  PadSearch(const PadSearchModels& models, const cv::Mat& image, const TargetHint& hint,
             PadSearchBuffers* buffers);
 
   // Looks for the pad near the expected pose.
@@ -81,8 +81,8 @@ class PadSearch {
   std::optional<RigidTransform> ResolveMirror(AlignedPad* best);
 
   // Returns the part of a detection that is common to all kinds of pads.
-  LandingDetection DetectionOf(const AlignedPad& aligned, double quality,
-                               DetectionMethod method) const;
+  TargetDetection DetectionOf(const AlignedPad& aligned, double quality,
+                              DetectionMethod method) const;
   // Returns the share of its length that a pad in this pose has across its tilt.
   static double Slant(const RigidTransform& pose);
 
@@ -90,9 +90,9 @@ class PadSearch {
 
   const PadSearchModels& models_;
   const cv::Mat& image_;
-  const LandingHint& hint_;
+  const TargetHint& hint_;
   PadSearchBuffers& buffers_;
-  LandingReport report_;
+  TargetReport report_;
   SearchLog log_{&report_};
 
  private:

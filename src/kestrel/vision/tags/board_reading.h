@@ -10,7 +10,7 @@
 #include "kestrel/vision/search/pad_samples.h"
 #include "kestrel/vision/tags/board_model.h"
 #include "kestrel/vision/tags/tag_board.h"
-#include "kestrel/vision/target/landing_detection.h"
+#include "kestrel/vision/target/target_detection.h"
 
 namespace kestrel {
 

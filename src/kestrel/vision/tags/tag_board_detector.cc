@@ -77,8 +77,8 @@ TagBoardDetector::~TagBoardDetector() = default;
 TagBoardDetector::TagBoardDetector(TagBoardDetector&&) noexcept = default;
 TagBoardDetector& TagBoardDetector::operator=(TagBoardDetector&&) noexcept = default;
 
-LandingReport TagBoardDetector::Detect(const cv::Mat& image, const LandingHint& hint,
-                                       TargetWorkspace& workspace) const {
+TargetReport TagBoardDetector::Detect(const cv::Mat& image, const TargetHint& hint,
+                                      TargetWorkspace& workspace) const {
   constexpr double kPartFactor = 1.3, kPartMarginPx = 8;
   const TagSearchModels models{{impl_->camera, impl_->alignment, impl_->board.radius_m,
                                 impl_->options.level_sigma_deg, kPartFactor, kPartMarginPx},

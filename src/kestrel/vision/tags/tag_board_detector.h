@@ -50,8 +50,8 @@ class TagBoardDetector final : public TargetDetector {
 
   // As of TargetDetector. The detection's id is that of the board's first tag.
   using TargetDetector::Detect;
-  LandingReport Detect(const cv::Mat& image, const LandingHint& hint,
-                       TargetWorkspace& workspace) const override;
+  TargetReport Detect(const cv::Mat& image, const TargetHint& hint,
+                      TargetWorkspace& workspace) const override;
   std::unique_ptr<TargetWorkspace> MakeWorkspace() const override;
   const CameraModel& camera() const override;
   const TargetShape& shape() const override;

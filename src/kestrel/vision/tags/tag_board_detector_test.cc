@@ -40,8 +40,8 @@ struct PoseError {
   double squared;  // by the covariance: chi-squared with six degrees of freedom
 };
 
-PoseError ErrorOf(const LandingDetection& detection, const RigidTransform& truth) {
-  const RigidTransform& found = detection.camera_from_pattern;
+PoseError ErrorOf(const TargetDetection& detection, const RigidTransform& truth) {
+  const RigidTransform& found = detection.camera_from_target;
   Eigen::Matrix<double, 6, 1> error;
   error.head<3>() = found.translation - truth.translation;
   error.tail<3>() = RotationVector(found.rotation * truth.rotation.conjugate());
@@ -59,12 +59,12 @@ class TagBoardDetectorTest : public testing::Test {
   cv::Mat Image(const RigidTransform& pose, std::uint64_t seed) const {
     return renderer_.Render(board_.Printed(), pose, taken_, seed);
   }
-  LandingReport Detect(const cv::Mat& image, const LandingHint& hint = {}) {
+  TargetReport Detect(const cv::Mat& image, const TargetHint& hint = {}) {
     return detector_->Detect(image, hint, *workspace_);
   }
   // A hint by a track: near the true place.
-  static LandingHint Expected(const RigidTransform& pose, double sigma_m, Random* random) {
-    LandingHint hint;
+  static TargetHint Expected(const RigidTransform& pose, double sigma_m, Random* random) {
+    TargetHint hint;
     const double x = random->Normal();
     const double y = random->Normal();
     const double z = random->Normal();
@@ -96,7 +96,7 @@ TEST_P(FamilyTest, IsFoundWithoutHintAtAnyHeight) {
   int found = 0, frames = 0;
   for (double height = 0.6; height < GetParam().farthest; height *= 1.25) {
     const RigidTransform pose = RandomBoardBelow(height, 0.35, 0.15, &random);
-    const LandingReport report = Detect(Image(pose, random.Bits()));
+    const TargetReport report = Detect(Image(pose, random.Bits()));
     ++frames;
     if (!report.detection) {
       continue;
@@ -125,7 +125,7 @@ TEST_F(TagBoardDetectorTest, FindsFractalMarkerUntilOnlyInnerMarkerIsInView) {
   Random random(17);
   for (double height = 5; height > 0.12; height *= 0.8) {
     const RigidTransform pose = RandomBoardBelow(height, 0.1, 0.1, &random);
-    const LandingReport report = Detect(Image(pose, random.Bits()));
+    const TargetReport report = Detect(Image(pose, random.Bits()));
     ASSERT_TRUE(report.detection) << height;
     EXPECT_LT(ErrorOf(*report.detection, pose).place, 0.03) << height;
     EXPECT_EQ(report.detection->heading_symmetry, 1);
@@ -157,8 +157,8 @@ TEST_F(TagBoardDetectorTest, ErrorsMatchCovariance) {
   for (int i = 0; i < 40; ++i) {
     const double height = random.Uniform(0.8, 4);
     const RigidTransform pose = RandomBoardBelow(height, 0.3, 0.1, &random);
-    const LandingHint hint = Expected(pose, 0.1, &random);
-    const LandingReport report = Detect(Image(pose, random.Bits()), hint);
+    const TargetHint hint = Expected(pose, 0.1, &random);
+    const TargetReport report = Detect(Image(pose, random.Bits()), hint);
     if (report.detection) squared.push_back(ErrorOf(*report.detection, pose).squared);
   }
   ASSERT_GE(squared.size(), 39u);
@@ -177,7 +177,7 @@ TEST_F(TagBoardDetectorTest, NeverAcceptsAnotherId) {
       const RigidTransform pose = RandomBoardBelow(height, 0.3, 0.1, &random);
       const TagBoard other{{OneTag(family, id, 0.5)}};
       const cv::Mat image = renderer_.Render(other.Printed(), pose, taken_, random.Bits());
-      LandingHint hint = Expected(pose, 0.02, &random);
+      TargetHint hint = Expected(pose, 0.02, &random);
       EXPECT_FALSE(Detect(image).detection) << family << " " << id;
       hint.rotation_in_camera = pose.rotation;
       EXPECT_FALSE(Detect(image, hint).detection) << family << " " << id;
@@ -199,7 +199,7 @@ TEST_F(TagBoardDetectorTest, FindsNestedBoardFromFarToNearWithoutJump) {
   std::optional<RigidTransform> last;
   for (double height = 4; height > 0.12; height *= 0.85) {
     const RigidTransform pose = BoardBelow(height, {0.05 * height, 0.02 * height}, 0.4, tilt);
-    LandingHint hint;
+    TargetHint hint;
     if (last) {
       const double error = std::min(0.01, 0.03 * height);
       hint.center_in_camera = pose.translation + Eigen::Vector3d(error, -error, error);
@@ -207,13 +207,13 @@ TEST_F(TagBoardDetectorTest, FindsNestedBoardFromFarToNearWithoutJump) {
       hint.rotation_in_camera = last->rotation;
       hint.up_in_camera = pose.rotation * Eigen::Vector3d::UnitZ();
     }
-    const LandingReport report = Detect(Image(pose, 1), hint);
+    const TargetReport report = Detect(Image(pose, 1), hint);
     ASSERT_TRUE(report.detection) << height << " " << report.reason;
     const PoseError error = ErrorOf(*report.detection, pose);
     EXPECT_LT(error.place, 0.01) << height;
     EXPECT_LT(error.angle, 0.05) << height;
     EXPECT_EQ(report.detection->id, 0);
-    last = report.detection->camera_from_pattern;
+    last = report.detection->camera_from_target;
   }
 }
 
@@ -227,9 +227,9 @@ TEST_F(TagBoardDetectorTest, FollowsQuarterOfTag) {
     const double heading = random.Uniform(-kPi, kPi);
     const double x = random.Uniform(0.3, 0.42);
     const RigidTransform pose = BoardBelow(0.35, {x, 0.3}, heading, Eigen::Vector3d::Zero());
-    LandingHint hint = Expected(pose, 0.01, &random);
+    TargetHint hint = Expected(pose, 0.01, &random);
     hint.rotation_in_camera = pose.rotation;
-    const LandingReport report = Detect(Image(pose, random.Bits()), hint);
+    const TargetReport report = Detect(Image(pose, random.Bits()), hint);
     if (!report.detection) {
       continue;
     }
@@ -249,9 +249,9 @@ TEST_F(TagBoardDetectorTest, NearTagFarFromHintIsFoundRightOrNotAtAll) {
   for (int i = 0; i < kFrames; ++i) {
     const double height = random.Uniform(0.3, 0.6);
     const RigidTransform pose = RandomBoardBelow(height, 0.5, 0.2, &random);
-    LandingHint hint = Expected(pose, 0.04, &random);
+    TargetHint hint = Expected(pose, 0.04, &random);
     hint.rotation_in_camera = pose.rotation;
-    const LandingReport report = Detect(Image(pose, random.Bits()), hint);
+    const TargetReport report = Detect(Image(pose, random.Bits()), hint);
     if (!report.detection) continue;
     ++found;
     const PoseError error = ErrorOf(*report.detection, pose);
@@ -275,9 +275,9 @@ TEST_F(TagBoardDetectorTest, FollowsTagThroughBlurAndShadow) {
   for (int i = 0; i < kFrames; ++i) {
     const double height = random.Uniform(1, 2.5);
     const RigidTransform pose = RandomBoardBelow(height, 0.3, 0.1, &random);
-    LandingHint hint = Expected(pose, 0.02, &random);
+    TargetHint hint = Expected(pose, 0.02, &random);
     hint.rotation_in_camera = pose.rotation;
-    const LandingReport report = Detect(Image(pose, random.Bits()), hint);
+    const TargetReport report = Detect(Image(pose, random.Bits()), hint);
     if (!report.detection) {
       continue;
     }
@@ -301,16 +301,16 @@ TEST_F(TagBoardDetectorTest, FindsEachOfTwoPadsOfFamilyAtItsPlace) {
       const cv::Mat image = renderer_.Render(pads.Printed(), pose, taken_, random.Bits());
       RigidTransform pad = pose;
       pad.translation = pose * place;
-      const LandingReport found = Detect(image);
+      const TargetReport found = Detect(image);
       ASSERT_TRUE(found.detection) << i;
       EXPECT_EQ(found.detection->id, pads.tags[own].id);
       EXPECT_LT(ErrorOf(*found.detection, pad).place, 0.02) << i;
       // A track that has strayed to the other pad does not hold on to it.
-      LandingHint strayed;
+      TargetHint strayed;
       strayed.center_in_camera = pose * others;
       strayed.center_sigma_m = 0.05;
       strayed.rotation_in_camera = pose.rotation;
-      const LandingReport followed = Detect(image, strayed);
+      const TargetReport followed = Detect(image, strayed);
       EXPECT_TRUE(!followed.detection || ErrorOf(*followed.detection, pad).place < 0.02) << i;
     }
   }
@@ -325,7 +325,7 @@ TEST_F(TagBoardDetectorTest, FindsTagWithoutHintUnderShadowEdge) {
   for (int i = 0; i < kFrames; ++i) {
     taken_.contrast = random.Uniform(0.85, 1);
     const RigidTransform pose = RandomBoardBelow(random.Uniform(0.8, 5), 0.3, 0.1, &random);
-    const LandingReport report = Detect(Image(pose, random.Bits()));
+    const TargetReport report = Detect(Image(pose, random.Bits()));
     if (!report.detection) continue;
     ++found;
     EXPECT_LT(ErrorOf(*report.detection, pose).place, 0.03) << i;
@@ -343,7 +343,7 @@ TEST_F(TagBoardDetectorTest, FindsTagWithLightCellsBlurredIntoMargin) {
   constexpr int kFrames = 40;
   for (int i = 0; i < kFrames; ++i) {
     const RigidTransform pose = RandomBoardBelow(random.Uniform(7, 9), 0.3, 0.1, &random);
-    const LandingReport report = Detect(Image(pose, random.Bits()));
+    const TargetReport report = Detect(Image(pose, random.Bits()));
     if (!report.detection) continue;
     ++found;
     EXPECT_LT(ErrorOf(*report.detection, pose).place, 0.05) << i;
@@ -371,7 +371,7 @@ TEST(WideLensTest, FindsTagBeyondNinetyDegreesFromAxis) {
       Eigen::Vector3d::Zero()};
   const RigidTransform pose = turn * BoardBelow(2.6, {0, 0}, 0.3, Eigen::Vector3d::Zero());
   const cv::Mat image = TagRenderer(camera).Render(board.Printed(), pose, {}, 4);
-  const LandingReport report = detector.Detect(image, {}, *detector.MakeWorkspace());
+  const TargetReport report = detector.Detect(image, {}, *detector.MakeWorkspace());
   ASSERT_TRUE(report.detection) << report.reason;
   EXPECT_LT(ErrorOf(*report.detection, pose).place, 0.01);
 }
@@ -444,7 +444,7 @@ TEST(TagBoardDetectorPictures, FindsTagsAndNoneInPicturesWithout) {
       const RigidTransform pose = RandomBoardBelow(random.Uniform(1.5, 7), 0.3, 0.2, &random);
       const cv::Mat image = renderer.Render(TagBoard{{tag}}.Printed(), pose, taken, random.Bits());
       const bool is_plain = !WarningsOfPlainTags({{tag}}).empty();
-      LandingHint hint;
+      TargetHint hint;
       if (is_plain) {  // expected by a track
         hint.center_in_camera = pose.translation;
         hint.center_sigma_m = 0.05;
@@ -467,7 +467,7 @@ TEST(TagBoardDetectorPictures, FindsTagThatTouchesImageBorder) {
   const auto is_found = [&](double height, const Eigen::Vector2d& center_px, double heading) {
     const Eigen::Vector2d place = height / 400 * (center_px - Eigen::Vector2d(159.5, 119.5));
     const RigidTransform pose = BoardBelow(height, place, heading, Eigen::Vector3d::Zero());
-    const LandingReport report =
+    const TargetReport report =
         detector.Detect(renderer.Render(board.Printed(), pose, {}, 5), {}, *workspace);
     if (!report.detection) return false;
     EXPECT_LT(ErrorOf(*report.detection, pose).place, 0.01);
@@ -493,8 +493,8 @@ TEST_F(TagBoardDetectorTest, UpSelectsOneOfTwoPosesOfFarTag) {
   Random random(21);
   for (int i = 0; i < 20; ++i) {
     const RigidTransform pose = RandomBoardBelow(4, 0.5, 0.1, &random);
-    LandingHint hint = Expected(pose, 0.1, &random);
-    const LandingReport report = Detect(Image(pose, random.Bits()), hint);
+    TargetHint hint = Expected(pose, 0.1, &random);
+    const TargetReport report = Detect(Image(pose, random.Bits()), hint);
     if (!report.detection) continue;
     EXPECT_LT(ErrorOf(*report.detection, pose).angle, Radians(8));
   }
@@ -502,7 +502,7 @@ TEST_F(TagBoardDetectorTest, UpSelectsOneOfTwoPosesOfFarTag) {
 
 TEST_F(TagBoardDetectorTest, ReportsImageOfAnotherSize) {
   Use({{OneTag("tag36h11", 7, 0.5)}});
-  const LandingReport report = Detect(cv::Mat(100, 100, CV_8UC1, cv::Scalar(0)));
+  const TargetReport report = Detect(cv::Mat(100, 100, CV_8UC1, cv::Scalar(0)));
   EXPECT_FALSE(report.detection);
   EXPECT_EQ(report.reason, "the image is not CV_8UC1 of the camera's size");
 }

@@ -43,7 +43,7 @@ double LikenessOf(std::span<const float> gray, const TagGrid& grid) {
 
 }  // namespace
 
-TagSearch::TagSearch(const TagSearchModels& models, const cv::Mat& image, const LandingHint& hint,
+TagSearch::TagSearch(const TagSearchModels& models, const cv::Mat& image, const TargetHint& hint,
                      TagSearchBuffers* buffers)
     : PadSearch(models.search, image, hint, &buffers->pad), tags_(models), quads_(buffers->quads) {
   quads_.quads.clear();
@@ -134,8 +134,8 @@ void TagSearch::Take(const RigidTransform& pose, double prior, DetectionMethod m
 void TagSearch::Report(AlignedPad aligned, const SeenParts& parts, double quality,
                        DetectionMethod method) {
   const std::optional<RigidTransform> mirror = ResolveMirror(&aligned);
-  LandingDetection detection = DetectionOf(aligned, quality, method);
-  detection.diagnostics.mirror_camera_from_pattern = mirror;
+  TargetDetection detection = DetectionOf(aligned, quality, method);
+  detection.diagnostics.mirror_camera_from_target = mirror;
   double largest = 0;
   for (const SeenPart& part : parts.all()) largest = std::max(largest, part.size_px);
   const RigidTransform& pose = aligned.camera_from_pad;

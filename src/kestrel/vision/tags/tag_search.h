@@ -27,7 +27,7 @@ struct TagSearchBuffers : TargetWorkspace {
 // The search of one image for a board of tags.
 class TagSearch final : public PadSearch {
  public:
-  TagSearch(const TagSearchModels& models, const cv::Mat& image, const LandingHint& hint,
+  TagSearch(const TagSearchModels& models, const cv::Mat& image, const TargetHint& hint,
             TagSearchBuffers* buffers);
 
  private:

@@ -24,10 +24,10 @@ class PlaneWarp {
 
   // Starts without a displacement. 'radius_m': unit of length of the polynomial, the radius of the
   // area it is used for. 'camera' must outlive this.
-  PlaneWarp(const CameraModel& camera, const RigidTransform& camera_from_pattern, double radius_m)
+  PlaneWarp(const CameraModel& camera, const RigidTransform& camera_from_target, double radius_m)
       : camera_(camera),
-        pose_(camera_from_pattern),
-        plane_(camera_from_pattern.rotation.toRotationMatrix().leftCols<2>()),
+        pose_(camera_from_target),
+        plane_(camera_from_target.rotation.toRotationMatrix().leftCols<2>()),
         radius_m_(radius_m) {}
 
   // Projects a point of the plane (m) to its pixel and the derivative; false when the lens does not

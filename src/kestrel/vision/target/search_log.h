@@ -5,14 +5,14 @@
 #include <cstdint>
 #include <string_view>
 
-#include "kestrel/vision/target/landing_detection.h"
+#include "kestrel/vision/target/target_detection.h"
 
 namespace kestrel {
 
 // Records the progress of the candidates of one image and the time that each stage takes.
 class SearchLog {
  public:
-  explicit SearchLog(LandingReport* report) : report_(*report) {}
+  explicit SearchLog(TargetReport* report) : report_(*report) {}
 
   // Counts a candidate that enters a stage. 'reason_if_it_ends_here' becomes the report's reason
   // unless a candidate comes farther.
@@ -41,7 +41,7 @@ class SearchLog {
   }
 
  private:
-  LandingReport& report_;
+  TargetReport& report_;
 };
 
 }  // namespace kestrel

@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 
 #include "kestrel/core/camera/camera_model.h"
-#include "kestrel/vision/target/landing_detection.h"
+#include "kestrel/vision/target/target_detection.h"
 #include "kestrel/vision/target/target_shape.h"
 
 namespace kestrel {
@@ -34,13 +34,13 @@ class TargetDetector {
   // error, which the report tells. 'workspace': one of MakeWorkspace(), of one thread at a time;
   // with it this is thread-safe. Does not throw, and does not allocate once the workspace has
   // warmed up, unless the detector says so.
-  virtual LandingReport Detect(const cv::Mat& image, const LandingHint& hint,
-                               TargetWorkspace& workspace) const = 0;
+  virtual TargetReport Detect(const cv::Mat& image, const TargetHint& hint,
+                              TargetWorkspace& workspace) const = 0;
 
   // Searches one image of which nothing is known, with a workspace of its own. A loop over images
   // keeps a workspace instead, which saves its memory and the time to make it.
-  LandingReport Detect(const cv::Mat& image) const {
-    return Detect(image, LandingHint(), *MakeWorkspace());
+  TargetReport Detect(const cv::Mat& image) const {
+    return Detect(image, TargetHint(), *MakeWorkspace());
   }
 
   virtual std::unique_ptr<TargetWorkspace> MakeWorkspace() const = 0;

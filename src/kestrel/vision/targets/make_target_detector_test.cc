@@ -21,7 +21,7 @@ using MakeTargetDetectorTest = LandingPatternDetectorTest;
 TEST_F(MakeTargetDetectorTest, RingIsDefault) {
   const auto detector = MakeTargetDetector(camera_, TargetOptions(), {});
   const auto workspace = detector->MakeWorkspace();
-  const LandingReport report = detector->Detect(image_, {}, *workspace);
+  const TargetReport report = detector->Detect(image_, {}, *workspace);
   ExpectSame(report, Detect(image_));
   ASSERT_TRUE(report.detection);
   EXPECT_EQ(report.detection->heading_symmetry, 4);
@@ -39,7 +39,7 @@ TEST_F(MakeTargetDetectorTest, DetectsInOneImageWithoutHintAndWorkspace) {
     const auto workspace = detector->MakeWorkspace();
     ExpectSame(detector->Detect(image_), detector->Detect(image_, {}, *workspace));
     for (const cv::Mat& other : {cv::Mat(), cv::Mat(image_.size(), CV_8UC3)}) {
-      const LandingReport report = detector->Detect(other);
+      const TargetReport report = detector->Detect(other);
       EXPECT_FALSE(report.detection) << kind;
       EXPECT_THAT(std::string(report.reason), HasSubstr("CV_8UC1")) << kind;
     }

@@ -48,11 +48,11 @@ class OwnShadowTest : public testing::TestWithParam<OwnShadow> {
                       .center = {GetParam().x, GetParam().y},
                       .turn = random.Uniform(0, kPi),
                       .size_m = GetParam().radius};
-      const LandingReport report = detector->Detect(
+      const TargetReport report = detector->Detect(
           renderer_.Render(print, pose, taken, random.Bits()), Followed(pose, &random), *workspace);
       if (!report.detection) continue;
       ++found;
-      const RigidTransform& seen = report.detection->camera_from_pattern;
+      const RigidTransform& seen = report.detection->camera_from_target;
       EXPECT_LT((seen.translation - pose.translation).norm(), 0.02) << i;
     }
     return found;
@@ -61,8 +61,8 @@ class OwnShadowTest : public testing::TestWithParam<OwnShadow> {
   TargetOptions target_;
 
  private:
-  static LandingHint Followed(const RigidTransform& pose, Random* random) {
-    LandingHint hint;
+  static TargetHint Followed(const RigidTransform& pose, Random* random) {
+    TargetHint hint;
     const double x = random->Normal();
     const double y = random->Normal();
     hint.center_sigma_m = 0.02;

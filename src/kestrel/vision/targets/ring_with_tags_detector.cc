@@ -29,14 +29,14 @@ struct RingWithTagsWorkspace final : TagSearchBuffers {
   std::unique_ptr<TargetWorkspace> ring;
 };
 
-RigidTransform Turned(const RigidTransform& camera_from_pattern, int quarters) {
-  if (quarters == 0) return camera_from_pattern;
+RigidTransform Turned(const RigidTransform& camera_from_target, int quarters) {
+  if (quarters == 0) return camera_from_target;
   const Eigen::AngleAxisd turn(quarters * kPi / 2, Eigen::Vector3d::UnitZ());
-  return {camera_from_pattern.rotation * turn, camera_from_pattern.translation};
+  return {camera_from_target.rotation * turn, camera_from_target.translation};
 }
 
 // Adds the work of a search to that of another one in the same image.
-void AddWork(const LandingReport& other, LandingReport* report) {
+void AddWork(const TargetReport& other, TargetReport* report) {
   for (int stage = 0; stage < kLandingStageCount; ++stage) {
     report->diagnostics.candidates[stage] += other.diagnostics.candidates[stage];
     report->diagnostics.stage_ns[stage] += other.diagnostics.stage_ns[stage];
@@ -76,7 +76,7 @@ struct RingWithTagsDetector::Impl {
   bool IsAnotherPad(const cv::Mat& image, const RigidTransform& ring_pose,
                     const std::optional<Heading>& heading, PadSamples* samples) const;
   // Completes the report of a ring that was found.
-  void Identify(const cv::Mat& image, PadSamples* samples, LandingReport* report) const;
+  void Identify(const cv::Mat& image, PadSamples* samples, TargetReport* report) const;
 
   LandingPatternDetector ring;
   TagBoardDetector tags;
@@ -121,9 +121,9 @@ bool RingWithTagsDetector::Impl::IsAnotherPad(const cv::Mat& image, const RigidT
 }
 
 void RingWithTagsDetector::Impl::Identify(const cv::Mat& image, PadSamples* samples,
-                                          LandingReport* report) const {
-  LandingDetection& detection = *report->detection;
-  const RigidTransform ring_pose = detection.camera_from_pattern;
+                                          TargetReport* report) const {
+  TargetDetection& detection = *report->detection;
+  const RigidTransform ring_pose = detection.camera_from_target;
   const std::optional<Heading> heading = ReadHeading(image, ring_pose, samples);
   if (IsAnotherPad(image, ring_pose, heading, samples)) {
     report->detection.reset();
@@ -134,10 +134,10 @@ void RingWithTagsDetector::Impl::Identify(const cv::Mat& image, PadSamples* samp
   }
   if (!heading) return;
   // The outlines of the ring in 'seen' are the same in all headings.
-  detection.camera_from_pattern = Turned(ring_pose, heading->quarters);
-  if (detection.diagnostics.mirror_camera_from_pattern) {
-    detection.diagnostics.mirror_camera_from_pattern =
-        Turned(*detection.diagnostics.mirror_camera_from_pattern, heading->quarters);
+  detection.camera_from_target = Turned(ring_pose, heading->quarters);
+  if (detection.diagnostics.mirror_camera_from_target) {
+    detection.diagnostics.mirror_camera_from_target =
+        Turned(*detection.diagnostics.mirror_camera_from_target, heading->quarters);
   }
   detection.id = board.tags.front().id;
   detection.heading_symmetry = 1;
@@ -153,24 +153,24 @@ RingWithTagsDetector::~RingWithTagsDetector() = default;
 RingWithTagsDetector::RingWithTagsDetector(RingWithTagsDetector&&) noexcept = default;
 RingWithTagsDetector& RingWithTagsDetector::operator=(RingWithTagsDetector&&) noexcept = default;
 
-LandingReport RingWithTagsDetector::Detect(const cv::Mat& image, const LandingHint& hint,
-                                           TargetWorkspace& workspace) const {
+TargetReport RingWithTagsDetector::Detect(const cv::Mat& image, const TargetHint& hint,
+                                          TargetWorkspace& workspace) const {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   auto& memory = dynamic_cast<RingWithTagsWorkspace&>(workspace);
-  LandingReport by_ring = impl_->ring.Detect(image, hint, *memory.ring);
+  TargetReport by_ring = impl_->ring.Detect(image, hint, *memory.ring);
   if (by_ring.detection) impl_->Identify(image, &memory.pad.samples, &by_ring);
   if (by_ring.detection) return by_ring;
 
   // The tags' search gets the time that is left, and always makes its first step.
   constexpr double kLeastMs = 0.1;
-  LandingHint of_tags = hint;
+  TargetHint of_tags = hint;
   of_tags.first_step = 0;
   const std::chrono::duration<double, std::milli> spent = Clock::now() - start;
   if (hint.max_search_ms > 0) {
     of_tags.max_search_ms = std::max(kLeastMs, hint.max_search_ms - spent.count());
   }
-  LandingReport by_tags = impl_->tags.Detect(image, of_tags, memory);
+  TargetReport by_tags = impl_->tags.Detect(image, of_tags, memory);
   if (!by_tags.detection) {
     AddWork(by_tags, &by_ring);
     return by_ring;

@@ -52,14 +52,14 @@ class RingWithTagsDetectorTest : public testing::Test {
     constexpr double kNoise = 3;
     return AddNoise(DrawPrint(camera_, pattern_, print, pose), kNoise, random);
   }
-  LandingReport Detect(const cv::Mat& image, const LandingHint& hint = {}) {
+  TargetReport Detect(const cv::Mat& image, const TargetHint& hint = {}) {
     return detector_.Detect(image, hint, *workspace_);
   }
-  LandingReport DetectRing(const cv::Mat& image) const {
+  TargetReport DetectRing(const cv::Mat& image) const {
     return ring_.Detect(image, {}, *ring_.MakeWorkspace());
   }
-  static LandingHint Up(const RigidTransform& pose) {
-    LandingHint hint;
+  static TargetHint Up(const RigidTransform& pose) {
+    TargetHint hint;
     hint.up_in_camera = pose.rotation * Eigen::Vector3d::UnitZ();
     return hint;
   }
@@ -84,12 +84,12 @@ TEST_F(RingWithTagsDetectorTest, TagGivesIdAndHeadingInAllTurns) {
     for (int quarter = 0; quarter < 4; ++quarter) {
       const RigidTransform pose = PoseAt(height, quarter * kPi / 2 + 0.3, &random);
       const cv::Mat image = Image(PadOf(Board(kPadId)), pose, &random);
-      const LandingReport report = Detect(image, Up(pose));
+      const TargetReport report = Detect(image, Up(pose));
       ASSERT_TRUE(report.detection) << height << " " << report.reason;
-      const LandingDetection& found = *report.detection;
+      const TargetDetection& found = *report.detection;
       EXPECT_EQ(found.id, kPadId) << height << " " << quarter;
       EXPECT_EQ(found.heading_symmetry, 1);
-      const RigidTransform& by_tag = found.camera_from_pattern;
+      const RigidTransform& by_tag = found.camera_from_target;
       EXPECT_LT(by_tag.rotation.angularDistance(pose.rotation), Radians(3)) << height;
       EXPECT_LT((by_tag.translation - pose.translation).norm(), 0.02 * height);
       const std::span<const SeenPart> parts = found.parts.all();
@@ -103,12 +103,12 @@ TEST_F(RingWithTagsDetectorTest, PoseComesFromRing) {
   Random random(4);
   const RigidTransform pose = PoseAt(2.5, 0.3 + kPi / 2, &random);
   const cv::Mat image = Image(PadOf(Board(kPadId)), pose, &random);
-  const LandingReport report = Detect(image);
-  const LandingReport by_ring = DetectRing(image);
+  const TargetReport report = Detect(image);
+  const TargetReport by_ring = DetectRing(image);
   ASSERT_TRUE(report.detection);
   ASSERT_TRUE(by_ring.detection);
-  EXPECT_EQ(report.detection->camera_from_pattern.translation,
-            by_ring.detection->camera_from_pattern.translation);
+  EXPECT_EQ(report.detection->camera_from_target.translation,
+            by_ring.detection->camera_from_target.translation);
   EXPECT_EQ(report.detection->covariance, by_ring.detection->covariance);
   EXPECT_EQ(report.detection->method, by_ring.detection->method);
   EXPECT_EQ(report.detection->quality, by_ring.detection->quality);
@@ -124,7 +124,7 @@ TEST_F(RingWithTagsDetectorTest, NeverAcceptsRingWithAnotherTag) {
     const RigidTransform pose = PoseAt(height, random.Uniform(-kPi, kPi), &random);
     const cv::Mat image = Image(PadOf(Board(other)), pose, &random);
     ASSERT_TRUE(DetectRing(image).detection);
-    const LandingReport report = Detect(image, Up(pose));
+    const TargetReport report = Detect(image, Up(pose));
     EXPECT_FALSE(report.detection && report.detection->id) << other << " " << height;
     refused += report.reason == "the ring is another pad's: it has another tag of the family";
   }
@@ -136,7 +136,7 @@ TEST_F(RingWithTagsDetectorTest, EqualsRingDetectionWithoutReadableTag) {
   for (const double height : {2.0, 4.0, 8.0}) {
     const RigidTransform pose = PoseAt(height, 0.4, &random);
     const cv::Mat image = Image(SpokedPrint(pattern_, 4), pose, &random);
-    const LandingReport report = Detect(image);
+    const TargetReport report = Detect(image);
     ASSERT_TRUE(report.detection);
     ExpectSame(report, DetectRing(image));
     EXPECT_EQ(report.detection->heading_symmetry, 4);
@@ -150,11 +150,11 @@ TEST_F(RingWithTagsDetectorTest, FollowsTagWithoutRingWhenNear) {
   const RigidTransform pose = PrintPose({-0.6, 0.6, 0.35}, 0, 0, 0);
   const cv::Mat image = Image(PadOf(Board(kPadId)), pose, &random);
   ASSERT_FALSE(DetectRing(image).detection);
-  const LandingReport report = Detect(image, Up(pose));
+  const TargetReport report = Detect(image, Up(pose));
   ASSERT_TRUE(report.detection) << report.reason;
   EXPECT_EQ(report.detection->id, kPadId);
   EXPECT_EQ(report.detection->method, DetectionMethod::kTags);
-  EXPECT_LT((report.detection->camera_from_pattern.translation - pose.translation).norm(), 0.02);
+  EXPECT_LT((report.detection->camera_from_target.translation - pose.translation).norm(), 0.02);
 }
 
 TEST_F(RingWithTagsDetectorTest, ShapeHasRingAndTags) {
@@ -168,7 +168,7 @@ TEST_F(RingWithTagsDetectorTest, ShapeHasRingAndTags) {
 TEST_F(RingWithTagsDetectorTest, RefusesInvalidInput) {
   EXPECT_THROW(RingWithTagsDetector(camera_, {}, TagBoard(), {}), InputError);
   EXPECT_THROW(RingWithTagsDetector(camera_, {}, Board(kPadId), {.min_quality = 2}), InputError);
-  const LandingReport report = Detect(cv::Mat(100, 100, CV_8UC1, cv::Scalar(0)));
+  const TargetReport report = Detect(cv::Mat(100, 100, CV_8UC1, cv::Scalar(0)));
   EXPECT_FALSE(report.detection);
   EXPECT_THAT(std::string(report.reason), HasSubstr("not of the camera's size"));
 }

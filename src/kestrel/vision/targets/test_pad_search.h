@@ -29,13 +29,13 @@ inline bool IsFoundFrom(double altitude, const TargetDetector& detector, const T
   Random random(seed);
   const PadImageOptions taken = RandomPadImage(&random);
   const RigidTransform pose = RandomPadBelow(altitude, &random);
-  LandingHint hint;
+  TargetHint hint;
   hint.up_in_camera = pose.rotation * Eigen::Vector3d::UnitZ();
   const cv::Mat image = renderer.Render(print, pose, taken, random.Bits());
   const auto workspace = detector.MakeWorkspace();
-  const LandingReport report = detector.Detect(image, hint, *workspace);
+  const TargetReport report = detector.Detect(image, hint, *workspace);
   if (!report.detection) return false;
-  const Eigen::Vector3d& found = report.detection->camera_from_pattern.translation;
+  const Eigen::Vector3d& found = report.detection->camera_from_target.translation;
   return (found - pose.translation).norm() < 0.25 * altitude;
 }
 

@@ -191,7 +191,7 @@ ConsoleCalibration LensReport(const LensCalibration& lens, const CameraIntrinsic
       report.places.emplace_back(edge.pixel.x(), edge.pixel.y());
     }
   }
-  for (const RigidTransform& pose : lens.fit.camera_from_pattern) {
+  for (const RigidTransform& pose : lens.fit.camera_from_target) {
     report.distances_m.push_back(pose.translation.norm());
   }
   Thin(&report.places);

@@ -25,8 +25,8 @@ TEST(MarkLostTest, MarksGapsAsLostAndRejectedDetectionsAsFalse) {
   for (int i = 0; i < 12; ++i) {
     LandingObservation observation;
     if (i == 3 || i == 4 || i == 6 || i == 9) {
-      LandingDetection& detection = observation.report.detection.emplace();
-      detection.camera_from_pattern.translation = {0, 0, 3};
+      TargetDetection& detection = observation.report.detection.emplace();
+      detection.camera_from_target.translation = {0, 0, 3};
     }
     if (i == 6) observation.fate = MeasurementFate::kFarFromTrack;
     frames.push_back(ReplayFrameOf(PaperView(), {{}, observation}));

@@ -113,7 +113,7 @@ void DrawOutlines(const TargetShape& shape, const Projection& project, const cv:
 }
 
 // Draws the print at its edges in the image, and as pose and lens project it.
-void DrawMisfit(const LandingDetection& detection, const CameraModel& camera,
+void DrawMisfit(const TargetDetection& detection, const CameraModel& camera,
                 const TargetShape& shape, Canvas* canvas) {
   const PlaneWarp seen = detection.diagnostics.seen->Warp(camera);
   const auto project = [&](const Eigen::Vector3d& point, Eigen::Vector2d* pixel) {
@@ -156,9 +156,9 @@ void DrawPath(const Polyline& path_in_world, const RigidTransform& world_from_ca
   for (const Eigen::Vector3d& place : path_in_world) canvas->DrawDot(place, project, kCyan);
 }
 
-void DrawDetection(const LandingDetection& detection, const CameraModel& camera,
+void DrawDetection(const TargetDetection& detection, const CameraModel& camera,
                    const TargetShape& shape, bool only_in_image, Canvas* canvas) {
-  const RigidTransform& pose = detection.camera_from_pattern;
+  const RigidTransform& pose = detection.camera_from_target;
   const auto project = [&](const Eigen::Vector3d& point, Eigen::Vector2d* pixel) {
     return camera.Project(pose * point, pixel) != ProjectionStatus::kOutsideModel;
   };
@@ -186,7 +186,7 @@ cv::Mat DrawLandingOverlay(const cv::Mat& image, const CameraModel& camera,
                            const TargetShape& shape, const LandingObservation& observation,
                            const LandingOverlayOptions& options) {
   Canvas canvas(image);
-  const LandingReport& report = observation.report;
+  const TargetReport& report = observation.report;
   const bool has_path = observation.world_from_camera && !options.path_in_world.empty();
   if (has_path) DrawPath(options.path_in_world, *observation.world_from_camera, camera, &canvas);
   if (has_path) canvas.Write("cyan: where the track goes", kCyan, -1);

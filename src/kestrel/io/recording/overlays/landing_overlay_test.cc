@@ -17,11 +17,11 @@ const TargetShape kShape = ShapeOf(LandingPattern());
 const cv::Mat kGray(480, 640, CV_8UC1, 128);
 
 LandingObservation FoundAt(const Eigen::Vector3d& center_in_camera) {
-  LandingDetection detection{};
+  TargetDetection detection{};
   // The printed face points to the camera.
-  detection.camera_from_pattern.rotation =
+  detection.camera_from_target.rotation =
       Eigen::AngleAxisd(3.14159265358979, Eigen::Vector3d::UnitX());
-  detection.camera_from_pattern.translation = center_in_camera;
+  detection.camera_from_target.translation = center_in_camera;
   kCamera.Project(center_in_camera, &detection.center_px);
   LandingObservation observation;
   observation.report.detection = detection;
@@ -52,9 +52,9 @@ bool IsMagenta(const cv::Mat& image, int x, int y) {
 // The pattern is seen 40 px to the right of its projection by pose and lens.
 TEST(LandingOverlay, DrawsBothOutlinesOfMisfit) {
   LandingObservation observation = FoundAt({0.0, 0.0, 2.0});
-  LandingDetection& detection = *observation.report.detection;
+  TargetDetection& detection = *observation.report.detection;
   detection.diagnostics.seen =
-      SeenPrint{detection.camera_from_pattern, PlaneWarp::Coefficients::Zero(), 0.5};
+      SeenPrint{detection.camera_from_target, PlaneWarp::Coefficients::Zero(), 0.5};
   detection.diagnostics.seen->displacement_px(0, 0) = 40;
   detection.diagnostics.misfit_px = 28;
   detection.diagnostics.misfit_bound_px = 30;

@@ -16,24 +16,24 @@ std::string Position(const std::optional<Eigen::Vector3d>& position) {
 }
 
 // The columns u_px to p_CP_C_z_m, from the detection.
-std::string ImageCells(const std::optional<LandingDetection>& detection, bool only_in_image) {
+std::string ImageCells(const std::optional<TargetDetection>& detection, bool only_in_image) {
   if (!detection) return ",,,,,,";
   return fmt::format("{:.3f},{:.3f},{},{:.4f},{}", detection->center_px.x(),
                      detection->center_px.y(), ToString(detection->method), detection->quality,
-                     only_in_image ? ",," : Position(detection->camera_from_pattern.translation));
+                     only_in_image ? ",," : Position(detection->camera_from_target.translation));
 }
 
 // 0 stands for "no edges", as a measured misfit is never exactly 0.
-std::string MisfitCell(const std::optional<LandingDetection>& detection, bool only_in_image) {
+std::string MisfitCell(const std::optional<TargetDetection>& detection, bool only_in_image) {
   if (!detection || only_in_image || detection->diagnostics.misfit_px == 0) return "";
   return fmt::format("{:.3f}", detection->diagnostics.misfit_px);
 }
 
-std::string IdCell(const std::optional<LandingDetection>& detection) {
+std::string IdCell(const std::optional<TargetDetection>& detection) {
   return detection && detection->id ? std::to_string(*detection->id) : "";
 }
 
-std::string SigmaCells(const std::optional<LandingDetection>& detection, bool only_in_image) {
+std::string SigmaCells(const std::optional<TargetDetection>& detection, bool only_in_image) {
   if (!detection || only_in_image) return ",,";
   return Position(detection->covariance.diagonal().head<3>().cwiseSqrt().eval());
 }
@@ -48,7 +48,7 @@ std::string LandingCsvHeader() {
 
 std::string LandingCsvRow(const std::string& frame_name, const LandingObservation& observation,
                           bool only_in_image) {
-  const LandingReport& report = observation.report;
+  const TargetReport& report = observation.report;
   const auto& yaw = observation.yaw_in_world;
   return fmt::format(
       "{},{},{},{},{},{},{},{},{:.4f},{},{}\n", CsvCell(frame_name),

@@ -9,9 +9,9 @@ namespace kestrel {
 namespace {
 
 LandingObservation Found() {
-  LandingDetection detection{};
+  TargetDetection detection{};
   detection.center_px = {320.25, 239.5};
-  detection.camera_from_pattern.translation = {0.1, -0.2, 3};
+  detection.camera_from_target.translation = {0.1, -0.2, 3};
   detection.covariance.setZero();
   detection.covariance.diagonal().head<3>() = Eigen::Vector3d(0.0001, 0.0004, 0.0009);
   detection.method = DetectionMethod::kRing;

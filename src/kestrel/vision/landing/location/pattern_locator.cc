@@ -107,7 +107,7 @@ std::optional<PatternLocation> PatternLocator::Locate(
     Recalibrate(edges, prior, &state, &location);
   }
   if (!location.covariance.allFinite()) return std::nullopt;
-  location.camera_from_pattern = state.pose;
+  location.camera_from_target = state.pose;
   if (camera_.Project(state.pose.translation, &location.center_px) ==
       ProjectionStatus::kOutsideModel) {
     return std::nullopt;

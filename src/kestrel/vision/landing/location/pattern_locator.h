@@ -25,7 +25,7 @@ inline constexpr int kPoseUnknowns = kPoseRotation + 3;
 
 // Pose of the pattern that explains the image best.
 struct PatternLocation {
-  RigidTransform camera_from_pattern;
+  RigidTransform camera_from_target;
   // Covariance of the pose error, m and rad.
   Eigen::Matrix<double, kPoseUnknowns, kPoseUnknowns> covariance;
   // Root mean square of the residuals: 'edge_rms_px' of edges, 'gray_rms' (gray values) of a print
@@ -51,9 +51,9 @@ struct NormalPrior {
   // Adds the prior to the normal equations of a pose (translation, then rotation about the centre)
   // whose residuals have the variance 'variance'.
   template <class Matrix, class Vector>
-  void AddTo(const Eigen::Quaterniond& camera_from_pattern, double variance, Matrix* h,
+  void AddTo(const Eigen::Quaterniond& camera_from_target, double variance, Matrix* h,
              Vector* g) const {
-    const Eigen::Vector3d normal = camera_from_pattern * Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d normal = camera_from_target * Eigen::Vector3d::UnitZ();
     constexpr double kFar = 2;  // standard deviations
     const double away = normal.cross(normal_in_camera).norm() / (kFar * sigma);
     const double weight = variance / (sigma * sigma) / (1 + away * away);
@@ -65,8 +65,8 @@ struct NormalPrior {
 
 // Location of a ring in the image.
 struct RingLocation {
-  RigidTransform camera_from_pattern;  // the turn about the ring's centre is arbitrary
-  bool is_whole;                       // nearly all of the ring has edges in the image
+  RigidTransform camera_from_target;  // the turn about the ring's centre is arbitrary
+  bool is_whole;                      // nearly all of the ring has edges in the image
 };
 
 // Finds the pose from the edges (model-based pose estimation, after Drummond and Cipolla 2002): the

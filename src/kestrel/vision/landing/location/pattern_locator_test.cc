@@ -59,8 +59,8 @@ TEST_F(PatternLocatorTest, RecoversPose) {
     const cv::Mat image = Draw(truth);
     const auto location = Locate(image, Disturb(truth, &random), 5, 10);
     ASSERT_TRUE(location);
-    EXPECT_LT((Center(location->camera_from_pattern) - Center(truth)).norm(), 0.05) << trial;
-    const auto error = PoseError(location->camera_from_pattern, truth);
+    EXPECT_LT((Center(location->camera_from_target) - Center(truth)).norm(), 0.05) << trial;
+    const auto error = PoseError(location->camera_from_target, truth);
     EXPECT_LT(error.head<3>().norm(), 0.003 * distance) << trial;
     EXPECT_LT(error.tail<3>().norm(), 0.03) << trial;
     EXPECT_LT(location->edge_rms_px, 0.2);
@@ -79,7 +79,7 @@ TEST_F(PatternLocatorTest, OverexposureDoesNotMovePose) {
     image.convertTo(image, CV_8UC1, 2.2, 0);
     const auto location = Locate(image, Disturb(truth, &random), 5, 10);
     ASSERT_TRUE(location);
-    const auto error = PoseError(location->camera_from_pattern, truth);
+    const auto error = PoseError(location->camera_from_target, truth);
     EXPECT_LT(error.head<3>().norm(), 0.003 * distance) << trial;
     EXPECT_LT(error.tail<3>().norm(), 0.03) << trial;
     EXPECT_LT(location->edge_rms_px, 0.25) << trial;
@@ -96,7 +96,7 @@ TEST_F(PatternLocatorTest, CovarianceMatchesErrors) {
     for (int trial = 0; trial < kTrials; ++trial) {
       const auto location = Locate(AddNoise(image, 8, &random), Disturb(truth, &random), 4, 30);
       ASSERT_TRUE(location);
-      const auto error = PoseError(location->camera_from_pattern, truth);
+      const auto error = PoseError(location->camera_from_target, truth);
       sum += error.dot(location->covariance.ldlt().solve(error)) / 6;
     }
     const double ratio = std::sqrt(sum / kTrials);  // ratio of errors to standard deviations
@@ -112,7 +112,7 @@ TEST_F(PatternLocatorTest, ConvergesFromStraightAbove) {
     const RigidTransform tilted = PrintPose({0.1, 0.2, 1.02 * distance}, 0.35, 0.5, 0.4);
     const auto location = Locate(Draw(truth), tilted, 3, 10);
     ASSERT_TRUE(location);
-    const Eigen::Vector3d error = location->camera_from_pattern.translation - truth.translation;
+    const Eigen::Vector3d error = location->camera_from_target.translation - truth.translation;
     EXPECT_LT(error.norm(), 0.0008 * distance);
   }
 }
@@ -130,8 +130,8 @@ TEST_F(PatternLocatorTest, KnownPlaneStabilisesTilt) {
     const auto free = Locate(noisy, start, 3, 10);
     const auto steady = Locate(noisy, start, 3, 10, level);
     ASSERT_TRUE(free && steady);
-    without += PoseError(free->camera_from_pattern, truth).tail<3>().squaredNorm();
-    with += PoseError(steady->camera_from_pattern, truth).tail<3>().squaredNorm();
+    without += PoseError(free->camera_from_target, truth).tail<3>().squaredNorm();
+    with += PoseError(steady->camera_from_target, truth).tail<3>().squaredNorm();
   }
   EXPECT_LT(2 * with, without);
 }
@@ -141,7 +141,7 @@ TEST_F(PatternLocatorTest, IgnoresPartOutOfView) {
   const RigidTransform truth = PrintPose({1.05, 0, 1.6}, 0, 0, 0);
   const auto location = Locate(Draw(truth), Disturb(truth, &random), 5, 10);
   ASSERT_TRUE(location);
-  EXPECT_LT((Center(location->camera_from_pattern) - Center(truth)).norm(), 0.2);
+  EXPECT_LT((Center(location->camera_from_target) - Center(truth)).norm(), 0.2);
 }
 
 TEST_F(PatternLocatorTest, FailsWithoutEdges) {
@@ -160,10 +160,10 @@ TEST_F(PatternLocatorTest, RingAloneGivesPlaneAndCentre) {
     const cv::Mat image = DrawPrint(camera_, pattern_, ring, truth);
     const auto found = locator_.LocateRing(image, Disturb(truth, &random), 5, 10, 6);
     ASSERT_TRUE(found);
-    EXPECT_LT((found->camera_from_pattern.translation - truth.translation).norm(), 0.005 * distance)
+    EXPECT_LT((found->camera_from_target.translation - truth.translation).norm(), 0.005 * distance)
         << trial;
     const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
-    EXPECT_GT((found->camera_from_pattern.rotation * z).dot(truth.rotation * z), std::cos(0.02))
+    EXPECT_GT((found->camera_from_target.rotation * z).dot(truth.rotation * z), std::cos(0.02))
         << trial;
   }
 }
@@ -245,7 +245,7 @@ TEST_F(CalibrationEvidenceTest, ContradictedCalibrationDoesNotDistortPose) {
       EXPECT_TRUE(location->calibration.contradicts) << factor;
       EXPECT_LT((location->center_px - Center(truth)).norm(), 0.5) << factor;
       EXPECT_LT(location->edge_rms_px, 0.4) << factor;
-      const auto error = PoseError(location->camera_from_pattern, truth);
+      const auto error = PoseError(location->camera_from_target, truth);
       EXPECT_LT(std::sqrt(error.dot(location->covariance.ldlt().solve(error)) / 6), 4) << factor;
       EXPECT_LT(error.head<3>().norm(), 0.15 * truth.translation.norm()) << factor;
     }

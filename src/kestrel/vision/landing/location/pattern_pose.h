@@ -9,7 +9,7 @@
 
 namespace kestrel {
 
-// Returns camera_from_pattern for a pattern whose ring lies as 'circle', with one arm turned by
+// Returns camera_from_target for a pattern whose ring lies as 'circle', with one arm turned by
 // 'arm_angle' (rad) from an arbitrary but fixed axis of the ring's plane.
 inline RigidTransform PatternPose(const CirclePose& circle, double arm_angle) {
   Eigen::Matrix3d rotation;

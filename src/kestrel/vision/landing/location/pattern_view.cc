@@ -9,9 +9,9 @@
 
 namespace kestrel {
 
-PatternView::PatternView(const CameraModel& camera, const RigidTransform& camera_from_pattern,
+PatternView::PatternView(const CameraModel& camera, const RigidTransform& camera_from_target,
                          double extent_m, const ImageRegion& region)
-    : PatternView(PlaneWarp(camera, camera_from_pattern, extent_m), extent_m, region) {}
+    : PatternView(PlaneWarp(camera, camera_from_target, extent_m), extent_m, region) {}
 
 PatternView::PatternView(const PlaneWarp& warp, double extent_m, const ImageRegion& region)
     : warp_(warp), region_(region) {

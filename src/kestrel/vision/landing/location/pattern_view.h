@@ -17,7 +17,7 @@ namespace kestrel {
 class PatternView {
  public:
   // Covers |x|, |y| <= 'extent_m' (m) of the plane. Pixels are those of 'region'.
-  PatternView(const CameraModel& camera, const RigidTransform& camera_from_pattern, double extent_m,
+  PatternView(const CameraModel& camera, const RigidTransform& camera_from_target, double extent_m,
               const ImageRegion& region);
   PatternView(const PlaneWarp& warp, double extent_m, const ImageRegion& region);
 

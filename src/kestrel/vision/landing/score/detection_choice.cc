@@ -20,7 +20,7 @@ constexpr double kMaxSureSigma = 0.01;
 constexpr double kMirrorIsRight = 0.05;
 
 Eigen::Vector3d NormalOf(const PrintFinding& finding) {
-  return finding.location.camera_from_pattern.rotation * Eigen::Vector3d::UnitZ();
+  return finding.location.camera_from_target.rotation * Eigen::Vector3d::UnitZ();
 }
 
 // True when two findings are the two poses of one ring and the image does not decide between them.
@@ -62,7 +62,7 @@ double MisfitBoundPx(const PrintFinding& finding) {
 
 double PrintFinding::relative_sigma() const {
   return std::sqrt(location.covariance.topLeftCorner<3, 3>().trace()) /
-         location.camera_from_pattern.translation.norm();
+         location.camera_from_target.translation.norm();
 }
 
 DetectionChoice::DetectionChoice(double min_quality, const FindingObserver* observer,
@@ -106,11 +106,11 @@ bool DetectionChoice::IsClear() const {
   return best_ && best_->log_odds >= kClearLogOdds;
 }
 
-std::optional<LandingDetection> DetectionChoice::Detection() const {
+std::optional<TargetDetection> DetectionChoice::Detection() const {
   if (!best_) return std::nullopt;
-  LandingDetection detection;
+  TargetDetection detection;
   detection.center_px = best_->center_px;
-  detection.camera_from_pattern = best_->location.camera_from_pattern;
+  detection.camera_from_target = best_->location.camera_from_target;
   detection.covariance = best_->location.covariance;
   detection.method = best_->method;
   detection.quality = ProbabilityOf(best_->log_odds);
@@ -123,9 +123,9 @@ std::optional<LandingDetection> DetectionChoice::Detection() const {
   detection.diagnostics.seen = best_->seen;
   detection.diagnostics.calibration = best_->location.calibration;
   if (!mirror_) return detection;
-  detection.diagnostics.mirror_camera_from_pattern = mirror_->location.camera_from_pattern;
+  detection.diagnostics.mirror_camera_from_target = mirror_->location.camera_from_target;
   const Eigen::Matrix<double, 6, 1> difference =
-      Difference(detection.camera_from_pattern, *detection.diagnostics.mirror_camera_from_pattern);
+      Difference(detection.camera_from_target, *detection.diagnostics.mirror_camera_from_target);
   detection.covariance += kMirrorIsRight * difference * difference.transpose();
   return detection;
 }

@@ -41,7 +41,7 @@ class DetectionChoice {
 
   // Returns the best finding as a detection. When the image supports both mirror poses of one ring,
   // it includes the other pose too, and the covariance covers both.
-  std::optional<LandingDetection> Detection() const;
+  std::optional<TargetDetection> Detection() const;
 
  private:
   bool Replaces(const PrintFinding& finding);

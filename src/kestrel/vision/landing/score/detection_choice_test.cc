@@ -21,7 +21,7 @@ class DetectionChoiceTest : public ::testing::Test {
     return {min_quality, observer, &log_};
   }
 
-  LandingReport report_;
+  TargetReport report_;
   SearchLog log_{&report_};
 };
 
@@ -29,7 +29,7 @@ PrintFinding FindingAt(const Eigen::Vector2d& center_px, double log_odds) {
   PrintFinding finding;
   finding.kind = PrintKind::kByEdges;
   finding.method = DetectionMethod::kRing;
-  finding.location.camera_from_pattern = PrintPose({0.1, 0, 5}, 0.3, 1, 0.2);
+  finding.location.camera_from_target = PrintPose({0.1, 0, 5}, 0.3, 1, 0.2);
   finding.location.covariance = 1e-4 * Eigen::Matrix<double, 6, 6>::Identity();
   finding.location.edge_rms_px = 0.3;
   finding.center_px = center_px;
@@ -107,7 +107,7 @@ TEST_F(DetectionChoiceTest, ChoosesMostProbableFinding) {
     EXPECT_DOUBLE_EQ(detection->quality, ProbabilityOf(best->log_odds));
     EXPECT_EQ(detection->semi_major_px, 20);
     EXPECT_EQ(detection->diagnostics.misfit_px, best->location.misfit_px);
-    EXPECT_FALSE(detection->diagnostics.mirror_camera_from_pattern);
+    EXPECT_FALSE(detection->diagnostics.mirror_camera_from_target);
   }
 }
 
@@ -136,7 +136,7 @@ TEST_F(DetectionChoiceTest, AcceptsAllAtZeroAndNoneAtOne) {
 TEST_F(DetectionChoiceTest, ReportsMirrorPoseOfRing) {
   PrintFinding right = FindingAt({100, 100}, 3);
   PrintFinding mirror = FindingAt({100.5, 100}, 3.5);
-  mirror.location.camera_from_pattern = PrintPose({0.1, 0.02, 5.1}, 0.3, 1 + 3.14, 0.2);
+  mirror.location.camera_from_target = PrintPose({0.1, 0.02, 5.1}, 0.3, 1 + 3.14, 0.2);
   right.location.edge_rms_px = 0.2;
   mirror.location.edge_rms_px = 0.3;
   for (const bool right_first : {true, false}) {
@@ -144,13 +144,13 @@ TEST_F(DetectionChoiceTest, ReportsMirrorPoseOfRing) {
     choice.Add(right_first ? right : mirror);
     choice.Add(right_first ? mirror : right);
     const auto detection = choice.Detection();
-    ASSERT_TRUE(detection && detection->diagnostics.mirror_camera_from_pattern);
-    EXPECT_EQ(detection->camera_from_pattern.translation,
-              right.location.camera_from_pattern.translation);
-    EXPECT_EQ(detection->diagnostics.mirror_camera_from_pattern->translation,
-              mirror.location.camera_from_pattern.translation);
-    const Eigen::Vector3d away = mirror.location.camera_from_pattern.translation -
-                                 right.location.camera_from_pattern.translation;
+    ASSERT_TRUE(detection && detection->diagnostics.mirror_camera_from_target);
+    EXPECT_EQ(detection->camera_from_target.translation,
+              right.location.camera_from_target.translation);
+    EXPECT_EQ(detection->diagnostics.mirror_camera_from_target->translation,
+              mirror.location.camera_from_target.translation);
+    const Eigen::Vector3d away = mirror.location.camera_from_target.translation -
+                                 right.location.camera_from_target.translation;
     const Eigen::Matrix3d covariance = detection->covariance.topLeftCorner<3, 3>();
     EXPECT_LT(std::sqrt(away.dot(covariance.ldlt().solve(away))), 5);
     EXPECT_GT(away.norm() / 1e-2, 5) << "in its own covariance it is far off";
@@ -161,13 +161,13 @@ TEST_F(DetectionChoiceTest, IgnoresMuchWorseMirrorPose) {
   DetectionChoice choice = Choice(0.5);
   PrintFinding right = FindingAt({100, 100}, 8);
   PrintFinding bent = FindingAt({100.5, 100}, 1);
-  bent.location.camera_from_pattern = PrintPose({0.1, 0.02, 5.1}, 0.3, 1 + 3.14, 0.2);
+  bent.location.camera_from_target = PrintPose({0.1, 0.02, 5.1}, 0.3, 1 + 3.14, 0.2);
   bent.location.edge_rms_px = 0.1;
   choice.Add(bent);
   choice.Add(right);
   ASSERT_TRUE(choice.Detection());
   EXPECT_EQ(choice.Detection()->center_px, right.center_px);
-  EXPECT_FALSE(choice.Detection()->mirror_camera_from_pattern);
+  EXPECT_FALSE(choice.Detection()->mirror_camera_from_target);
 }
 
 // The search ends at a whole print, and at a partial one only where it determines the pose.

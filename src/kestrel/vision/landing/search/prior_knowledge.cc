@@ -19,8 +19,7 @@ constexpr double kWrongDistance = -2;
 
 }  // namespace
 
-PriorKnowledge::PriorKnowledge(const LandingHint& hint,
-                               const LandingPatternDetectorOptions& options,
+PriorKnowledge::PriorKnowledge(const TargetHint& hint, const LandingPatternDetectorOptions& options,
                                const CameraModel& camera)
     : hint_(hint),
       camera_(camera),

@@ -19,7 +19,7 @@ namespace kestrel {
 class PriorKnowledge {
  public:
   // 'hint' must outlive this.
-  PriorKnowledge(const LandingHint& hint, const LandingPatternDetectorOptions& options,
+  PriorKnowledge(const TargetHint& hint, const LandingPatternDetectorOptions& options,
                  const CameraModel& camera);
 
   // Returns the part of the image that the board may take when the centre has the standard
@@ -58,7 +58,7 @@ class PriorKnowledge {
  private:
   double ExpectedRingPx() const;
 
-  const LandingHint& hint_;
+  const TargetHint& hint_;
   const CameraModel& camera_;
   double radius_m_;
   double level_sigma_;

@@ -26,11 +26,11 @@ Vector3d UpTilted(double angle) {
 
 class PriorKnowledgeTest : public ::testing::Test {
  protected:
-  PriorKnowledge Of(const LandingHint& hint) const {
+  PriorKnowledge Of(const TargetHint& hint) const {
     return PriorKnowledge(hint, options_, camera_);
   }
-  static LandingHint CenterAt(const Vector3d& center) {
-    LandingHint hint;
+  static TargetHint CenterAt(const Vector3d& center) {
+    TargetHint hint;
     hint.center_in_camera = center;
     return hint;
   }
@@ -40,7 +40,7 @@ class PriorKnowledgeTest : public ::testing::Test {
 };
 
 TEST_F(PriorKnowledgeTest, IsEmptyWithoutHint) {
-  const LandingHint nothing;
+  const TargetHint nothing;
   const PriorKnowledge prior = Of(nothing);
   EXPECT_FALSE(prior.PartOfImage(0.5));
   EXPECT_FALSE(prior.PredictedRing());
@@ -61,7 +61,7 @@ TEST_F(PriorKnowledgeTest, PartOfImageContainsBoard) {
         random.Uniform(0, 0.5), random.Uniform(0, 6), random.Uniform(0, 6));
     Vector3d told = truth.translation;
     for (int k = 0; k < 2; ++k) told(k) += random.Uniform(-1, 1) * sigma_m;
-    const LandingHint hint = CenterAt(told);
+    const TargetHint hint = CenterAt(told);
     const auto part = Of(hint).PartOfImage(sigma_m);
     ASSERT_TRUE(part);
     const cv::Rect image(0, 0, camera_.width_px(), camera_.height_px());
@@ -80,15 +80,15 @@ TEST_F(PriorKnowledgeTest, PartOfImageContainsBoard) {
 TEST_F(PriorKnowledgeTest, InvalidHintGivesNoPart) {
   for (const Vector3d& center : {Vector3d(0, 0, 0), Vector3d(0, 0, -2), Vector3d(kNan, 0, 1),
                                  Vector3d(500, 0, 1), Vector3d(0, 1e9, 1e-9)}) {
-    const LandingHint hint = CenterAt(center);
+    const TargetHint hint = CenterAt(center);
     EXPECT_FALSE(Of(hint).PartOfImage(0.1)) << center.transpose();
   }
-  const LandingHint hint = CenterAt({0, 0, 3});
+  const TargetHint hint = CenterAt({0, 0, 3});
   EXPECT_FALSE(Of(hint).PartOfImage(kNan));
 }
 
 TEST_F(PriorKnowledgeTest, PredictsRingOnlyWithKnownPlaneFromAbove) {
-  LandingHint hint = CenterAt({0.1, 0, 3});
+  TargetHint hint = CenterAt({0.1, 0, 3});
   EXPECT_FALSE(Of(hint).PredictedRing()) << "nothing is known of its plane";
   hint.up_in_camera = UpTilted(0.2);
   const auto ring = Of(hint).PredictedRing();
@@ -104,7 +104,7 @@ TEST_F(PriorKnowledgeTest, PredictsRingOnlyWithKnownPlaneFromAbove) {
 TEST_F(PriorKnowledgeTest, SuitableStepsFindRingsOfPredictedSize) {
   // 220 px/m at 1 m: a ring of 22 px at 10 m, of 220 px at 1 m.
   for (const double distance : {1.0, 3.0, 10.0}) {
-    const LandingHint hint = CenterAt({0, 0, distance});
+    const TargetHint hint = CenterAt({0, 0, distance});
     const PriorKnowledge prior = Of(hint);
     const double ring_px = 220 / distance;
     int suits = 0;
@@ -118,21 +118,21 @@ TEST_F(PriorKnowledgeTest, SuitableStepsFindRingsOfPredictedSize) {
     EXPECT_GT(suits, 2) << distance;
     EXPECT_LT(suits, static_cast<int>(kSearchSteps)) << distance;
   }
-  LandingHint high;
+  TargetHint high;
   high.altitude_m = options_.max_partial_altitude_m + 1;
   EXPECT_FALSE(Of(high).Suits({0, SearchMethod::kCross}));
-  LandingHint low;
+  TargetHint low;
   low.altitude_m = 1;
   EXPECT_TRUE(Of(low).Suits({0, SearchMethod::kCross}));
 }
 
 TEST_F(PriorKnowledgeTest, WrongDistanceLowersOddsAndNoneRaisesThem) {
-  LandingHint hint = CenterAt({0, 0, 5});
+  TargetHint hint = CenterAt({0, 0, 5});
   hint.center_sigma_m = 0.2;
   EXPECT_EQ(Of(hint).LogOddsOfDistance({0, 0, 5.5}), 0);
   EXPECT_LT(Of(hint).LogOddsOfDistance({0, 0, 10}), -1);
   EXPECT_LT(Of(hint).LogOddsOfDistance({0, 0, 2}), -1);
-  LandingHint altitude;
+  TargetHint altitude;
   altitude.altitude_m = 6;
   EXPECT_EQ(Of(altitude).LogOddsOfDistance({1, 0, 6}), 0);
   EXPECT_LT(Of(altitude).LogOddsOfDistance({0, 0, 0.5}), -1);
@@ -142,7 +142,7 @@ TEST_F(PriorKnowledgeTest, WrongDistanceLowersOddsAndNoneRaisesThem) {
   // The effect of the hint is bounded, so the image can outweigh it.
   Random random(2);
   for (int trial = 0; trial < 300; ++trial) {
-    LandingHint any =
+    TargetHint any =
         CenterAt({random.Uniform(-9, 9), random.Uniform(-9, 9), random.Uniform(-9, 9)});
     any.altitude_m = trial % 7 == 0 ? kNan : random.Uniform(-600, 600);
     if (trial % 2) any.up_in_camera = UpTilted(random.Uniform(0, 6));
@@ -155,7 +155,7 @@ TEST_F(PriorKnowledgeTest, WrongDistanceLowersOddsAndNoneRaisesThem) {
 
 TEST_F(PriorKnowledgeTest, TestsLevelPoseFirst) {
   const CirclePose level{{0, 0, 5}, UpTilted(0)}, tilted{{0, 0, 5}, UpTilted(0.6)};
-  LandingHint hint;
+  TargetHint hint;
   hint.up_in_camera = UpTilted(0.05);
   const PriorKnowledge prior = Of(hint);
   const PriorKnowledge::Order first = prior.OrderOf({level, tilted});
@@ -168,18 +168,18 @@ TEST_F(PriorKnowledgeTest, TestsLevelPoseFirst) {
 
 TEST_F(PriorKnowledgeTest, KeepsBothPosesWhenAttitudeIsUndecided) {
   const CirclePose a{{0, 0, 5}, UpTilted(0.3)}, b{{0, 0, 5}, UpTilted(-0.3)};
-  const LandingHint nothing;
+  const TargetHint nothing;
   EXPECT_FALSE(Of(nothing).OrderOf({a, b}).one_is_right);
-  LandingHint between;
+  TargetHint between;
   between.up_in_camera = UpTilted(0.01);
   EXPECT_FALSE(Of(between).OrderOf({a, b}).one_is_right) << "one is as level as the other";
-  LandingHint upside_down;
+  TargetHint upside_down;
   upside_down.up_in_camera = -UpTilted(0.3);
   EXPECT_FALSE(Of(upside_down).OrderOf({a, b}).one_is_right) << "neither is level";
   // For any hint, the order contains both poses.
   Random random(3);
   for (int trial = 0; trial < 100; ++trial) {
-    LandingHint any;
+    TargetHint any;
     any.up_in_camera = trial == 0 ? Vector3d(kNan, 0, 0) : UpTilted(random.Uniform(0, 6));
     const auto order = Of(any).OrderOf({a, b});
     EXPECT_EQ(order.poses[0] + order.poses[1], 1);
@@ -187,7 +187,7 @@ TEST_F(PriorKnowledgeTest, KeepsBothPosesWhenAttitudeIsUndecided) {
 }
 
 TEST_F(PriorKnowledgeTest, ContradictoryPlaneHasNoPrior) {
-  LandingHint hint;
+  TargetHint hint;
   hint.up_in_camera = UpTilted(0.1);
   const auto prior = Of(hint).LevelPrior(UpTilted(0.3));
   ASSERT_TRUE(prior);

@@ -277,7 +277,7 @@ std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
       variance * system.h.ldlt().solve(Eigen::Matrix<double, kUnknowns, kUnknowns>::Identity());
   if (!covariance.allFinite()) return std::nullopt;
   Fit fit;
-  fit.location.camera_from_pattern = state.pose;
+  fit.location.camera_from_target = state.pose;
   fit.location.covariance = covariance.topLeftCorner<kPoseUnknowns, kPoseUnknowns>();
   fit.location.gray_rms = std::sqrt(system.squares / system.count);
   state.noise_variance = NoiseVariance(workspace);

@@ -109,7 +109,7 @@ class SmallPatternFitter {
   };
 
   struct Start {
-    RigidTransform camera_from_pattern;
+    RigidTransform camera_from_target;
     double correlation;  // correlation of image and print under a good lens's blur, -1 to 1
   };
   // Returns the element of 'scales' at which ring and white fit the image best. The ring lies as

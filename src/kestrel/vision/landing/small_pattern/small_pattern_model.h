@@ -25,10 +25,10 @@ inline constexpr int kEnoughToStart = 600;
 inline constexpr int kEnoughToSeparateInk = 2400;  // to distinguish ink from light by its width
 
 // Returns the matrix from rays to homogeneous coordinates of the plane of a pose.
-inline Eigen::Matrix3d PlaneFromRay(const RigidTransform& camera_from_pattern) {
-  const Eigen::Matrix3d rotation = camera_from_pattern.rotation.toRotationMatrix();
+inline Eigen::Matrix3d PlaneFromRay(const RigidTransform& camera_from_target) {
+  const Eigen::Matrix3d rotation = camera_from_target.rotation.toRotationMatrix();
   Eigen::Matrix3d basis;
-  basis << rotation.col(0), rotation.col(1), camera_from_pattern.translation;
+  basis << rotation.col(0), rotation.col(1), camera_from_target.translation;
   return basis.inverse();
 }
 

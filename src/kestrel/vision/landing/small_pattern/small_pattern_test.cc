@@ -33,7 +33,7 @@ class SmallPatternTest : public ::testing::Test {
     constexpr std::array<double, 6> kTurns{0, 0.26, 0.52, 0.79, 1.05, 1.31};
     if (!fitter_.FindScale(image, ring, kOneScale, &workspace_)) return std::nullopt;
     const auto start = fitter_.FindStart(ring, 1, kTurns, &workspace_);
-    return fitter_.Refine(image, start.camera_from_pattern, Light::kEven, 8, &workspace_);
+    return fitter_.Refine(image, start.camera_from_target, Light::kEven, 8, &workspace_);
   }
   // Fits a print at its true pose, so that light and blur change little.
   std::optional<SmallPatternFitter::Fit> FitInPlace(const cv::Mat& image,
@@ -57,7 +57,7 @@ class SmallPatternTest : public ::testing::Test {
     for (int trial = 0; trial < kTrials; ++trial) {
       const auto fit = Fit(AddNoise(image, noise, &random), truth);
       if (!fit) return Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
-      const auto error = PoseError(fit->location.camera_from_pattern, truth);
+      const auto error = PoseError(fit->location.camera_from_target, truth);
       for (int k = 0; k < 3; ++k) sum(k) += error(k) * error(k) / fit->location.covariance(k, k);
     }
     return (sum / kTrials).sqrt();
@@ -97,14 +97,14 @@ TEST_F(SmallPatternTest, LocatesRingsOf13To28Pixels) {
     const cv::Mat image = AddNoise(Draw(SpokedPrint(pattern_, 4), truth), 2, &random);
     const auto fit = Fit(image, truth);
     ASSERT_TRUE(fit) << diameter_px;
-    const Eigen::Vector3d& found = fit->location.camera_from_pattern.translation;
+    const Eigen::Vector3d& found = fit->location.camera_from_target.translation;
     const double distance = truth.translation.norm();
     EXPECT_LT((found / found.norm() - truth.translation / distance).norm() * 220, 0.15)
         << "pixels, ring of " << diameter_px;
     EXPECT_NEAR(found.norm() / distance, 1, 0.02) << diameter_px;
     EXPECT_GT(fit->correlation, 0.95) << diameter_px;
     EXPECT_GT(Agreement(*fit), 0.75) << diameter_px;
-    const double arm = PoseError(fit->location.camera_from_pattern, truth)
+    const double arm = PoseError(fit->location.camera_from_target, truth)
                            .tail<3>()
                            .dot(truth.rotation * Eigen::Vector3d::UnitZ());
     EXPECT_LT(std::abs(arm), 0.1) << diameter_px;
@@ -144,7 +144,7 @@ TEST_F(SmallPatternTest, OverexposureDoesNotMovePose) {
   image.convertTo(image, CV_8UC1, 1.9, 0);  // white at 380, saturated
   const auto fit = Fit(image, truth);
   ASSERT_TRUE(fit);
-  EXPECT_NEAR(fit->location.camera_from_pattern.translation.norm() / truth.translation.norm(), 1,
+  EXPECT_NEAR(fit->location.camera_from_target.translation.norm() / truth.translation.norm(), 1,
               0.03);
 }
 
@@ -254,7 +254,7 @@ TEST_F(SmallPatternTest, HighlightDoesNotSpoilFit) {
     const auto fit = Fit(image, truth);
     ASSERT_TRUE(fit) << diameter_px;
     const double distance = truth.translation.norm();
-    EXPECT_NEAR(fit->location.camera_from_pattern.translation.norm() / distance, 1, 0.02)
+    EXPECT_NEAR(fit->location.camera_from_target.translation.norm() / distance, 1, 0.02)
         << diameter_px;
   }
 }

@@ -97,7 +97,7 @@ void NearPrintVerifier::Test(const RingCandidate& ring) {
       const auto refined = RefineRing(ring.poses[pose], farther * ring.reach_px, kRefinements);
       if (!refined) continue;
       is_whole |= refined->is_whole;
-      const auto print = FindCross(refined->camera_from_pattern, diameter_px);
+      const auto print = FindCross(refined->camera_from_target, diameter_px);
       has_cross |= print.has_value();
       if (print && TestPrint(*print, ring.diameters_px, ring.reach_px, ring.poses, order)) return;
     }
@@ -115,7 +115,7 @@ void NearPrintVerifier::TestPredicted(const CirclePose& predicted,
   constexpr int kIterations = 3;
   const auto refined = RefineRing(predicted, kPredictedReach * predicted_px.x(), kIterations);
   if (!refined) return;
-  const RigidTransform& pose = refined->camera_from_pattern;
+  const RigidTransform& pose = refined->camera_from_target;
   const CirclePose ring{pose.translation, pose.rotation * Eigen::Vector3d::UnitZ()};
   const Eigen::Vector2d diameters_px =
       RingDiametersPx(search_.models.camera, search_.models.options.pattern.outer_radius_m(), ring);
@@ -177,7 +177,7 @@ bool NearPrintVerifier::TestPrint(const Hypothesis& print, const Eigen::Vector2d
   search_.log.Reach(LandingStage::kMatch, "ring and cross have too few edges");
   const ImageRegion region = search_.image.RegionAt(ViewLevel(diameters_px.x()));
   const cv::Mat image = search_.image.At(region.level);
-  PrintAlignment alignment{PlaneWarp(search_.models.camera, print.camera_from_pattern,
+  PrintAlignment alignment{PlaneWarp(search_.models.camera, print.camera_from_target,
                                      search_.models.locator.outline().radius_m()),
                            {}};
   const double min_step = std::max(GrayContrast::kLeastEdge, kMinStep * print.contrast);
@@ -235,7 +235,7 @@ bool NearPrintVerifier::Locate(const PrintAlignment& alignment, const RigidTrans
   finding.doubts[PrintDoubt::kMisfit] = LogShare(location->edge_rms_px, MeanDiameter(finding));
   DoubtView(finding.diameters_px, finding.relative_sigma(), &finding.doubts);
   finding.log_odds = PrintLogOdds(finding.kind, finding.doubts);
-  finding.told = search_.prior.LogOddsOfDistance(location->camera_from_pattern.translation);
+  finding.told = search_.prior.LogOddsOfDistance(location->camera_from_target.translation);
   return search_.choice.Add(finding);
 }
 

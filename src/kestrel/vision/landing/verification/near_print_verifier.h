@@ -39,7 +39,7 @@ class NearPrintVerifier {
  private:
   // A possible print: a ring with a cross inside, or a cross alone.
   struct Hypothesis {
-    RigidTransform camera_from_pattern;
+    RigidTransform camera_from_target;
     double contrast;  // contrast of ring and white, gray values
   };
 

@@ -86,10 +86,10 @@ SmallPrintVerifier::Outcome SmallPrintVerifier::TestPose(const CirclePose& pose,
     return search_.models.small.Refine(search_.image.whole(), initial, light, kFitIterations,
                                        &buffers_.gray_values, level);
   };
-  const auto in_even = fit(start.camera_from_pattern, Light::kEven);
+  const auto in_even = fit(start.camera_from_target, Light::kEven);
   if (!in_even || in_even->correlation < kMinCorrelationOfEither) return Outcome::kNothing;
-  const RigidTransform& fitted = in_even->location.camera_from_pattern;
-  if (!Agrees(start.camera_from_pattern, fitted, search_.models.options.pattern.outer_radius_m())) {
+  const RigidTransform& fitted = in_even->location.camera_from_target;
+  if (!Agrees(start.camera_from_target, fitted, search_.models.options.pattern.outer_radius_m())) {
     return Outcome::kOtherPose;
   }
   search_.log.Reach(LandingStage::kLocate, "it is too small to tell");
@@ -106,7 +106,7 @@ SmallPrintVerifier::Outcome SmallPrintVerifier::TestPose(const CirclePose& pose,
 std::optional<PrintFinding> SmallPrintVerifier::FindingOf(const SmallPatternFitter::Fit& fit,
                                                           Light light) const {
   constexpr double kSizeTolerance = 0.75;  // so few pixels hardly determine it
-  const RigidTransform& pose = fit.location.camera_from_pattern;
+  const RigidTransform& pose = fit.location.camera_from_target;
   PrintFinding finding;
   finding.kind = PrintKind::kAsAWhole;
   finding.location = fit.location;

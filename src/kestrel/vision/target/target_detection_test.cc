@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/vision/target/landing_detection.h"
+#include "kestrel/vision/target/target_detection.h"
 
 #include <set>
 #include <string>
@@ -34,7 +34,7 @@ TEST(SeenParts, KeepsPartsUpToCapacity) {
 }
 
 TEST(MissInWords, ReportsInViewOnlyForPadLikeFindings) {
-  LandingReport report;
+  TargetReport report;
   report.reason = "its own reason";
   for (const LandingStage stage :
        {LandingStage::kAreas, LandingStage::kRing, LandingStage::kCross, LandingStage::kMatch}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/vision/target/landing_detection.h"
+#include "kestrel/vision/target/target_detection.h"
 
 namespace kestrel {
 
@@ -41,7 +41,7 @@ const char* ToString(LandingStage stage) {
   return "";
 }
 
-std::string_view MissInWords(const LandingReport& report, bool is_expected) {
+std::string_view MissInWords(const TargetReport& report, bool is_expected) {
   // An image without contrast, or one that is none of this camera, is no view of the ground at all.
   const bool is_view = report.reached > LandingStage::kBinarize;
   const bool is_like_pad = report.reached >= LandingStage::kLocate || report.is_another_pad;

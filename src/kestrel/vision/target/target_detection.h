@@ -48,11 +48,11 @@ const char* ToString(LandingStage stage);  // "binarize", "areas", ... "found"
 
 // Prior knowledge about a frame, from a tracker or from the navigation. Everything is optional.
 // Without a hint the whole image is searched.
-struct LandingHint {
+struct TargetHint {
   // Expected centre of the pattern (m), and its standard deviation per axis.
   std::optional<Eigen::Vector3d> center_in_camera;
   double center_sigma_m = 0.5;
-  // Expected orientation of the pad, camera_from_pattern, one of those under which it looks the
+  // Expected orientation of the pad, camera_from_target, one of those under which it looks the
   // same, and which pad it is. Both come from the last detection, if that had a heading and an id.
   std::optional<Eigen::Quaterniond> rotation_in_camera;
   std::optional<std::int32_t> id;
@@ -99,16 +99,16 @@ struct DetectionDiagnostics {
   std::optional<SeenPrint> seen;    // where the image shows the print's outlines
   CalibrationEvidence calibration;  // evidence of the edges about the calibration
   // The other pose under which the print looks the same, when the image cannot tell the two apart.
-  std::optional<RigidTransform> mirror_camera_from_pattern;
+  std::optional<RigidTransform> mirror_camera_from_target;
 
   // True when lens or print are not as described: pose and lens predict the print elsewhere than
   // the image shows it.
   bool is_misfit() const { return misfit_px > misfit_bound_px; }
 };
 
-struct LandingDetection {
-  Eigen::Vector2d center_px;           // origin of frame P; may be out of view
-  RigidTransform camera_from_pattern;  // pose of the pad (frame P, see TargetShape) in the camera
+struct TargetDetection {
+  Eigen::Vector2d center_px;          // origin of frame P; may be out of view
+  RigidTransform camera_from_target;  // pose of the pad (frame P, see TargetShape) in the camera
   // Covariance of the pose error: rows 0 to 2 translation in the camera frame (m^2), 3 to 5
   // rotation vector in the camera frame (rad^2).
   Eigen::Matrix<double, 6, 6> covariance;
@@ -134,8 +134,8 @@ struct SearchDiagnostics {
   int next_step = 0;
 };
 
-struct LandingReport {
-  std::optional<LandingDetection> detection;
+struct TargetReport {
+  std::optional<TargetDetection> detection;
   LandingStage reached = LandingStage::kBinarize;  // kFound, or where the best candidate fell
   std::string_view reason;                         // why it failed, static text; empty when found
   bool is_another_pad = false;  // a pad of this kind is in view, but it is not this one
@@ -145,6 +145,6 @@ struct LandingReport {
 // Returns in words why there is no detection, in those of the kind of pad: "not in view" unless a
 // candidate looked like the pad, or there is another pad. 'is_expected': the pad was there just
 // before, so that the stage where the best candidate fell is worth saying anyway.
-std::string_view MissInWords(const LandingReport& report, bool is_expected = false);
+std::string_view MissInWords(const TargetReport& report, bool is_expected = false);
 
 }  // namespace kestrel
