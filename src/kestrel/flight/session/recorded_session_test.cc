@@ -102,7 +102,7 @@ TEST_F(RecordedSessionTest, FrameFollowsPosesItNeeds) {
 TEST(RecordedSessionOnGimbalTest, FrameFollowsReportsItNeeds) {
   auto source = std::make_unique<ThreeFrames>();
   for (const double seconds : {0.8, 1.6, 2.4, 3.2})
-    source->reports.push_back({At(seconds), {}, {}});
+    source->reports.push_back({At(seconds), Eigen::Quaterniond::Identity()});
   OpenedSource opened;
   opened.source = std::move(source);
   opened.calibration.intrinsics.width_px = kWidth_px;

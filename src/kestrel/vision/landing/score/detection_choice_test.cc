@@ -167,7 +167,7 @@ TEST_F(DetectionChoiceTest, IgnoresMuchWorseMirrorPose) {
   choice.Add(right);
   ASSERT_TRUE(choice.Detection());
   EXPECT_EQ(choice.Detection()->center_px, right.center_px);
-  EXPECT_FALSE(choice.Detection()->mirror_camera_from_target);
+  EXPECT_FALSE(choice.Detection()->diagnostics.mirror_camera_from_target);
 }
 
 // The search ends at a whole print, and at a partial one only where it determines the pose.
