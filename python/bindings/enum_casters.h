@@ -60,7 +60,8 @@ struct Words<TrackState>
 template <>
 struct Words<PoseLookup>
     : WordsByToString<PoseLookup, PoseLookup::kFound, PoseLookup::kEmpty, PoseLookup::kTooOld,
-                      PoseLookup::kTooNew, PoseLookup::kGap, PoseLookup::kPredicted> {
+                      PoseLookup::kTooNew, PoseLookup::kGap, PoseLookup::kPredicted,
+                      PoseLookup::kNoGimbal> {
   static constexpr char kName[] = "PoseLookup";
 };
 template <>

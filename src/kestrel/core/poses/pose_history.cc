@@ -50,6 +50,8 @@ const char* ToString(PoseLookup lookup) {
       return "gap";
     case PoseLookup::kPredicted:
       return "predicted";
+    case PoseLookup::kNoGimbal:
+      return "no report of the gimbal";
   }
   return "";
 }

@@ -63,8 +63,9 @@ enum class PoseLookup {
   kTooNew,     // after the newest sample
   kGap,        // the samples around it are too far apart
   kPredicted,  // after the newest sample, and predicted from it
+  kNoGimbal,   // there is one, but the gimbal of the camera has not reported its attitude
 };
-// "found", "no poses", "too old", "too new", "gap", "predicted"
+// "found", "no poses", "too old", "too new", "gap", "predicted", "no report of the gimbal"
 const char* ToString(PoseLookup lookup);
 
 // The latest poses of the UAV, in order of time, with interpolation. Bounded: the newest sample

@@ -232,6 +232,7 @@ void Examination::SummarizeLink(Time end, LinkObservations* link) const {
   link->listened_s = listening_ ? ToSeconds(end - *listening_) : 0;
   link->attitudes = attitudes_;
   link->positions = positions_;
+  if (parts_.calibration.gimbal) link->gimbal_reports = gimbal_reports_;
   link->attitude_age_s = ToSeconds(end - attitude_time_);
   link->position_age_s = ToSeconds(end - position_time_);
   link->has_good_position = autopilot.is_position_good(end);

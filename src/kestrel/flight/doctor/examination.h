@@ -39,7 +39,10 @@ class Examination {
   // Takes a pose of the autopilot, on the local clock, from its listener. Called by the thread that
   // calls Run.
   void TakePose(const PoseSample& pose) { events_.Push(pose); }
-  void TakeGimbal(const GimbalSample& report) { events_.Push(report); }
+  void TakeGimbal(const GimbalSample& report) {
+    events_.Push(report);
+    gimbal_reports_ += listening_ ? 1 : 0;
+  }
   // Takes an event from the autopilot's listener. Called by the same thread.
   void TakeEvent(const AutopilotEvent& event);
 
@@ -83,6 +86,7 @@ class Examination {
   bool hears_signed_ = false;
   bool is_one_way_ = false;  // TIMESYNC is not answered
   int attitudes_ = 0;
+  int gimbal_reports_ = 0;
   int positions_ = 0;
   std::optional<Time> heard_;      // time of the first message
   std::optional<Time> listening_;  // time since which the streams are counted

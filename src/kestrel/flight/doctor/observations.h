@@ -98,7 +98,8 @@ struct LinkObservations {
   double listened_s = 0;  // time for which the streams were counted
   int attitudes = 0;      // messages in that time
   int positions = 0;
-  double attitude_age_s = 0;  // age of the newest attitude at the end
+  std::optional<int> gimbal_reports;  // in that time; nothing: the camera is on no gimbal
+  double attitude_age_s = 0;          // age of the newest attitude at the end
   double position_age_s = 0;
   std::optional<bool> has_good_position;  // according to the autopilot's own estimator
   std::uint64_t lost_packets = 0;

@@ -44,7 +44,7 @@ SimulatedGimbal::SimulatedGimbal(const GimbalOptions& options, Motion world_from
       body_from_pivot_(body_from_pivot),
       begin_s_(begin_s) {
   const double step_s = 1 / kSteps_hz;
-  const double most = Radians(options.max_turn_deg_s) * step_s;
+  const double most = Radians(options.max_turn_dps) * step_s;
   const auto wanted = [&](double time_s) {
     const RigidTransform world_from_pivot = world_from_body_(time_s) * body_from_pivot_;
     return AnglesTo(target(time_s) - world_from_pivot.translation,

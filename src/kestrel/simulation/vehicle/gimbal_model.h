@@ -18,7 +18,7 @@ namespace kestrel {
 struct GimbalOptions {
   double rate_hz = 0;
   double lag_s = 0.1;
-  double max_turn_deg_s = 90;
+  double max_turn_dps = 90;
   double noise_deg = 0.05;
   double stamp_delay_s = 0.02;
   std::string yaw_frame = "vehicle";
@@ -27,7 +27,7 @@ struct GimbalOptions {
     visit("rate_hz", self.rate_hz, Range{0, 200},
           "reports per second; 0: the camera is fixed to the UAV");
     visit("lag_s", self.lag_s, Range{0.01, 2}, "time constant with which it follows its target");
-    visit("max_turn_deg_s", self.max_turn_deg_s, Range{1, 1000}, "fastest turn of a motor");
+    visit("max_turn_dps", self.max_turn_dps, Range{1, 1000}, "fastest turn of a motor");
     visit("noise_deg", self.noise_deg, Range{0, 10}, "noise of the reported attitude, per axis");
     visit("stamp_delay_s", self.stamp_delay_s, Range{-1, 1},
           "time after the attitude at which its report is stamped");

@@ -42,7 +42,7 @@ TEST(SimulatedGimbalTest, LooksAtStandingTargetWhateverTheBodyDoes) {
 
 TEST(SimulatedGimbalTest, TurnsNoFasterThanItsMotors) {
   GimbalOptions options = Reporting("earth");
-  options.max_turn_deg_s = 30;
+  options.max_turn_dps = 30;
   const auto jumping = [](double time_s) { return Vector3d(time_s < 1 ? 20 : -20, 20, 0); };
   const SimulatedGimbal gimbal(options, Hovering, {}, jumping, 0, 8);
   const auto turned = [&](double from_s, double to_s) {

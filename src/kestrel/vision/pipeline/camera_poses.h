@@ -46,7 +46,9 @@ class CameraPoses {
   PoseLookup Check(Time image_time) const {
     const PoseLookup lookup = poses_.Check(image_time + clock_offset_);
     const bool is_predicted = lookup == PoseLookup::kTooNew && Predict(image_time);
-    return is_predicted ? PoseLookup::kPredicted : lookup;
+    const PoseLookup found = is_predicted ? PoseLookup::kPredicted : lookup;
+    const bool has_pose = found == PoseLookup::kFound || found == PoseLookup::kPredicted;
+    return gimbal_ && has_pose && !GimbalAt(image_time) ? PoseLookup::kNoGimbal : found;
   }
 
   // Returns the camera's pose at a time on the images' clock; nothing without a mount, a pose, or
@@ -76,9 +78,12 @@ class CameraPoses {
                       body.uncertainty};
   }
 
+  std::optional<GimbalAttitude> GimbalAt(Time image_time) const {
+    return gimbal_history_.At(image_time + clock_offset_ - gimbal_->clock_offset, kMaxGimbalAhead);
+  }
+
   std::optional<CameraPose> OnGimbal(const BodyPose& body, Time image_time) const {
-    const Time gimbal_time = image_time + clock_offset_ - gimbal_->clock_offset;
-    const auto attitude = gimbal_history_.At(gimbal_time, kMaxGimbalAhead);
+    const auto attitude = GimbalAt(image_time);
     if (!attitude) return std::nullopt;
     PoseUncertainty uncertainty = body.uncertainty;
     uncertainty.attitude_rad = std::hypot(uncertainty.attitude_rad, attitude->sigma_rad);
