@@ -89,7 +89,7 @@ TEST(CalibrationMount, RefusesIncompleteGimbals) {
   EXPECT_THAT(error_of(fmt::format("T_GS: {}\ngimbal: ../../etc\n", kOnPlatform)),
               HasSubstr("expected the name of a folder"));
   EXPECT_THAT(error_of(fmt::format("T_GS: {}\ngimbal: {{device_id: 1}}\n", kOnPlatform)),
-              HasSubstr("'gimbal.T_BG'"));
+              HasSubstr("'gimbal' has no key 'T_BG'"));
   EXPECT_THAT(error_of(fmt::format("T_BS: {0}\nT_GS: {0}\ngimbal: {{T_BG: {0}}}\n", kPivot)),
               HasSubstr("stands beside a mount on the body"));
   EXPECT_THAT(error_of(fmt::format("T_GS: {0}\ngimbal: {{T_BG: {0}, device_id: 300}}\n", kPivot)),

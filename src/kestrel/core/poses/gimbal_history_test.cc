@@ -14,58 +14,58 @@ namespace {
 
 using std::chrono::milliseconds;
 
-Time At(int ms) { return Time(milliseconds(ms)); }
+Time AtMs(int ms) { return Time(milliseconds(ms)); }
 
 Eigen::Quaterniond Pitched(double degrees) {
   return RotationBy(Radians(degrees) * Eigen::Vector3d::UnitY());
 }
 
 GimbalSample Report(int ms, double pitch_deg, YawFrame frame = YawFrame::kVehicle) {
-  return {At(ms), Pitched(pitch_deg), frame};
+  return {AtMs(ms), Pitched(pitch_deg), frame};
 }
 
 TEST(GimbalHistoryTest, InterpolatesBetweenReports) {
   GimbalHistory history(8);
   history.Add(Report(0, 10));
   history.Add(Report(200, 30));
-  const auto attitude = history.At(At(50), {});
+  const auto attitude = history.At(AtMs(50), {});
   ASSERT_TRUE(attitude);
   EXPECT_LT(attitude->level_from_platform.angularDistance(Pitched(15)), 1e-9);
   EXPECT_EQ(attitude->yaw_frame, YawFrame::kVehicle);
   EXPECT_NEAR(attitude->sigma_rad, 0.5 * 0.05 * 0.15, 1e-9);
-  EXPECT_EQ(history.At(At(200), {})->sigma_rad, 0);
+  EXPECT_EQ(history.At(AtMs(200), {})->sigma_rad, 0);
 }
 
 TEST(GimbalHistoryTest, ContinuesMotionWithGrowingUncertainty) {
   GimbalHistory history(8);
   history.Add(Report(0, 10));
   history.Add(Report(100, 14));
-  const auto soon = history.At(At(150), milliseconds(300));
-  const auto later = history.At(At(400), milliseconds(300));
+  const auto soon = history.At(AtMs(150), milliseconds(300));
+  const auto later = history.At(AtMs(400), milliseconds(300));
   ASSERT_TRUE(soon && later);
   EXPECT_LT(soon->level_from_platform.angularDistance(Pitched(16)), 1e-9);
   EXPECT_LT(later->level_from_platform.angularDistance(Pitched(26)), 1e-9);
   EXPECT_GT(later->sigma_rad, 10 * soon->sigma_rad);
-  EXPECT_FALSE(history.At(At(401), milliseconds(300)));
+  EXPECT_FALSE(history.At(AtMs(401), milliseconds(300)));
 }
 
 TEST(GimbalHistoryTest, HasNoAttitudeBeforeAndBetweenDistantReports) {
   GimbalHistory history(8);
-  EXPECT_FALSE(history.At(At(0), milliseconds(100)));
+  EXPECT_FALSE(history.At(AtMs(0), milliseconds(100)));
   history.Add(Report(100, 0));
-  EXPECT_FALSE(history.At(At(150), milliseconds(100)));  // one report shows no motion
+  EXPECT_FALSE(history.At(AtMs(150), milliseconds(100)));  // one report shows no motion
   history.Add(Report(2000, 0));
-  EXPECT_FALSE(history.At(At(50), {}));
-  EXPECT_FALSE(history.At(At(1000), {}));
+  EXPECT_FALSE(history.At(AtMs(50), {}));
+  EXPECT_FALSE(history.At(AtMs(1000), {}));
 }
 
 TEST(GimbalHistoryTest, HasNoAttitudeWhereYawFrameChanges) {
   GimbalHistory history(8);
   history.Add(Report(0, 0, YawFrame::kVehicle));
   history.Add(Report(100, 0, YawFrame::kEarth));
-  EXPECT_FALSE(history.At(At(50), {}));
+  EXPECT_FALSE(history.At(AtMs(50), {}));
   history.Add(Report(200, 0, YawFrame::kEarth));
-  EXPECT_TRUE(history.At(At(150), {}));
+  EXPECT_TRUE(history.At(AtMs(150), {}));
 }
 
 TEST(GimbalHistoryTest, RejectsInvalidAndOldReports) {
@@ -82,9 +82,9 @@ TEST(GimbalHistoryTest, RejectsInvalidAndOldReports) {
 TEST(GimbalHistoryTest, KeepsNewestReports) {
   GimbalHistory history(3);
   for (int i = 0; i < 10; ++i) history.Add(Report(100 * i, i));
-  EXPECT_FALSE(history.At(At(650), {}));
-  ASSERT_TRUE(history.At(At(750), {}));
-  EXPECT_LT(history.At(At(850), {})->level_from_platform.angularDistance(Pitched(8.5)), 1e-9);
+  EXPECT_FALSE(history.At(AtMs(650), {}));
+  ASSERT_TRUE(history.At(AtMs(750), {}));
+  EXPECT_LT(history.At(AtMs(850), {})->level_from_platform.angularDistance(Pitched(8.5)), 1e-9);
 }
 
 }  // namespace

@@ -37,6 +37,7 @@ class FlightExaminationTest : public ::testing::Test {
     observation.time = FrameTime(i);
     observation.detect_time = milliseconds(3);
     observation.world_from_camera = world_from_body * *calibration_.body_from_camera;
+    observation.camera_from_body = calibration_.body_from_camera->Inverse();
     TargetDetection& detection = observation.report.detection.emplace();
     detection.camera_from_target = (world_from_body * true_mount).Inverse();
     detection.semi_minor_px = 50;

@@ -17,7 +17,7 @@ constexpr double kHeading = 0.8;
 constexpr double kPitch = 1.1;  // below the horizon
 constexpr Duration kGimbalOffset = milliseconds(-50);
 
-Time At(int ms) { return Time(milliseconds(ms)); }
+Time AtMs(int ms) { return Time(milliseconds(ms)); }
 
 Eigen::Quaterniond Turned(double angle, const Vector3d& axis) { return RotationBy(angle * axis); }
 
@@ -38,7 +38,7 @@ CameraPoses Poses(const CameraCalibration& calibration) {
   CameraPoses poses(calibration, 256, milliseconds(200), Duration::zero(), Duration::zero());
   for (int ms = 0; ms <= 2000; ms += 20) {
     poses.Add(PoseSample{
-        At(ms),
+        AtMs(ms),
         {Turned(kHeading, Vector3d::UnitZ()) * Turned(0.2, Vector3d::UnitX()), {0, 0, 10}}});
   }
   return poses;
@@ -47,7 +47,7 @@ CameraPoses Poses(const CameraCalibration& calibration) {
 void AddReports(YawFrame frame, CameraPoses* poses) {
   const double yaw = frame == YawFrame::kEarth ? kHeading : 0;
   for (int ms = 0; ms <= 1000; ms += 100) {
-    poses->Add(GimbalSample{At(ms) - kGimbalOffset,
+    poses->Add(GimbalSample{AtMs(ms) - kGimbalOffset,
                             Turned(yaw, Vector3d::UnitZ()) * Turned(kPitch, Vector3d::UnitY()),
                             frame});
   }
@@ -57,7 +57,7 @@ TEST(CameraPosesTest, GimbalKeepsOpticalAxisWhileBodyLeans) {
   for (const YawFrame frame : {YawFrame::kEarth, YawFrame::kVehicle}) {
     CameraPoses poses = Poses(OnGimbal());
     AddReports(frame, &poses);
-    const auto pose = poses.At(At(510));
+    const auto pose = poses.At(AtMs(510));
     ASSERT_TRUE(pose);
     const Vector3d axis = pose->world_from_camera.rotation * Vector3d::UnitZ();
     const Vector3d expected(std::cos(kHeading) * std::cos(kPitch),
@@ -65,14 +65,14 @@ TEST(CameraPosesTest, GimbalKeepsOpticalAxisWhileBodyLeans) {
     EXPECT_LT((axis - expected).norm(), 1e-9) << ToString(frame);
     const RigidTransform world_from_body = pose->world_from_camera * pose->camera_from_body;
     EXPECT_LT((world_from_body.translation - Vector3d(0, 0, 10)).norm(), 1e-9);
-    EXPECT_EQ(poses.Check(At(510)), PoseLookup::kFound);
+    EXPECT_EQ(poses.Check(AtMs(510)), PoseLookup::kFound);
   }
 }
 
 TEST(CameraPosesTest, UncertaintyGrowsAfterNewestReport) {
   CameraPoses poses = Poses(OnGimbal());
   AddReports(YawFrame::kVehicle, &poses);
-  const auto between = poses.At(At(950)), after = poses.At(At(1200));
+  const auto between = poses.At(AtMs(950)), after = poses.At(AtMs(1200));
   ASSERT_TRUE(between && after);
   EXPECT_LT(between->uncertainty.attitude_rad, 0.002);
   EXPECT_GT(after->uncertainty.attitude_rad, 0.02);
@@ -80,12 +80,12 @@ TEST(CameraPosesTest, UncertaintyGrowsAfterNewestReport) {
 
 TEST(CameraPosesTest, ReportsSilentGimbal) {
   CameraPoses poses = Poses(OnGimbal());
-  EXPECT_FALSE(poses.At(At(500)));
-  EXPECT_EQ(poses.Check(At(500)), PoseLookup::kNoGimbal);
+  EXPECT_FALSE(poses.At(AtMs(500)));
+  EXPECT_EQ(poses.Check(AtMs(500)), PoseLookup::kNoGimbal);
   AddReports(YawFrame::kVehicle, &poses);
-  EXPECT_TRUE(poses.At(At(500)));
-  EXPECT_FALSE(poses.At(At(1500)));
-  EXPECT_EQ(poses.Check(At(1500)), PoseLookup::kNoGimbal);
+  EXPECT_TRUE(poses.At(AtMs(500)));
+  EXPECT_FALSE(poses.At(AtMs(1500)));
+  EXPECT_EQ(poses.Check(AtMs(1500)), PoseLookup::kNoGimbal);
 }
 
 }  // namespace
