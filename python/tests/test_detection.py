@@ -157,7 +157,7 @@ def test_all_tags_of_an_image_are_found(tag_image):
     assert [(tag.family, tag.id) for tag in tags] == [("tag36h11", 3)] * 2
     assert tags[0].corners_px.shape == (4, 2) and tags[0].decision_margin > 10
     apart = np.abs(tags[0].corners_px - tags[1].corners_px).max(axis=0)
-    np.testing.assert_allclose(apart, [tag_image.shape[1], 0], atol=0.1)
+    np.testing.assert_allclose(apart, [tag_image.shape[1], 0], atol=0.3)
     assert "tag36h11 id 3 at (" in repr(tags[0])
 
 
