@@ -91,8 +91,10 @@ std::vector<Finding> FlightExamination::Check(const FlightReport& report) const 
   std::vector<Finding> findings;
   const auto& mount = calibration_.body_from_camera;
   // The mount is not judged by motion: the target may turn.
-  const std::vector<Finding> mounted = {CheckMountGiven(mount),
-                                        CheckMountByGravity(mount, all.vision)};
+  const std::vector<Finding> mounted =
+      calibration_.gimbal
+          ? std::vector{CheckGimbalMount()}
+          : std::vector{CheckMountGiven(mount), CheckMountByGravity(mount, all.vision)};
   for (const auto& part :
        {CheckCalibration(all), CheckCamera(all.camera), mounted, CheckComputer(all)}) {
     findings.insert(findings.end(), part.begin(), part.end());

@@ -229,7 +229,13 @@ Finding CheckMountByMotion(const std::optional<RigidTransform>& body_from_camera
   return NotChecked(check, "the UAV moved too little to tell: " + measured, kShakeAdvice);
 }
 
+Finding CheckGimbalMount() {
+  return NotChecked("mount", "the camera is on a gimbal",
+                    "kestrel calibrate mount RECORDING, from a flight over the pattern");
+}
+
 std::vector<Finding> CheckMount(const DoctorObservations& observations) {
+  if (observations.calibration.gimbal) return {CheckGimbalMount()};
   const auto& mount = observations.calibration.body_from_camera;
   return {CheckMountGiven(mount), CheckMountByGravity(mount, observations.vision),
           CheckMountByMotion(mount, observations.vision, observations.use.target_mps.has_value())};

@@ -9,6 +9,9 @@
 
 namespace kestrel {
 
+// A mount that moves is not judged: the checks below hold for a camera that is fixed to the body.
+Finding CheckGimbalMount();
+
 // Checks of the camera's mount.
 
 // Checks that the mount is given, and that by it the camera looks down.

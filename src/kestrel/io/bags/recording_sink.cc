@@ -49,7 +49,7 @@ class BagSink : public RecordingSink {
     image_ = bag_->AddTopic("/camera/image_raw", ImageMessage::kType);
     if (head_.calibration) {
       camera_info_ = bag_->AddTopic("/camera/camera_info", CameraInfoMessage::kType);
-      if (head_.calibration->body_from_camera) {
+      if (head_.calibration->body_from_camera && !head_.calibration->gimbal) {
         mount_ = bag_->AddTopic("/tf_static", TfMessage::kType, /*is_latched=*/true);
       }
     }

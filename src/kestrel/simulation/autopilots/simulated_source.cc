@@ -55,6 +55,9 @@ CameraCalibration CalibrationFor(const RecordingChoice& choice, const CameraCali
   CameraCalibration calibration = ReadCalibration(choice.camera, "", choice.bag.tell);
   CheckImageSize(calibration.intrinsics, own.intrinsics.width_px, own.intrinsics.height_px,
                  choice.sources.front());
+  if (calibration.gimbal) {
+    throw InputError(choice.camera + ": has a gimbal, expected T_BS: a sim: camera is fixed");
+  }
   if (!calibration.body_from_camera) calibration.body_from_camera = own.body_from_camera;
   return calibration;
 }
