@@ -77,6 +77,9 @@ void SayWhatIsLost(const ConvertArguments& arguments, const RecordingHead& head)
                "kestrel: a bag cannot hold the clock offset: use it with --clock-offset {}\n",
                ToSeconds(*head.calibration->clock_offset));
   }
+  if (is_bag && head.calibration && head.calibration->gimbal) {
+    fmt::print(stderr, "kestrel: a bag cannot hold the gimbal: convert to a folder to keep it\n");
+  }
   if ((!is_bag || arguments.for_foxglove) && head.has_motion) {
     fmt::print(stderr, "kestrel: {} velocities: they are left out\n",
                is_bag ? "Foxglove's poses cannot hold" : "a EuRoC folder cannot hold");

@@ -9,10 +9,10 @@
 
 namespace kestrel {
 
+// Checks of the camera's mount.
+
 // A mount that moves is not judged: the checks below hold for a camera that is fixed to the body.
 Finding CheckGimbalMount();
-
-// Checks of the camera's mount.
 
 // Checks that the mount is given, and that by it the camera looks down.
 Finding CheckMountGiven(const std::optional<RigidTransform>& body_from_camera);
