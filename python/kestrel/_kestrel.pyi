@@ -62,6 +62,7 @@ class PoseLookup(str, enum.Enum):
     TOO_NEW = "too new"
     GAP = "gap"
     PREDICTED = "predicted"
+    NO_REPORT_OF_THE_GIMBAL = "no report of the gimbal"
 
 class PositionMethod(str, enum.Enum):
     """What the distance to a pad comes from: its size, or the altitude."""
