@@ -26,7 +26,8 @@ struct TagDetection {
 };
 
 // Returns the names of all families that DetectTags finds: the AprilTag families of libapriltag by
-// its names, and the dictionaries of OpenCV, as "aruco_4x4_50".
+// its names, and the dictionaries of OpenCV, as "aruco_4x4_50". OpenCV's own names
+// ("DICT_4X4_50") are known, too.
 const std::vector<std::string>& TagFamilies();
 
 // Finds all tags of some families in an image, without a calibration. Returns them by family, in

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <memory>
+#include <string>
 #include <string_view>
 
 #include <apriltag/apriltag.h>
@@ -75,6 +77,21 @@ TagGrid Turned(const TagGrid& grid) {
   return turned;
 }
 
+// Returns the name here of a family that is named as OpenCV does: "DICT_4X4_50", "4x4_50",
+// "DICT_APRILTAG_36h11".
+std::string OwnName(const std::string& name) {
+  constexpr std::string_view kPrefix = "dict_", kAprilTag = "apriltag_";
+  std::string plain = name;
+  for (char& c : plain) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const bool has_prefix = plain.starts_with(kPrefix);
+  if (has_prefix) plain.erase(0, kPrefix.size());
+  if (plain.starts_with(kAprilTag)) return "tag" + plain.substr(kAprilTag.size());
+  const bool is_square =
+      plain.size() > 1 && std::isdigit(static_cast<unsigned char>(plain[0])) && plain[1] == 'x';
+  if (is_square) return "aruco_" + plain;
+  return has_prefix ? plain : name;
+}
+
 }  // namespace
 
 bool TagGrid::IsDataCell(int column, int row) const {
@@ -124,9 +141,9 @@ const std::vector<std::string>& TagFamily::Names() {
   return names;
 }
 
-TagFamily::TagFamily(const std::string& name) : name_(name) {
+TagFamily::TagFamily(const std::string& name) : name_(OwnName(name)) {
   const auto aruco = std::find_if(kArucoFamilies.begin(), kArucoFamilies.end(),
-                                  [&](const ArucoFamily& family) { return family.name == name; });
+                                  [&](const ArucoFamily& family) { return family.name == name_; });
   if (aruco != kArucoFamilies.end()) {
     ReadAruco(aruco->side, aruco->id_count, aruco->corrected_bits);
   } else {

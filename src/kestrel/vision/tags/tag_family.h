@@ -45,7 +45,8 @@ int TurnDistance(const TagGrid& grid);
 // picture as the library draws it. (OpenCV's own drawings of AprilTags are turned by 180 degrees.)
 class TagFamily {
  public:
-  // Throws InputError for an unknown name, with the nearest one.
+  // OpenCV's names are known, too: "DICT_4X4_50", "4x4_50", "DICT_APRILTAG_36h11". Throws
+  // InputError for an unknown name, with the nearest one.
   explicit TagFamily(const std::string& name);
 
   // All names, in the order in which they are explained.

@@ -172,6 +172,16 @@ TEST(TagFamilyTest, EveryFamilyHasItsBorders) {
   }
 }
 
+TEST(TagFamilyTest, KnowsNamesOfOpenCv) {
+  for (const char* name : {"DICT_4X4_50", "4x4_50", "4X4_50"}) {
+    EXPECT_EQ(TagFamily(name).name(), "aruco_4x4_50");
+  }
+  EXPECT_EQ(TagFamily("DICT_7X7_1000").name(), "aruco_7x7_1000");
+  EXPECT_EQ(TagFamily("DICT_ARUCO_ORIGINAL").name(), "aruco_original");
+  EXPECT_EQ(TagFamily("DICT_APRILTAG_36h11").name(), "tag36h11");
+  EXPECT_THAT([] { TagFamily("DICT_9X9_50"); }, ThrowsMessage<InputError>(HasSubstr("aruco_")));
+}
+
 TEST(TagFamilyTest, ErrorsNameNearestFamilyAndValidIds) {
   EXPECT_THAT(
       [] { TagFamily("tag36h1"); },
