@@ -61,6 +61,12 @@ TouchdownSimulationOptions::TouchdownSimulationOptions() {
                      .max_tilt_deg = multicopter.max_tilt_deg};
 }
 
+// A simulated gimbal needs to know the whole flight, which this loop decides as it goes.
+std::vector<std::string> TouchdownSimulationOptions::Validate() const {
+  if (!recording.gimbal.is_there()) return {};
+  return {"gimbal.rate_hz is more than 0, expected 0: the camera of a touchdown is fixed"};
+}
+
 TouchdownSimulation::TouchdownSimulation(const TouchdownSimulationOptions& options,
                                          const CameraCalibration& camera, std::uint64_t seed)
     : options_(Checked(options)),

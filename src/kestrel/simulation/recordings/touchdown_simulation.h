@@ -82,6 +82,7 @@ struct TouchdownSimulationOptions : LandingSceneOptions {
     visit.Group("exposure", self.exposure);
     LandingSceneOptions::Visit(self, visit);
   }
+  std::vector<std::string> Validate() const;
 };
 
 // A closed loop: the UAV flies by the track, the track comes from the pipeline, the pipeline

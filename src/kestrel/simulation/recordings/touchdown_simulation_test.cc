@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
+#include "kestrel/core/base/error.h"
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/io/recording/test_files.h"
 #include "kestrel/simulation/recordings/landing_simulation.h"
@@ -43,6 +44,13 @@ TEST(TouchdownSimulationTest, LandsOnMovingVehicle) {
   EXPECT_GE(result->wind_mps, 2);
   const auto& start = result->path.front();
   EXPECT_NEAR(start.feet_in_world.z(), 10 - 0.35, 1e-6);
+}
+
+TEST(TouchdownSimulationTest, RefusesGimbal) {
+  TouchdownSimulationOptions options = Small();
+  options.recording.gimbal.rate_hz = 20;
+  EXPECT_THAT([&] { TouchdownSimulation(options, PaperCalibration(), 3); },
+              ::testing::ThrowsMessage<InputError>(HasSubstr("gimbal.rate_hz")));
 }
 
 TEST(TouchdownSimulationTest, SameSeedGivesSameFlight) {
