@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// What is looked for in a session: the pad to land on ("land") or coloured objects ("hunt").
+// The task of a session: to land on a pad ("land") or to hunt for coloured objects ("hunt").
 //
 // Example:
 //   TaskOptions options;

@@ -66,7 +66,7 @@ void AddHuntArguments(CLI::App* command, TaskArguments* arguments) {
       ->check(InRange(-180.0001, 180.0001, "degrees"));
 }
 
-// What a task has beside the arguments that all have.
+// The arguments of one task, beside those that all tasks have.
 struct OwnArguments {
   std::string_view task;
   void (*add)(CLI::App* command, TaskArguments* arguments);

@@ -16,10 +16,10 @@
 
 namespace kestrel {
 
-// What viewers show of a session's results.
+// The view of a task, which viewers make of a session's results.
 using TaskView = std::variant<LandingView, HuntView>;
 
-// What a page plots, draws over the image, and can show in its place.
+// The parts of a view: series to plot, layers over the image, and images in its place.
 struct ViewParts {
   std::vector<SeriesDescription> series;
   std::vector<OverlayLayer> layers;
@@ -36,7 +36,7 @@ const ObjectModel* ModelOf(const TaskView& view);
 // Returns what viewers show of the team's map; nothing for a task that makes none.
 std::optional<ViewedTeam> TeamOf(const TaskView& view, const TeamReport& report);
 
-// What viewers show of a frame.
+// The view of one frame.
 struct ViewFrame {
   Time time;
   ViewSample sample;

@@ -62,7 +62,7 @@ MountAndClock Applied(const MountAndClock& given, const Parameters& parameters) 
       parameters(kClock)};
 }
 
-// What carries the camera, the body or a gimbal's platform, over a flight.
+// The carrier of the camera over a flight: the body, or a gimbal's platform.
 class FlightPoses {
  public:
   FlightPoses(PoseHistory body, const std::optional<FlownGimbal>& gimbal)

@@ -17,7 +17,7 @@ using Eigen::AngleAxisd;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr int kLastBehindAutopilot = 6;  // of the device ids that name no component
+constexpr int kLastBehindAutopilot = 6;  // last device id that names no component
 
 YawFrame YawFrameOf(std::uint16_t flags) {
   if ((flags & mavlink::kGimbalYawInVehicleFrame) != 0) return YawFrame::kVehicle;

@@ -18,8 +18,8 @@ using Eigen::AngleAxisd;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr double kHeading_deg = 50;    // of the vehicle, from north to east
-constexpr double kPan_deg = 20;        // of the platform to the right of the vehicle
+constexpr double kHeading_deg = 50;    // heading of the vehicle, from north to east
+constexpr double kPan_deg = 20;        // yaw of the platform, to the right of the vehicle
 constexpr double kPitch_deg = -35;     // below the horizon
 constexpr std::uint8_t kGimbal = 154;  // component
 

@@ -55,8 +55,6 @@ class GimbalHistory {
   // reports are more than 1.5 s apart or differ in their yaw frame.
   std::optional<GimbalAttitude> At(Time time, Duration max_ahead) const;
 
-  bool is_empty() const { return size_ == 0; }
-
  private:
   std::size_t FirstNotBefore(Time time) const;
   const GimbalSample& Sample(std::size_t i) const { return ring_[(first_ + i) % ring_.size()]; }

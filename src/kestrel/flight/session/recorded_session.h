@@ -44,7 +44,7 @@ class RecordedSession {
   // Number of frames so far, and of those among them whose image cannot be read.
   std::size_t frames() const { return times_ms_.size() + broken_; }
   std::size_t broken() const { return broken_; }
-  // How many frames there were, what was found, and the times of the detection alone; some lines.
+  // Returns some lines: the number of frames, what was found, and the times of the detection.
   std::string Summary() const;
 
  private:
@@ -53,7 +53,7 @@ class RecordedSession {
   const OpenedSource& opened_;
   std::unique_ptr<Vision> vision_;
   ObservationSinks sinks_{SinkErrors::kThrow};
-  std::vector<double> times_ms_;  // that the detection took, of each frame
+  std::vector<double> times_ms_;  // time of the detection, for each frame
   std::size_t broken_ = 0;
   std::string first_fault_;
 };

@@ -39,7 +39,8 @@ Options InFlight(Options options, bool is_live) {
   return options;
 }
 
-// What is looked for in a session. A new kind is a class, and a line in task.cc.
+// The task of a session: to land on a pad, or to hunt for coloured objects. A new kind is a class,
+// and a line in task.cc.
 class Task {
  public:
   virtual ~Task() = default;
@@ -65,7 +66,7 @@ struct TaskOptions {
   }
 };
 
-// What is chosen for a session beside the options.
+// The choices of a session, beside the options.
 struct TaskChoice {
   std::vector<double> predict_s = {};  // horizons of the predictions that are written
   ObjectModel model = DefaultObjectModel();

@@ -27,7 +27,7 @@ struct TrackSnapshot {
     RigidTransform target_from_body;
   };
   std::optional<Sight> sight;
-  cv::Rect area = {};  // of the target in this frame; empty: it was not found
+  cv::Rect area = {};  // area of the target in this frame; empty: it was not found
   Duration detect_time{};
   int frames = 0;                          // so far
   int detections = 0;                      // frames that showed the target

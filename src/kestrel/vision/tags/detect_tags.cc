@@ -74,7 +74,7 @@ double EdgeAt(const cv::Mat& image, const Eigen::Vector2d& place, const Eigen::V
 Eigen::Vector3d SideOf(const cv::Mat& image, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
                        bool dark_inside, double reach) {
   constexpr int kPoints = 24, kFewest = 12;
-  constexpr double kTrim = 0.1;  // of the side, at either end: corners are round
+  constexpr double kTrim = 0.1;  // share of the side, at either end: corners are round
   const Eigen::Vector2d along = (to - from).normalized();
   const Eigen::Vector2d outward(along.y(), -along.x());
   const Eigen::Vector2d to_white = dark_inside ? outward : Eigen::Vector2d(-outward);
@@ -90,7 +90,7 @@ Eigen::Vector3d SideOf(const cv::Mat& image, const Eigen::Vector2d& from, const 
     right_side += edge * row;
     ++count;
   }
-  Eigen::Vector2d moved = Eigen::Vector2d::Zero();  // of both ends
+  Eigen::Vector2d moved = Eigen::Vector2d::Zero();  // offsets of both ends
   if (count >= kFewest) moved = equations.inverse() * right_side;
   return (from + moved[0] * to_white).homogeneous().cross((to + moved[1] * to_white).homogeneous());
 }
@@ -98,7 +98,7 @@ Eigen::Vector3d SideOf(const cv::Mat& image, const Eigen::Vector2d& from, const 
 // Moves the corners of a quad to where the edges in the image meet.
 void Refine(const cv::Mat& image, bool dark_inside, double side_px, TagCorners* corners) {
   constexpr double kLeastReachPx = 1.5;
-  constexpr double kReach = 0.05;  // of a side: half of a cell
+  constexpr double kReach = 0.05;  // share of a side: half of a cell
   for (const double share : {1.0, 0.5, 0.5}) {
     const double reach = std::max(kLeastReachPx, share * kReach * side_px);
     std::array<Eigen::Vector3d, 4> sides;
@@ -158,7 +158,7 @@ std::vector<TagDetection> DetectTags(const cv::Mat& image,
     samples.Reserve(readers.back().cell_count());
   }
   const cv::Mat gray = GrayOf(image);
-  constexpr int kLeastSidePx = 8;  // of an image; a tag needs more
+  constexpr int kLeastSidePx = 8;  // least side of an image; a tag needs more
   if (std::min(gray.cols, gray.rows) < kLeastSidePx) return {};
   const CameraModel camera = PlainCamera(gray);
   std::vector<std::vector<TagDetection>> found(families.size());

@@ -44,8 +44,8 @@ class TagReader {
   std::optional<TagReading> ReadTurn(std::span<const float> gray, double threshold, int turn) const;
 
   TagGrid layout_;                       // kNone where tags of the family differ
-  std::vector<std::size_t> data_cells_;  // of the grid, where they do
-  bool dark_inside_ = true;              // of the edge of the square that the size refers to
+  std::vector<std::size_t> data_cells_;  // cells of the grid where they do
+  bool dark_inside_ = true;              // side of the edge of the square that the size refers to
   int most_wrong_ = 0;
   std::vector<std::uint64_t> codes_;  // bits of the data cells of each id; true is white
 };
