@@ -108,19 +108,19 @@ TargetHint CenterTwiceAsFar(const LandingFrame& frame) {
   return hint;
 }
 
-constexpr std::array kToldHints = {
-    ToldHint{"nothing", Nothing},
-    ToldHint{"attitude", Attitude},
-    ToldHint{"attitude and altitude", AltitudePlus<0>},
-    ToldHint{"altitude 10 m too high", AltitudePlus<10>},
-    ToldHint{"altitude 500 m too high (sea level)", AltitudePlus<500>},
-    ToldHint{"altitude three times too high", AltitudeTimes<3>},
-    ToldHint{"altitude negative", AltitudePlus<-20>},
-    ToldHint{"camera upside down", UpsideDown},
-    ToldHint{"camera turned round by 180 degrees", TurnedRound},
-    ToldHint{"attitude wrong by 30 degrees", TiltedBy30Degrees},
-    ToldHint{"track elsewhere", CenterElsewhere},
-    ToldHint{"track at twice the distance", CenterTwiceAsFar},
+constexpr std::array kGivenHints = {
+    GivenHint{"nothing", Nothing},
+    GivenHint{"attitude", Attitude},
+    GivenHint{"attitude and altitude", AltitudePlus<0>},
+    GivenHint{"altitude 10 m too high", AltitudePlus<10>},
+    GivenHint{"altitude 500 m too high (sea level)", AltitudePlus<500>},
+    GivenHint{"altitude three times too high", AltitudeTimes<3>},
+    GivenHint{"altitude negative", AltitudePlus<-20>},
+    GivenHint{"camera upside down", UpsideDown},
+    GivenHint{"camera turned round by 180 degrees", TurnedRound},
+    GivenHint{"attitude wrong by 30 degrees", TiltedBy30Degrees},
+    GivenHint{"track elsewhere", CenterElsewhere},
+    GivenHint{"track at twice the distance", CenterTwiceAsFar},
 };
 
 }  // namespace
@@ -155,6 +155,6 @@ LandingFrameSet RenderStills(int per_altitude, const PrintError& print, int thre
 
 std::span<const CalibrationError> CalibrationErrors() { return kCalibrationErrors; }
 std::span<const PrintError> PrintErrors() { return kPrintErrors; }
-std::span<const ToldHint> ToldHints() { return kToldHints; }
+std::span<const GivenHint> GivenHints() { return kGivenHints; }
 
 }  // namespace kestrel

@@ -37,10 +37,10 @@ std::vector<LandingStillMaker> StillMakers(const PrintError& print);
 LandingFrameSet RenderStills(int per_altitude, const PrintError& print, int threads);
 
 // A hint of a caller about a frame with known pose, right or wrong.
-struct ToldHint {
+struct GivenHint {
   std::string_view name;
-  TargetHint (*tell)(const LandingFrame& frame);
+  TargetHint (*notify)(const LandingFrame& frame);
 };
-std::span<const ToldHint> ToldHints();
+std::span<const GivenHint> GivenHints();
 
 }  // namespace kestrel

@@ -23,26 +23,26 @@ using Eigen::Vector3d;
 const LandingPattern kPattern;
 constexpr double kRightAngle = 0.5 * kPi;
 
-Tell OnCircle(double radius_m, double least_share) {
+Mark OnCircle(double radius_m, double least_share) {
   constexpr int kPoints = 32;
-  Tell tell{{}, least_share};
+  Mark mark{{}, least_share};
   for (int i = 0; i < kPoints; ++i) {
-    tell.points.emplace_back(radius_m * Direction(2 * kPi * i / kPoints));
+    mark.points.emplace_back(radius_m * Direction(2 * kPi * i / kPoints));
   }
-  return tell;
+  return mark;
 }
 
 // Returns points on an arm of the pattern.
-Tell OnArm(double angle) {
-  Tell tell;
+Mark OnArm(double angle) {
+  Mark mark;
   for (const double along_m : {0.12, 0.18, 0.24, 0.3}) {
-    tell.points.emplace_back(along_m * Direction(angle));
+    mark.points.emplace_back(along_m * Direction(angle));
   }
-  return tell;
+  return mark;
 }
 
 // Signs that are none of the pattern's in any of their parts.
-std::vector<Tell> InTheMiddle() { return {OnCircle(0.25, 0.7)}; }
+std::vector<Mark> InTheMiddle() { return {OnCircle(0.25, 0.7)}; }
 
 Drawing::Ring Ring(double outer_m, double inner_m) { return {{0, 0}, outer_m, inner_m}; }
 
@@ -68,7 +68,7 @@ Sign RingWithArms(std::initializer_list<int> arms, Random* random) {
     if (has_arm[arm]) {
       sign.ink.Add(Spoke(angle, length_m));
     } else {
-      sign.tells.push_back(OnArm(angle));
+      sign.marks.push_back(OnArm(angle));
     }
   }
   // The hub of the cross, as wide as an arm.
@@ -106,14 +106,14 @@ Sign DoubledRing(Random* random) {
   const bool is_inside = random->Chance(0.5);
   const double outer_m = is_inside ? random->Uniform(0.26, 0.3) : random->Uniform(0.64, 0.68);
   sign.ink.Add(Ring(outer_m, outer_m - random->Uniform(0.05, 0.1)));
-  sign.tells = {OnCircle(outer_m, 0.3)};
+  sign.marks = {OnCircle(outer_m, 0.3)};
   return sign;
 }
 
 Sign ShortArm(Random* random) {
   Sign sign = RingWithArms({1, 2, 3}, random);
   sign.ink.Add(Spoke(0, random->Uniform(0.1, 0.18)));
-  sign.tells = {{{{0.22, 0}, {0.26, 0}, {0.3, 0}, {0.34, 0}}, 0.75}};
+  sign.marks = {{{{0.22, 0}, {0.26, 0}, {0.3, 0}, {0.34, 0}}, 0.75}};
   return sign;
 }
 
@@ -218,12 +218,12 @@ class SignCamera {
       };
       const double in_view = ShareIf(OnCircle(0.55, 0).points, is_seen);
       if (cut_off ? in_view < kLeastInView || in_view > kMostInView : in_view < 1) continue;
-      const bool tells = std::any_of(sign.tells.begin(), sign.tells.end(), [&](const Tell& tell) {
-        return ShareIf(tell.points, [&](const Vector2d& p) {
+      const bool marks = std::any_of(sign.marks.begin(), sign.marks.end(), [&](const Mark& mark) {
+        return ShareIf(mark.points, [&](const Vector2d& p) {
                  return is_seen(p) && VeilAt(*scene, p) < kMostVeil;
-               }) >= tell.least_share;
+               }) >= mark.least_share;
       });
-      if (tells) return pose;
+      if (marks) return pose;
     }
     throw InputError("no pose shows the sign");
   }

@@ -16,7 +16,7 @@
 namespace kestrel {
 
 // Part of a sign by which the eye tells it from the landing pattern.
-struct Tell {
+struct Mark {
   std::vector<Eigen::Vector2d> points;  // in the sign's plane, m
   double least_share = 0.5;             // of the points that must be in view
 };
@@ -24,7 +24,7 @@ struct Tell {
 // A sign as large as the landing pattern.
 struct Sign {
   Drawing ink;
-  std::vector<Tell> tells;  // any one of them is enough
+  std::vector<Mark> marks;  // any one of them is enough
 };
 
 struct SignKind {

@@ -175,10 +175,10 @@ class Report {
                                   const LandingPatternDetector& detector) const {
     return ScoreFrames(
         detector, count, kThreads, NoHint, make,
-        [&](const LandingFrame& frame, const LandingScore& score) { Tell(frame, score); });
+        [&](const LandingFrame& frame, const LandingScore& score) { Mark(frame, score); });
   }
 
-  void Tell(const LandingFrame& frame, const LandingScore& score) const {
+  void Mark(const LandingFrame& frame, const LandingScore& score) const {
     const bool is_fine =
         score.outcome == LandingOutcome::kFound || score.outcome == LandingOutcome::kQuiet;
     if (is_fine || score.truth == PatternTruth::kUnknown) return;

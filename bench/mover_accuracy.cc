@@ -149,7 +149,7 @@ ReportTable SightingsTable(const Reports& reports) {
 }
 
 // For the discs that were seen at least three times.
-ReportTable SaidTable(const Reports& reports) {
+ReportTable ReportsTable(const Reports& reports) {
   constexpr std::size_t kConfirmed = 3;
   ReportTable table{"said",
                     "When it is said",
@@ -163,8 +163,8 @@ ReportTable SaidTable(const Reports& reports) {
     for (const DiscReport& disc : discs) {
       if (disc.moves.size() < kConfirmed) continue;
       ++count;
-      const auto said = std::find(disc.moves.begin(), disc.moves.end(), true);
-      if (said != disc.moves.end()) until.push_back(1.0 + (said - disc.moves.begin()));
+      const auto reported = std::find(disc.moves.begin(), disc.moves.end(), true);
+      if (reported != disc.moves.end()) until.push_back(1.0 + (reported - disc.moves.begin()));
     }
     table.rows.push_back({std::to_string(key.first), FormatFixed(key.second, 1),
                           std::to_string(count), std::to_string(until.size()),
@@ -184,7 +184,7 @@ void Run(int hunts, std::uint64_t first_seed) {
       all.insert(all.end(), discs.begin(), discs.end());
     }
   });
-  fmt::print("{}\n{}", ToMarkdown(SightingsTable(reports)), ToMarkdown(SaidTable(reports)));
+  fmt::print("{}\n{}", ToMarkdown(SightingsTable(reports)), ToMarkdown(ReportsTable(reports)));
 }
 
 }  // namespace

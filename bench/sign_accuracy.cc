@@ -114,13 +114,13 @@ class Report {
         const LandingScore score = ScoreLanding(frame, report, detector_.camera(), {});
         const std::lock_guard lock(mutex);
         counts[k].Add(score);
-        Tell(frame, score);
+        Mark(frame, score);
       }
     });
     return counts;
   }
 
-  void Tell(const LandingFrame& frame, const LandingScore& score) const {
+  void Mark(const LandingFrame& frame, const LandingScore& score) const {
     const bool is_fine =
         score.outcome == LandingOutcome::kFound || score.outcome == LandingOutcome::kQuiet;
     if (is_fine) return;

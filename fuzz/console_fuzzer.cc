@@ -81,7 +81,7 @@ void Subscribe(std::string_view text) {
 }
 
 // Host, origin, cookies and target, one line each.
-void AskGuard(std::string_view text, bool is_web_socket) {
+void QueryGuard(std::string_view text, bool is_web_socket) {
   std::string_view lines[4];
   for (std::string_view& line : lines) {
     const std::size_t end = std::min(text.find('\n'), text.size());
@@ -106,7 +106,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   ReadMessage(text);
   ReadExportPath(text);
   Subscribe(text);
-  AskGuard(text, /*is_web_socket=*/false);
-  AskGuard(text, /*is_web_socket=*/true);
+  QueryGuard(text, /*is_web_socket=*/false);
+  QueryGuard(text, /*is_web_socket=*/true);
   return 0;
 }

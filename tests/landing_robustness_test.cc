@@ -53,10 +53,10 @@ TEST(LandingRobustnessTest, WrongCalibrationCostsLittle) {
 TEST(LandingRobustnessTest, WrongHintCostsNothing) {
   const LandingFrameSet stills = RenderStills(kStillsPerAltitude, PrintErrors().front(), kThreads);
   LandingTally right;
-  for (const ToldHint& told : ToldHints()) {
-    const LandingTally tally = Score(stills, stills.camera, told.tell);
+  for (const GivenHint& reported : GivenHints()) {
+    const LandingTally tally = Score(stills, stills.camera, reported.notify);
     if (right.frames == 0) right = tally;
-    ExpectAsGood(told.name, tally, right);
+    ExpectAsGood(reported.name, tally, right);
   }
 }
 

@@ -52,12 +52,12 @@ RecordingChoice ChoiceOf(const pybind11::object& source, const pybind11::object&
 }
 
 OpenedSource OpenWithWarnings(RecordingChoice choice) {
-  // The source keeps 'tell' and may call it later, where Python cannot be called.
-  const auto told = std::make_shared<std::vector<std::string>>();
-  choice.bag.tell = [told](const std::string& text) { told->push_back(text); };
+  // The source keeps 'notify' and may call it later, where Python cannot be called.
+  const auto reported = std::make_shared<std::vector<std::string>>();
+  choice.bag.notify = [reported](const std::string& text) { reported->push_back(text); };
   OpenedSource opened = OpenRecording(choice);
   opened.source->set_on_broken({});
-  for (const std::string& text : *told) Warn(text);
+  for (const std::string& text : *reported) Warn(text);
   return opened;
 }
 

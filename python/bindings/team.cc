@@ -27,7 +27,7 @@ class TeamMap {
   TeamMap(const std::string& name, const TeamOptions& options)
       : member_({name, std::random_device()()}, options), fusion_(options, ObjectMapOptions()) {}
 
-  void Tell(const std::vector<MappedObject>& objects, Time now) { member_.Tell(objects, now); }
+  void Share(const std::vector<MappedObject>& objects, Time now) { member_.Share(objects, now); }
 
   void Hear(const py::bytes& message, Time local) {
     const std::string_view text = message;
@@ -78,7 +78,7 @@ void BindTeam(py::module_& module) {
            py::arg("name"),
            "name: of this UAV, 1 to 32 letters, digits, '_', '-' and '.'.\nKeyword arguments: "
            "options by the names of `kestrel config` under team, as rate_bytes_per_s=5000.")
-      .def("tell", &TeamMap::Tell, py::arg("objects"), py::arg("time_ns"),
+      .def("share", &TeamMap::Share, py::arg("objects"), py::arg("time_ns"),
            "Sets this UAV's own map, a list of MappedObject, at its time; the next tick sends it.")
       .def(
           "hear", &TeamMap::Hear, py::arg("message"), py::arg("now_ns"),

@@ -1527,7 +1527,7 @@ class TeamMap:
         Keyword arguments: options by the names of `kestrel config` under team, as
         rate_bytes_per_s=5000.
         """
-    def tell(self, objects: list[MappedObject], time_ns: int) -> None:
+    def share(self, objects: list[MappedObject], time_ns: int) -> None:
         """Sets this UAV's own map, a list of MappedObject, at its time; the next tick sends it."""
     def hear(self, message: bytes, now_ns: int) -> None:
         """Takes a message (bytes) of anyone; a malformed one changes nothing.

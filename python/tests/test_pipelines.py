@@ -131,7 +131,7 @@ def test_a_team_shares_its_map():
     for i in range(5):
         objects.update(i * 100_000_000, [disc])
     first, second = kestrel.TeamMap("alpha"), kestrel.TeamMap("bravo", rate_bytes_per_s=20000)
-    first.tell(objects.confirmed(), 500_000_000)
+    first.share(objects.confirmed(), 500_000_000)
     for tick in range(1, 40):
         now = tick * 100_000_000
         for sender, receiver in ((first, second), (second, first)):

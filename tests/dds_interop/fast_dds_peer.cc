@@ -26,7 +26,7 @@
 namespace kestrel {
 namespace {
 
-void Say(const std::string& words, const std::string& bytes) {
+void Print(const std::string& words, const std::string& bytes) {
   std::printf("%s %zu\n", words.c_str(), bytes.size());
   std::fwrite(bytes.data(), 1, bytes.size(), stdout);
   std::fflush(stdout);
@@ -69,19 +69,19 @@ class Peer {
 
   void Report() {
     const std::vector<FastEntity> others = participant_.others().heard();
-    for (; told_ < others.size(); ++told_) {
-      const FastEntity& other = others[told_];
+    for (; reported_ < others.size(); ++reported_) {
+      const FastEntity& other = others[reported_];
       const std::string gid = Hexadecimal(other.gid);
       if (other.topic.empty()) {
-        Say("participant " + gid + " - -", other.user_data);
+        Print("participant " + gid + " - -", other.user_data);
       } else {
         const std::string kind = other.is_writer ? "writer " : "reader ";
-        Say(kind + gid + " " + other.topic + " " + other.type, other.user_data);
+        Print(kind + gid + " " + other.topic + " " + other.type, other.user_data);
       }
     }
     std::string bytes;
     for (const auto& [topic, reader] : readers_) {
-      while (TakeRaw(reader, &bytes)) Say("message " + topic, bytes);
+      while (TakeRaw(reader, &bytes)) Print("message " + topic, bytes);
     }
   }
 
@@ -89,13 +89,13 @@ class Peer {
   FastParticipant participant_;
   std::map<std::string, fast::DataReader*> readers_;
   std::map<std::string, fast::DataWriter*> writers_;
-  std::size_t told_ = 0;
+  std::size_t reported_ = 0;
 };
 
 int Run() {
   const int domain = TestDomain();
   Peer peer(domain);
-  Say("domain " + std::to_string(domain), std::getenv("CYCLONEDDS_URI"));
+  Print("domain " + std::to_string(domain), std::getenv("CYCLONEDDS_URI"));
   constexpr int kPause_ms = 2;
   std::string input;
   for (;;) {

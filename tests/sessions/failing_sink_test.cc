@@ -72,7 +72,7 @@ class FailingSink : public ::testing::Test {
  protected:
   FailingSink() { before_ = sinks_.Add(std::make_unique<Witness>()); }
 
-  void Say(const std::string& text) {
+  void Report(const std::string& text) {
     sinks_.Take(SessionEvent{Now(), EventLevel::kWarning, text});
   }
 
@@ -106,7 +106,7 @@ class FailingSink : public ::testing::Test {
     EXPECT_GT(after_->seen().reports, 2);
   }
 
-  std::string Told() const { return before_->seen().events; }
+  std::string Reported() const { return before_->seen().events; }
 
   const TestFolder folder_;
   ObservationSinks sinks_;
@@ -122,7 +122,7 @@ TEST_P(Throwing, LosesOnlyItself) {
   sinks_.Add(std::make_unique<ThrowingSink>(GetParam()));
   Fly([](LiveSession*) {});
   ExpectAllResults();
-  EXPECT_THAT(Told(), HasSubstr("the sink is broken: the flight goes on without it"));
+  EXPECT_THAT(Reported(), HasSubstr("the sink is broken: the flight goes on without it"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Sinks, Throwing,
@@ -147,14 +147,14 @@ TEST_F(FailingSink, SessionRethrowsErrorOfCaller) {
 
 TEST_F(FailingSink, SurvivesThrowingWriter) {
   std::size_t dropped = 0;
-  AsynchronousSinkOptions options{.thread_name = "broken", .tell = {}};
-  options.tell = [this](const std::string& error) { Say("broken: " + error); };
+  AsynchronousSinkOptions options{.thread_name = "broken", .notify = {}};
+  options.notify = [this](const std::string& error) { Report("broken: " + error); };
   sinks_.Add(std::make_unique<AsynchronousSink>(
       options,
       std::make_unique<BusyWriter>([] { throw std::runtime_error("no disk"); }, &dropped)));
   Fly();
   ExpectAllResults();
-  EXPECT_THAT(Told(), HasSubstr("broken: no disk"));
+  EXPECT_THAT(Reported(), HasSubstr("broken: no disk"));
 }
 
 // Without a limit the end would wait for all that waits: 8 frames, 8 s.
@@ -163,7 +163,7 @@ TEST_F(FailingSink, SurvivesStalledWriter) {
   std::size_t written = 0;
   sinks_.Add(std::make_unique<AsynchronousSink>(
       AsynchronousSinkOptions{
-          .thread_name = "stalled", .last_patience = milliseconds(500), .tell = {}},
+          .thread_name = "stalled", .last_patience = milliseconds(500), .notify = {}},
       std::make_unique<BusyWriter>(
           [&] {
             std::this_thread::sleep_for(seconds(1));
@@ -179,10 +179,10 @@ TEST_F(FailingSink, SurvivesStalledWriter) {
 
 TEST_F(FailingSink, SurvivesFullDiskOfMcapFile) {
   sinks_.Add(OpenMcapSink("/dev/full", /*replace=*/true, LandTask({}), SmallCamera(),
-                          [this](const std::string& text) { Say(text); }));
+                          [this](const std::string& text) { Report(text); }));
   Fly();
   ExpectAllResults();
-  EXPECT_THAT(Told(), HasSubstr("/dev/full: cannot be written: the flight goes on without it"));
+  EXPECT_THAT(Reported(), HasSubstr("/dev/full: cannot be written: the flight goes on without it"));
 }
 
 TEST_F(FailingSink, SurvivesFailingDiskOfRecording) {
@@ -192,7 +192,7 @@ TEST_F(FailingSink, SurvivesFailingDiskOfRecording) {
   Fly([&](LiveSession*) { std::filesystem::rename(folder_ / "flight/mav0", folder_ / "gone"); },
       parts);
   ExpectAllResults();
-  EXPECT_THAT(Told(), HasSubstr("no more images, the flight goes on"));
+  EXPECT_THAT(Reported(), HasSubstr("no more images, the flight goes on"));
 }
 
 // A limit on the size of files simulates the full disk.
@@ -211,7 +211,7 @@ TEST_F(FailingSink, SurvivesFullDiskOfTables) {
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, handler);
   ExpectAllResults();
-  EXPECT_THAT(Told(), HasSubstr("the results cannot be written any more"));
+  EXPECT_THAT(Reported(), HasSubstr("the results cannot be written any more"));
 }
 
 TEST_F(FailingSink, SurvivesVanishedBrowser) {
@@ -241,7 +241,7 @@ TEST_F(FailingSink, SurvivesVanishedRosPeer) {
       std::make_unique<RosResults>(std::move(connection), options,
                                    RosFrames{"camera", "map", "base_link", RosTimeAhead()},
                                    SmallCamera(), LandingPipelineOptions(), DefaultObjectModel()),
-      [this](const std::string& text) { Say(text); }));
+      [this](const std::string& text) { Report(text); }));
   Fly([&](LiveSession*) { peer.reset(); });
   ExpectAllResults();
   EXPECT_LT(finish_time_, seconds(5));

@@ -52,9 +52,9 @@ TEST(GuidedSession, LimitsSearchToSightRange) {
 }
 
 // An autopilot that does nothing but live and note the intervals of messages that it is asked for.
-class AskedAutopilot {
+class RequestedAutopilot {
  public:
-  AskedAutopilot()
+  RequestedAutopilot()
       : url_(fmt::format("127.0.0.1:{}", FreeLoopbackPort())),
         connection_("udpin://" + url_, {.system_id = 1, .component_id = 1, .signing_key = ""}),
         thread_([this](const std::stop_token& stop) { Run(stop); }) {}
@@ -89,7 +89,7 @@ class AskedAutopilot {
 
 // Returns the interval of heartbeats that a session asks for; 0: it asks for none.
 float HeartbeatInterval(bool guides) {
-  AskedAutopilot autopilot;
+  RequestedAutopilot autopilot;
   DrawnCamera camera(60, PatternImage, 3);
   Witness witness;
   LiveSessionParts parts = LandingParts(&camera, &witness);

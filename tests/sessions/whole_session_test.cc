@@ -54,7 +54,7 @@ class AllSinks {
         AnyPort(), "a flight", LandingViewOfSession(), FlightExamination(SmallCamera(), ".", 0),
         live->channels()));
     sinks.Add(OpenMcapSink(mcap, /*replace=*/false, LandTask({}), SmallCamera(),
-                           [this](const std::string& text) { Say(text); }));
+                           [this](const std::string& text) { Report(text); }));
     if (Ros2Node::Knows("tf2_msgs/TFMessage")) AddRos(domain);
   }
 
@@ -69,7 +69,9 @@ class AllSinks {
   FlightConsole* console;
 
  private:
-  void Say(const std::string& text) { sinks.Take(SessionEvent{Now(), EventLevel::kWarning, text}); }
+  void Report(const std::string& text) {
+    sinks.Take(SessionEvent{Now(), EventLevel::kWarning, text});
+  }
 
   void AddRos(int domain) {
     const DdsOptions options;
@@ -79,7 +81,7 @@ class AllSinks {
     sinks.Add(MakeRosSink(
         std::make_unique<RosResults>(std::move(connection), options, frames, SmallCamera(),
                                      LandingPipelineOptions(), DefaultObjectModel()),
-        [this](const std::string& text) { Say(text); }));
+        [this](const std::string& text) { Report(text); }));
   }
 };
 
@@ -138,9 +140,9 @@ class Watcher {
 // Returns the number of frames that the MCAP file lacks by its own words: on a busy computer it
 // may.
 std::size_t LeftOutByMcap(const std::string& events) {
-  const std::string_view said = "--mcap: ";
-  const std::size_t at = events.find(said);
-  return at == std::string::npos ? 0 : std::stoul(events.substr(at + said.size()));
+  const std::string_view reported = "--mcap: ";
+  const std::size_t at = events.find(reported);
+  return at == std::string::npos ? 0 : std::stoul(events.substr(at + reported.size()));
 }
 
 TEST(WholeSession, StartsAndStopsSeveralTimes) {
@@ -239,7 +241,7 @@ class TeamUav {
 
  private:
   void Exchange() {
-    if (auto map = maps_->TakeNewest()) member_.Tell(std::move(map->objects), Now());
+    if (auto map = maps_->TakeNewest()) member_.Share(std::move(map->objects), Now());
     topic_.Receive([this](auto bytes) { member_.Hear(bytes, Now()); });
     member_.Tick(Now(), [this](auto bytes) { topic_.Send(bytes); });
     sinks_.Take(TeamReport{Now(), OwnMap(ViewTeam(member_, Now(), &fusion_))});

@@ -69,7 +69,7 @@ CameraRun::CameraRun(const KestrelOptions& options, CameraRunChoice choice, FlyS
         return std::make_unique<FlightRecorder>(
             folder, replace, source_->live.calibration, source_->live.rate_hz,
             options_.fly.recorder,
-            [this](const std::string& text) { console_.Say(EventLevel::kWarning, text); });
+            [this](const std::string& text) { console_.Report(EventLevel::kWarning, text); });
       }),
       keeper_(choice_.keep_folder, &recording_),
       console_(choice_.page, Camera(), choice_.folder, options.landing.detector) {
@@ -91,7 +91,7 @@ CameraConsole::Camera CameraRun::Camera() {
     return is_on ? keeper_.StartRecording() : keeper_.StopRecording();
   };
   camera.is_recording = [this] { return recording_.Get() != nullptr; };
-  camera.tell = [](const std::string& fault) { Tell(fmt::format("kestrel: {}\n", fault)); };
+  camera.notify = [](const std::string& fault) { Print(fmt::format("kestrel: {}\n", fault)); };
   return camera;
 }
 

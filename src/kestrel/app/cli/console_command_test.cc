@@ -197,17 +197,17 @@ TEST_F(ConsoleCommandTest, TeachesAndSavesColours) {
   TestSocket socket(port);
   const nlohmann::json hello = socket.Await("hello");
   EXPECT_EQ(hello["colors"], true);
-  const auto ask = [&](const std::string& message) {
+  const auto send = [&](const std::string& message) {
     socket.Send(message);
     return socket.Next("colors").value_or(nlohmann::json());
   };
   const nlohmann::json state = socket.Await("colors");
   EXPECT_EQ(state["frames"], 2);
   // Teaches the colour of the ground as green: the model does not matter here.
-  ask(R"({"colors": "mark", "frame": 1, "color": "green", "tool": "rectangle", "size": 0,)"
-      R"( "points": [600, 300, 700, 400]})");
-  EXPECT_EQ(ask(R"({"colors": "teach", "color": "green"})")["answer"], "taught green");
-  EXPECT_EQ(ask(R"({"colors": "save"})")["refused"], false);
+  send(R"({"colors": "mark", "frame": 1, "color": "green", "tool": "rectangle", "size": 0,)"
+       R"( "points": [600, 300, 700, 400]})");
+  EXPECT_EQ(send(R"({"colors": "teach", "color": "green"})")["answer"], "taught green");
+  EXPECT_EQ(send(R"({"colors": "save"})")["refused"], false);
   EXPECT_EQ(console.End(), 0) << console.Log();
   EXPECT_TRUE(std::filesystem::exists(taught + "/draft.yaml"));
   Succeed("hunt " + hunt + " --model " + taught + "/objects.yaml");
@@ -221,7 +221,7 @@ TEST_F(ConsoleCommandTest, TeachesColoursDuringAndAfterFlight) {
       "fly " + hunt + " --hunt --loop --console 127.0.0.1:0" + " --set fly.keep_folder=" + kept,
       folder_);
   const int port = fly.Port();
-  const auto ask = [](TestSocket* socket, const std::string& message) {
+  const auto send = [](TestSocket* socket, const std::string& message) {
     socket->Send(message);
     return socket->Next("colors").value_or(nlohmann::json());
   };
@@ -230,10 +230,10 @@ TEST_F(ConsoleCommandTest, TeachesColoursDuringAndAfterFlight) {
     socket.Await("colors");
     socket.Send(R"({"images": true})");
     socket.Await("image");
-    EXPECT_EQ(ask(&socket, R"({"colors": "keep"})")["frames"], 1);
+    EXPECT_EQ(send(&socket, R"({"colors": "keep"})")["frames"], 1);
     const auto state =
-        ask(&socket, R"({"colors": "mark", "frame": 0, "color": "green", "tool": "rectangle",)"
-                     R"( "size": 0, "points": [600, 300, 700, 400]})");
+        send(&socket, R"({"colors": "mark", "frame": 0, "color": "green", "tool": "rectangle",)"
+                      R"( "size": 0, "points": [600, 300, 700, 400]})");
     EXPECT_EQ(state["strokes"], 1) << state["answer"];
   }
   EXPECT_EQ(fly.End(), 0) << fly.Log();

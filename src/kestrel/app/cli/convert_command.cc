@@ -64,7 +64,7 @@ void RequireBagOrFolder(const std::string& destination) {
 }
 
 // Says which data of the source the destination cannot hold.
-void SayWhatIsLost(const ConvertArguments& arguments, const RecordingHead& head) {
+void WarnOfLoss(const ConvertArguments& arguments, const RecordingHead& head) {
   const bool is_bag = IsBagName(arguments.destination);
   if (!head.calibration) fmt::print(stderr, "kestrel: no calibration: the source has none\n");
   if (HasTruth(arguments.source)) {
@@ -111,7 +111,7 @@ void RunConvert(const ConvertArguments& arguments) {
       .has_motion = std::any_of(poses.begin(), poses.end(),
                                 [](const PoseSample& pose) { return pose.motion.has_value(); })};
   const auto recording = OpenDestination(arguments, head);
-  SayWhatIsLost(arguments, head);
+  WarnOfLoss(arguments, head);
   CatchInterrupts();
   ProgressBar progress(source->frame_count());
   std::size_t frames = 0;

@@ -75,13 +75,13 @@ TEST_F(DdsCommandTest, FlyReceivesTopicsOfRos2System) {
       fmt::format("timeout -s INT 5 {} fly dds:/camera/image_raw --dds {} --output '{}' 2>'{}'",
                   KESTREL_COMMAND, domain_, folder_ / "out", folder_ / "said")
           .c_str());
-  const std::string said = ReadFile(folder_ / "said");
-  ASSERT_EQ(WEXITSTATUS(status), 124) << said;  // timeout's own status
-  EXPECT_GE(Lines(ReadFile(folder_ / "out/landing_detections.csv")), 11) << said;
+  const std::string reported = ReadFile(folder_ / "said");
+  ASSERT_EQ(WEXITSTATUS(status), 124) << reported;  // timeout's own status
+  EXPECT_GE(Lines(ReadFile(folder_ / "out/landing_detections.csv")), 11) << reported;
   const auto& heard = listener.Stop();
-  ASSERT_GE(heard.count("/kestrel/target_pose"), 1u) << said;
-  ASSERT_GE(heard.count("/kestrel/track"), 1u) << said;
-  ASSERT_GE(heard.count("/diagnostics"), 1u) << said;
+  ASSERT_GE(heard.count("/kestrel/target_pose"), 1u) << reported;
+  ASSERT_GE(heard.count("/kestrel/track"), 1u) << reported;
+  ASSERT_GE(heard.count("/diagnostics"), 1u) << reported;
   const auto pose = ParseMessage<PoseWithCovarianceStampedMessage>(
       heard.at("/kestrel/target_pose").back(), WireFormat::kCdr, "heard");
   EXPECT_EQ(pose.header.frame_id, "camera");

@@ -148,7 +148,7 @@ class DoctorVisit {
   void OpenLink() {
     LinkObservations& link = observations_.link;
     if (arguments_.flight.autopilot.empty()) return;
-    link.is_asked = true;
+    link.isrequested = true;
     link.is_signed = !options_.fly.link.signing_key.empty();
     try {
       FlyAutopilot opened = MakeFlyAutopilot(arguments_.flight.autopilot, options_.fly,
@@ -183,9 +183,9 @@ class DoctorVisit {
   }
 
   bool IsWanted(const Finding& finding) const {
-    const ToldParameter& told = observations_.parameters.at(finding.fix->name);
-    fmt::print(stderr, "{} is {:g}. Set it to {:g}? (y/n) ", told.own_name, told.value / told.scale,
-               finding.fix->value / told.scale);
+    const ReportedParameter& reported = observations_.parameters.at(finding.fix->name);
+    fmt::print(stderr, "{} is {:g}. Set it to {:g}? (y/n) ", reported.own_name,
+               reported.value / reported.scale, finding.fix->value / reported.scale);
     std::string answer;
     std::getline(std::cin, answer);
     return answer.starts_with('y') || answer.starts_with('Y');
@@ -207,10 +207,10 @@ class DoctorVisit {
   // written.
   bool TakeOver(const ParameterFix& fix) {
     const ParameterWriteState state = autopilot_->parameter_writes().StateOf(fix.name);
-    ToldParameter& told = observations_.parameters.at(fix.name);
-    told.value = autopilot_->parameters().Find(fix.name).value_or(told.value);
-    fmt::print(stderr, "{}: {}, now {:g}\n", told.own_name, ToString(state),
-               told.value / told.scale);
+    ReportedParameter& reported = observations_.parameters.at(fix.name);
+    reported.value = autopilot_->parameters().Find(fix.name).value_or(reported.value);
+    fmt::print(stderr, "{}: {}, now {:g}\n", reported.own_name, ToString(state),
+               reported.value / reported.scale);
     return state == ParameterWriteState::kWritten;
   }
 

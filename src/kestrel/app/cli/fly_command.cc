@@ -59,7 +59,7 @@ void OpenAloud(const RecordingChoice& choice, bool is_looped, FlySource* opened)
     std::unique_lock lock(mutex);
     std::condition_variable_any().wait_for(lock, is_open, kQuiet, [] { return false; });
     if (is_open.stop_requested() || !IsCamera(source)) return;
-    Tell("waits for the camera: the first image of " + source + "\n");
+    Print("waits for the camera: the first image of " + source + "\n");
   });
   opened->Open(choice, is_looped);
 }
@@ -75,7 +75,7 @@ class FlightLog : public ObservationSink {
   bool IsWanted() const override { return false; }
 
   void Show() {
-    while (const auto line = lines_.TryPop()) Tell(*line);
+    while (const auto line = lines_.TryPop()) Print(*line);
   }
 
  private:
@@ -109,7 +109,7 @@ class Flight {
     session_.emplace(Parts(), SessionOptions(options_, source_, autopilot_));
     if (team_) {
       maps_ = sinks_.Add(std::make_unique<MapCopies>(
-          session_->vision().map(), DurationFromSeconds(TeamOptions::kTellPeriod_s)));
+          session_->vision().map(), DurationFromSeconds(TeamOptions::kSendPeriod_s)));
     }
   }
 
@@ -153,7 +153,7 @@ class Flight {
     throw WrongUsage(source + ": expected --autopilot URL, as sim:ardupilot or sim:px4");
   }
 
-  void Say(const std::string& text, EventLevel level = EventLevel::kInfo) {
+  void Notify(const std::string& text, EventLevel level = EventLevel::kInfo) {
     sinks_.Take(SessionEvent{Now(), level, text});
   }
 
@@ -219,8 +219,9 @@ class Flight {
     const SourceArguments& source = arguments_.source;
     if (source.mcap.empty()) return;
     RequireNoSource(source.mcap, source.sources);
-    sinks_.Add(OpenMcapSink(source.mcap, source.force, *task_, source_.live.calibration,
-                            [this](const std::string& text) { Say(text, EventLevel::kWarning); }));
+    sinks_.Add(
+        OpenMcapSink(source.mcap, source.force, *task_, source_.live.calibration,
+                     [this](const std::string& text) { Notify(text, EventLevel::kWarning); }));
   }
 
   // Called before anything is written.
@@ -232,7 +233,7 @@ class Flight {
     }
     team_.emplace(arguments_.team.team, arguments_.source.dds.Domain(), options_.team,
                   options_.hunt.map, ReadModel(arguments_.model),
-                  [this](const std::string& text) { Say(text); });
+                  [this](const std::string& text) { Notify(text); });
   }
 
   LiveSessionParts Parts() {
@@ -248,9 +249,9 @@ class Flight {
   }
 
   FlightRequests Requests() {
-    const auto logged = [this](const std::string& said) {
-      Log(said);
-      return said;
+    const auto logged = [this](const std::string& reported) {
+      Log(reported);
+      return reported;
     };
     return {.record =
                 [this, logged](bool is_on) {
@@ -270,7 +271,7 @@ class Flight {
   void ShareMap() {
     if (auto map = maps_->TakeNewest()) {
       if (map->position) team_->SetPosition(*map->position);
-      team_->Tell(std::move(map->objects));
+      team_->Share(std::move(map->objects));
       sinks_.Take(TeamReport{map->captured, team_->Map()});
       seen_ = map->captured;
     }
@@ -290,9 +291,9 @@ class Flight {
     if (team_) LeaveTeam();
     sinks_.Finish();
     log_->Show();
-    Tell(session_->Summary());
-    if (autopilot_.simulated) Tell(InWords(autopilot_.simulated->result()));
-    if (team_) Tell(team_->Found() + "\n");
+    Print(session_->Summary());
+    if (autopilot_.simulated) Print(InWords(autopilot_.simulated->result()));
+    if (team_) Print(team_->Found() + "\n");
   }
 
   FlyArguments arguments_;
@@ -347,20 +348,20 @@ void RunUncalibrated(const FlyArguments& arguments, const KestrelOptions& option
   if (arguments.console) choice.page = options.console;
   OpenAloud(choice.camera, choice.is_looped, &source);
   CameraRun run(options, choice, &source);
-  Tell("kestrel: " + advice + "\n");
-  Tell(kEndsWithoutAutopilot);
+  Print("kestrel: " + advice + "\n");
+  Print(kEndsWithoutAutopilot);
   CatchInterrupts();
   Time next_state = Now();
   run.Play([&] {
     if (Now() >= next_state) {
-      Tell(run.State() + "\n");
+      Print(run.State() + "\n");
       next_state += DurationFromSeconds(kStatePeriod_s);
     }
     return WasInterrupted();
   });
-  Tell(run.State() + "\n");
+  Print(run.State() + "\n");
   const auto outcome = WasInterrupted() ? FlightOutcome::kStopped : FlightOutcome::kSourceEnded;
-  Tell(InWords({.outcome = outcome}) + "\n");
+  Print(InWords({.outcome = outcome}) + "\n");
 }
 
 void RunFly(FlyArguments arguments) {
@@ -368,11 +369,11 @@ void RunFly(FlyArguments arguments) {
   const KestrelOptions options = arguments.ReadOptions();
   if (IsUncalibrated(arguments)) return RunUncalibrated(arguments, options);
   Flight flight(arguments, options);
-  Tell(arguments.autopilot.empty() ? kEndsWithoutAutopilot : kEndsByLanding);
+  Print(arguments.autopilot.empty() ? kEndsWithoutAutopilot : kEndsByLanding);
   const FlightEnd end = flight.Run();
   flight.ShowEnd(end);
   if (ExitStatus(end) != 0) throw BadFlightEnd(end);
-  Tell(InWords(end) + "\n");
+  Print(InWords(end) + "\n");
 }
 
 }  // namespace
@@ -381,7 +382,7 @@ void FlyUntilInterrupted(FlyArguments arguments) {
   const KestrelOptions options = arguments.ReadOptions();
   while (!WasInterrupted()) {
     Flight flight(arguments, options);
-    Tell(InWords(flight.Run()) + "\n");
+    Print(InWords(flight.Run()) + "\n");
   }
 }
 

@@ -179,16 +179,16 @@ StepTimes CaptureToResult(const Images& images) {
 
 }  // namespace
 
-std::vector<StepTimes> MeasureSteps(const std::function<void(const std::string&)>& say) {
+std::vector<StepTimes> MeasureSteps(const std::function<void(const std::string&)>& print) {
   const CameraModel camera(PaperCalibration().intrinsics);
   std::vector<StepTimes> steps;
-  say("rendering a flight over the ring");
+  print("rendering a flight over the ring");
   const Images ring = RenderedLanding("ring-cross");
-  say("rendering a flight over a tag");
+  print("rendering a flight over a tag");
   const Images tag = RenderedLanding("apriltag");
-  say("rendering a flight over coloured objects");
+  print("rendering a flight over coloured objects");
   const Images objects = RenderedHunt();
-  say("measuring");
+  print("measuring");
   const LandingPatternDetector ring_detector(camera, {});
   steps.push_back(InWholeImages("ring, whole image, 752 x 480", ring_detector, ring));
   steps.push_back(NearItsLastPlace("ring, near its last place", ring_detector, ring));
@@ -196,7 +196,7 @@ std::vector<StepTimes> MeasureSteps(const std::function<void(const std::string&)
   steps.push_back(InWholeImages("AprilTag 36h11, whole image, 752 x 480", tag_detector, tag));
   steps.push_back(Objects(objects));
   steps.push_back(RaysOfAllPixels(camera, ring));
-  say("flying for 5 s");
+  print("flying for 5 s");
   steps.push_back(CaptureToResult(ring));
   return steps;
 }

@@ -66,7 +66,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "kestrel: {}\n", error.what());
     return kWrongUsage;
   } catch (const kestrel::BadFlightEnd& end) {
-    kestrel::Tell(fmt::format("kestrel: {}\n", end.what()));
+    kestrel::Print(fmt::format("kestrel: {}\n", end.what()));
     return end.status();
   } catch (const kestrel::Interrupted& end) {
     fmt::print(stderr, "kestrel: {}\n", end.what());

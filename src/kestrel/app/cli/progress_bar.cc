@@ -41,7 +41,7 @@ void ProgressBar::Clear() const {
   if (is_terminal_) fmt::print(stderr, "\r\033[K");
 }
 
-void ProgressBar::Say(const std::string& line) const {
+void ProgressBar::Report(const std::string& line) const {
   Clear();
   fmt::print(stderr, "{}\n", line);
 }

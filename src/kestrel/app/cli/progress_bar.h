@@ -20,7 +20,7 @@ class ProgressBar {
   void Show(std::size_t done);
 
   // Prints a line on stderr, terminal or not, above the bar.
-  void Say(const std::string& line) const;
+  void Report(const std::string& line) const;
 
  private:
   void Clear() const;

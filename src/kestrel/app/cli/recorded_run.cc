@@ -38,7 +38,7 @@ class Progress {
     if (was_warned_) return;
     const std::string warning = vision_.Warning();
     was_warned_ = !warning.empty();
-    if (was_warned_) bar_.Say(warning);
+    if (was_warned_) bar_.Report(warning);
   }
 
  private:

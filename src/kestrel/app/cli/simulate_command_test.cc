@@ -71,13 +71,13 @@ TEST_F(SimulateCommandTest, HuntWarnsOnceOfWrongGroundHeight) {
           " --set navigation.clock_offset_min_s=0"
           " --set navigation.clock_offset_max_s=0");
   EXPECT_THAT(Run("hunt " + flight).err, Not(HasSubstr("by the size of the objects")));
-  const std::string told = Run("hunt " + flight + " --set hunt.ground_height_m=-5").err;
-  const std::string said = "by the size of the objects the ground is at z = ";
-  const std::size_t at = told.find(said);
-  ASSERT_NE(at, std::string::npos) << told;
-  EXPECT_NEAR(std::stod(told.substr(at + said.size())), 0, 0.5) << told;
-  EXPECT_EQ(told.find(said, at + 1), std::string::npos) << "once";
-  EXPECT_THAT(told, HasSubstr("hunt.ground_height_m says -5 m: set hunt.ground_height_m="));
+  const std::string reported = Run("hunt " + flight + " --set hunt.ground_height_m=-5").err;
+  const std::string wording = "by the size of the objects the ground is at z = ";
+  const std::size_t at = reported.find(wording);
+  ASSERT_NE(at, std::string::npos) << reported;
+  EXPECT_NEAR(std::stod(reported.substr(at + wording.size())), 0, 0.5) << reported;
+  EXPECT_EQ(reported.find(wording, at + 1), std::string::npos) << "once";
+  EXPECT_THAT(reported, HasSubstr("hunt.ground_height_m says -5 m: set hunt.ground_height_m="));
 }
 
 TEST_F(SimulateCommandTest, FliesTouchdownThatCanBeReplayed) {

@@ -93,7 +93,9 @@ class TeamCommandTest : public CommandTest {
     return WEXITSTATUS(status);
   }
 
-  std::string Said(const std::string& uav) const { return ReadFile(folder_ / (uav + "_out.said")); }
+  std::string Printed(const std::string& uav) const {
+    return ReadFile(folder_ / (uav + "_out.said"));
+  }
 
   std::string TeamMapOf(const std::string& uav) const {
     return ReadFile(folder_ / (uav + "_out/team_map.csv"));
@@ -110,10 +112,11 @@ TEST_F(TeamCommandTest, TwoHuntsShareOneMap) {
   const std::string first = WriteFlight("a", {0, 0});
   WriteFlight("b", {0.7, -0.5});
   if (!HasDds(first)) GTEST_SKIP() << "no DDS";
-  ASSERT_EQ(RunTeam("hunt --origin 50,14", "hunt --origin 50,14"), 0) << Said("a") << Said("b");
+  ASSERT_EQ(RunTeam("hunt --origin 50,14", "hunt --origin 50,14"), 0)
+      << Printed("a") << Printed("b");
   for (const std::string uav : {"a", "b"}) {
     EXPECT_EQ(Lines(ReadFile(folder_ / (uav + "_out/object_map.csv"))), 13);
-    EXPECT_THAT(Said(uav), HasSubstr("team: 2 UAVs, 12 objects"));
+    EXPECT_THAT(Printed(uav), HasSubstr("team: 2 UAVs, 12 objects"));
     EXPECT_EQ(Lines(ReadFile(folder_ / (uav + "_out/team_map.geojson"))), 14);
   }
   const std::string map = TeamMapOf("a");
@@ -127,12 +130,12 @@ TEST_F(TeamCommandTest, EachUavClaimsAnotherObject) {
   WriteFlight("b", {0.7, -0.5});
   if (!HasDds(first)) GTEST_SKIP() << "no DDS";
   const std::string hunt = "hunt --set team.claim=true";
-  ASSERT_EQ(RunTeam(hunt, hunt), 0) << Said("a") << Said("b");
+  ASSERT_EQ(RunTeam(hunt, hunt), 0) << Printed("a") << Printed("b");
   const std::string map = TeamMapOf("a");
   EXPECT_EQ(map, TeamMapOf("b"));
   EXPECT_EQ(RowsThatEnd(map, ",a\n"), 1) << map;
   EXPECT_EQ(RowsThatEnd(map, ",b\n"), 1) << map;
-  EXPECT_THAT(Said("a"), HasSubstr("team: goes for "));
+  EXPECT_THAT(Printed("a"), HasSubstr("team: goes for "));
 }
 
 TEST_F(TeamCommandTest, PublishesTeamMapToRos2) {
@@ -142,7 +145,7 @@ TEST_F(TeamCommandTest, PublishesTeamMapToRos2) {
   Ros2Node node(TestDomain(), {"listener"});
   node.Subscribe("/a/team_map", Detection3DArrayMessage::kType, kLatchedQos);
   node.Subscribe("/b/team_markers", MarkerArrayMessage::kType, kLatchedQos);
-  ASSERT_EQ(RunTeam("hunt", "fly --hunt"), 0) << Said("a") << Said("b");
+  ASSERT_EQ(RunTeam("hunt", "fly --hunt"), 0) << Printed("a") << Printed("b");
   std::map<std::size_t, std::string> heard;
   node.Take(std::chrono::seconds(1),
             [&](std::size_t i, std::string_view bytes) { heard[i] = std::string(bytes); });
@@ -169,13 +172,13 @@ TEST_F(TeamCommandTest, IgnoresUavsWithoutKey) {
   };
   const std::string right = with_key("right.key", '1');
   const std::string wrong = with_key("wrong.key", '2');
-  ASSERT_EQ(RunTeam(right, right), 0) << Said("a") << Said("b");
-  EXPECT_THAT(Said("a"), HasSubstr("team: 2 UAVs, 12 objects"));
-  EXPECT_THAT(Said("a"), Not(HasSubstr("refused")));
+  ASSERT_EQ(RunTeam(right, right), 0) << Printed("a") << Printed("b");
+  EXPECT_THAT(Printed("a"), HasSubstr("team: 2 UAVs, 12 objects"));
+  EXPECT_THAT(Printed("a"), Not(HasSubstr("refused")));
   ASSERT_EQ(RunTeam(right + " --force", wrong + " --force", /*silence_s=*/6), 0);
   for (const std::string uav : {"a", "b"}) {
-    EXPECT_THAT(Said(uav), HasSubstr("team: 1 UAVs, 12 objects"));
-    EXPECT_THAT(Said(uav), HasSubstr("not signed by the team's key"));
+    EXPECT_THAT(Printed(uav), HasSubstr("team: 1 UAVs, 12 objects"));
+    EXPECT_THAT(Printed(uav), HasSubstr("not signed by the team's key"));
   }
 }
 
@@ -183,8 +186,8 @@ TEST_F(TeamCommandTest, FlightSharesMapWithHunt) {
   const std::string first = WriteFlight("a", {0, 0});
   WriteFlight("b", {0.7, -0.5});
   if (!HasDds(first)) GTEST_SKIP() << "no DDS";
-  ASSERT_EQ(RunTeam("hunt", "fly --hunt"), 0) << Said("a") << Said("b");
-  EXPECT_THAT(Said("b"), HasSubstr("team: 2 UAVs, 12 objects"));
+  ASSERT_EQ(RunTeam("hunt", "fly --hunt"), 0) << Printed("a") << Printed("b");
+  EXPECT_THAT(Printed("b"), HasSubstr("team: 2 UAVs, 12 objects"));
   EXPECT_EQ(TeamMapOf("a"), TeamMapOf("b"));
   EXPECT_EQ(Lines(TeamMapOf("b")), 13) << TeamMapOf("b");
 }

@@ -30,7 +30,7 @@ void OutliveTerminal() {
   for (const int number : {SIGHUP, SIGPIPE, SIGTTOU}) std::signal(number, SIG_IGN);
 }
 
-void Tell(std::string_view text) {
+void Print(std::string_view text) {
   constexpr int kPatience_ms = 100;
   static const int file = OpenWithoutBlocking();
   static bool is_stuck = false;

@@ -11,6 +11,6 @@ void OutliveTerminal();
 
 // Writes a text to stderr. A terminal that is gone, or that takes nothing, loses the text: it
 // neither ends nor delays the program. Called by one thread at a time.
-void Tell(std::string_view text);
+void Print(std::string_view text);
 
 }  // namespace kestrel

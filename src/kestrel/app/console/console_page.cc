@@ -149,7 +149,7 @@ bool Browser::Take(std::string_view text, bool is_text, Time now) {
     if (!view) return false;
     images_.SetWish(wish->is_wanted, *view, wish->is_held);
   } else if (const auto* request = std::get_if<ColorRequest>(&*message)) {
-    page_->feed()->Ask(*request);
+    page_->feed()->Request(*request);
   } else {
     page_->feed()->Command(std::get<ConsoleCommand>(*message));
   }

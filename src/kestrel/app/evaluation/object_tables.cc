@@ -107,7 +107,7 @@ ReportTable ProbabilityTable(std::span<const ObjectComparison> comparisons) {
   constexpr std::array<Bin, 6> kBins{
       {{0, 0.5}, {0.5, 0.7}, {0.7, 0.9}, {0.9, 0.99}, {0.99, 0.999}, {0.999, kOpen}}};
   struct Tally {
-    std::vector<double> said;
+    std::vector<double> reported;
     int right = 0;
   };
   std::array<Tally, kBins.size()> classes, digits;
@@ -115,7 +115,7 @@ ReportTable ProbabilityTable(std::span<const ObjectComparison> comparisons) {
                        std::array<Tally, kBins.size()>* tallies) {
     for (std::size_t i = 0; i < kBins.size(); ++i) {
       if (!kBins[i].Contains(probability)) continue;
-      (*tallies)[i].said.push_back(probability);
+      (*tallies)[i].reported.push_back(probability);
       (*tallies)[i].right += is_right;
     }
   };
@@ -134,11 +134,11 @@ ReportTable ProbabilityTable(std::span<const ObjectComparison> comparisons) {
                     {}};
   for (const auto& [name, tallies] : {std::pair("class", &classes), std::pair("digit", &digits)}) {
     for (std::size_t i = 0; i < kBins.size(); ++i) {
-      const auto& [said, right] = (*tallies)[i];
-      if (said.empty()) continue;
-      const int count = static_cast<int>(said.size());
+      const auto& [reported, right] = (*tallies)[i];
+      if (reported.empty()) continue;
+      const int count = static_cast<int>(reported.size());
       table.rows.push_back({name, kBins[i].Label(), std::to_string(count),
-                            FormatPercent(Mean(said)), FormatPercent(Share(right, count)),
+                            FormatPercent(Mean(reported)), FormatPercent(Share(right, count)),
                             FormatPercent(WilsonInterval(right, count))});
     }
   }

@@ -21,8 +21,8 @@ constexpr Duration kFlushPeriod = std::chrono::seconds(1);
 class McapWriter : public SinkWriter {
  public:
   McapWriter(const std::string& path, bool replace, const CameraIntrinsics& camera,
-             const TaskView& view, std::function<void(const std::string&)> tell)
-      : file_(path, replace, camera, view), tell_(std::move(tell)) {}
+             const TaskView& view, std::function<void(const std::string&)> notify)
+      : file_(path, replace, camera, view), notify_(std::move(notify)) {}
 
   void Write(const Observation& observation, std::size_t /*waiting*/) override {
     file_.writer().Write(observation);
@@ -34,12 +34,12 @@ class McapWriter : public SinkWriter {
   void Finish(std::size_t dropped) override {
     file_.Close();
     if (dropped == 0) return;
-    tell_(fmt::format("--mcap: {} frames are left out: the disk is too slow", dropped));
+    notify_(fmt::format("--mcap: {} frames are left out: the disk is too slow", dropped));
   }
 
  private:
   ObservationFile file_;
-  std::function<void(const std::string&)> tell_;
+  std::function<void(const std::string&)> notify_;
 };
 
 class McapFileSink : public ObservationSink {
@@ -60,15 +60,16 @@ class McapFileSink : public ObservationSink {
 std::unique_ptr<AsynchronousSink> OpenMcapSink(const std::string& path, bool replace,
                                                const Task& task,
                                                const CameraCalibration& calibration,
-                                               std::function<void(const std::string&)> tell) {
+                                               std::function<void(const std::string&)> notify) {
   AsynchronousSinkOptions options{
-      .thread_name = "mcap", .frames = kFrames, .patience = kFlushPeriod, .tell = {}};
-  options.tell = [tell](const std::string& error) {
-    tell(fmt::format("{}: the flight goes on without it", error));
+      .thread_name = "mcap", .frames = kFrames, .patience = kFlushPeriod, .notify = {}};
+  options.notify = [notify](const std::string& error) {
+    notify(fmt::format("{}: the flight goes on without it", error));
   };
   return std::make_unique<AsynchronousSink>(
-      std::move(options), std::make_unique<McapWriter>(path, replace, calibration.intrinsics,
-                                                       ViewOf(task, calibration), std::move(tell)));
+      std::move(options),
+      std::make_unique<McapWriter>(path, replace, calibration.intrinsics, ViewOf(task, calibration),
+                                   std::move(notify)));
 }
 
 std::unique_ptr<ObservationSink> OpenMcapFile(const std::string& path, bool replace,

@@ -27,17 +27,17 @@ using ::testing::IsEmpty;
 TEST(McapSinkTest, WritesAllObservationsAndEvents) {
   const TestFolder folder;
   const std::string path = folder / "flight.mcap";
-  std::vector<std::string> told;
+  std::vector<std::string> reported;
   {
     const auto mcap = OpenMcapSink(path, false, LandTask({}), ObservedCalibration(),
-                                   [&](const std::string& text) { told.push_back(text); });
+                                   [&](const std::string& text) { reported.push_back(text); });
     mcap->Take(SessionEvent{Now(), EventLevel::kWarning, "the autopilot is gone"});
     for (int i = 0; i < 20; ++i) {
       const Frame frame = ObservedFrame(i);
       mcap->Take(Observation{frame, ObservedLanding(frame.time)});
     }
   }
-  EXPECT_THAT(told, IsEmpty());
+  EXPECT_THAT(reported, IsEmpty());
   const auto messages = ReadMessages(path);
   EXPECT_EQ(messages.at("/result").size(), 20u);
   ASSERT_EQ(messages.at("/log").size(), 2u);
@@ -64,20 +64,20 @@ TEST(McapSinkTest, WritesFrameWithinASecond) {
 
 TEST(McapSinkTest, ReportsFullDiskAndContinuesFlight) {
   std::mutex mutex;
-  std::vector<std::string> told;
+  std::vector<std::string> reported;
   {
     const auto mcap = OpenMcapSink("/dev/full", true, LandTask({}), ObservedCalibration(),
                                    [&](const std::string& text) {
                                      const std::lock_guard lock(mutex);
-                                     told.push_back(text);
+                                     reported.push_back(text);
                                    });
     for (int i = 0; i < 40; ++i) {
       const Frame frame = ObservedFrame(i);
       mcap->Take(Observation{frame, ObservedLanding(frame.time)});
     }
   }
-  ASSERT_EQ(told.size(), 1u);
-  EXPECT_EQ(told[0], "/dev/full: cannot be written: the flight goes on without it");
+  ASSERT_EQ(reported.size(), 1u);
+  EXPECT_EQ(reported[0], "/dev/full: cannot be written: the flight goes on without it");
 }
 
 }  // namespace

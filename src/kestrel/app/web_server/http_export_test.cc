@@ -45,7 +45,7 @@ class HttpExportTest : public testing::Test {
 };
 
 TEST_F(HttpExportTest, SendsFileAndRemovesIt) {
-  browser_.Ask(browser_.Get("/export/clip-1-5.mp4"));
+  browser_.SendRequest(browser_.Get("/export/clip-1-5.mp4"));
   const PendingExport pending = TakePending();
   EXPECT_EQ(pending.request.last, 5u);
   EXPECT_TRUE(pending.is_wanted());
@@ -63,21 +63,21 @@ TEST_F(HttpExportTest, SendsFileAndRemovesIt) {
   EXPECT_TRUE(response.body() == content);
   EXPECT_TRUE(Eventually([&] { return !std::filesystem::exists(path); }));
   // The same connection serves the next request.
-  browser_.Ask(browser_.Get("/export/frame-1.png"));
+  browser_.SendRequest(browser_.Get("/export/frame-1.png"));
   TakePending().answer({.content = "png", .type = "image/png", .name = "frame-1.png"});
   EXPECT_EQ(browser_.ReadResponse().body(), "png");
 }
 
 TEST_F(HttpExportTest, CancelsExportWhenClientDisconnects) {
   std::optional<TestBrowser> leaving(std::in_place, server_.port());
-  leaving->Ask(leaving->Get("/export/clip-1-5.mp4"));
+  leaving->SendRequest(leaving->Get("/export/clip-1-5.mp4"));
   const PendingExport pending = TakePending();
   EXPECT_TRUE(pending.is_wanted());
   leaving.reset();
   EXPECT_TRUE(Eventually([&] { return !pending.is_wanted(); }));
   pending.answer(FileAnswer());
   // The next browser is served.
-  browser_.Ask(browser_.Get("/export/clip-1-5.mp4"));
+  browser_.SendRequest(browser_.Get("/export/clip-1-5.mp4"));
   TakePending().answer({.refusal = "another clip is being made"});
   const auto refused = browser_.ReadResponse();
   EXPECT_EQ(refused.result_int(), 409u);

@@ -124,7 +124,7 @@ void HttpSession::Read() {
 }
 
 void HttpSession::Answer(const Request& request) {
-  if (IsAmbiguous(request)) return Refuse(Status::bad_request, "who asks is not said once");
+  if (IsAmbiguous(request)) return Refuse(Status::bad_request, "the sender is not named once");
   switch (hub_->guard().Admit(HeadOf(request))) {
     case Admission::kServed:
       return AnswerAdmitted(request);
@@ -140,7 +140,7 @@ void HttpSession::Answer(const Request& request) {
       return Refuse(Status::misdirected_request,
                     "this name is not known here: use the address, or set console.host_names");
     case Admission::kForeignOrigin:
-      return Refuse(Status::forbidden, "another site's page may not ask");
+      return Refuse(Status::forbidden, "another site's page has no access");
   }
 }
 
@@ -201,7 +201,7 @@ void HttpSession::SendExport(const Request& request, Duration limit) {
   // A link on another site may open pages, but must not cause work.
   const auto site = Field(request, "Sec-Fetch-Site");
   if (site && *site != "same-origin" && *site != "none") {
-    return Refuse(Status::forbidden, "another site's page may not ask");
+    return Refuse(Status::forbidden, "another site's page has no access");
   }
   stream_.expires_never();
   const bool is_head = request.method() == http::verb::head;
@@ -210,7 +210,7 @@ void HttpSession::SendExport(const Request& request, Duration limit) {
   patience_.async_wait([self = shared_from_this()](beast::error_code error) {
     if (error) return;       // it was answered, or the browser has gone
     self->stream_.cancel();  // ends the wait for the browser's close
-    self->Refuse(Status::service_unavailable, "not ready, or too much is asked for at once");
+    self->Refuse(Status::service_unavailable, "not ready, or too many requests at once");
   });
   EndWaitWithBrowser();
   const std::weak_ptr<HttpSession> weak = weak_from_this();

@@ -53,13 +53,13 @@ Request TestBrowser::Get(const std::string& target) const {
   return request;
 }
 
-void TestBrowser::Ask(const Request& request) {
+void TestBrowser::SendRequest(const Request& request) {
   beast::error_code error;
   http::write(line_->stream, request, error);
 }
 
 Response TestBrowser::Send(const Request& request) {
-  Ask(request);
+  SendRequest(request);
   return ReadResponse();
 }
 

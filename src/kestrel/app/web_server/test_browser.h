@@ -50,7 +50,7 @@ class TestBrowser {
   test_browser::Request Get(const std::string& target) const;
 
   // Sends a request without waiting for the answer.
-  void Ask(const test_browser::Request& request);
+  void SendRequest(const test_browser::Request& request);
   // Sends a request and returns the answer; status 0 when the connection ends without one.
   test_browser::Response Send(const test_browser::Request& request);
   // Sends bytes, ends the sending side, and returns the answer as Send does.

@@ -114,7 +114,7 @@ void ViewerFlow::Offer(const ChannelMessage& message) {
   }
 }
 
-void ViewerFlow::Say(std::string text) { Push({std::move(text), nullptr, true}); }
+void ViewerFlow::Report(std::string text) { Push({std::move(text), nullptr, true}); }
 
 void ViewerFlow::Push(WebMessage message) {
   if (waiting_.size() == capacity_) {
@@ -124,15 +124,15 @@ void ViewerFlow::Push(WebMessage message) {
   waiting_.push_back(std::move(message));
 }
 
-void ViewerFlow::Warn(const std::string& text) { Say(StatusJson(kWarning, text)); }
+void ViewerFlow::Warn(const std::string& text) { Report(StatusJson(kWarning, text)); }
 
 void ViewerFlow::ReportLosses() {
   if (lost_messages_ + lost_images_ == 0) return;
   const auto images = std::exchange(lost_images_, 0);
   const auto messages = std::exchange(lost_messages_, 0);
-  Say(StatusJson(messages > 0 ? kWarning : kInfo,
-                 fmt::format("{} images and {} messages left out: the connection is too slow",
-                             images, messages)));
+  Report(StatusJson(messages > 0 ? kWarning : kInfo,
+                    fmt::format("{} images and {} messages left out: the connection is too slow",
+                                images, messages)));
 }
 
 std::optional<WebMessage> ViewerFlow::Pop() {

@@ -32,7 +32,7 @@ class ViewerFlow {
 
   // Queues a message if the viewer has subscribed to its channel; otherwise does nothing.
   void Offer(const ChannelMessage& message);
-  void Say(std::string text);  // 'text': JSON
+  void Report(std::string text);  // 'text': JSON
   // Reports to the viewer how many messages were dropped since the last report, if any.
   void ReportLosses();
 

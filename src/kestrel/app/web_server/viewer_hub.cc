@@ -46,8 +46,8 @@ std::unique_ptr<WebConversation> ViewerHub::Begin() { return std::make_unique<Vi
 void ViewerHub::Join(Viewer* viewer) {
   viewers_.push_back(viewer);
   viewer_count_ = static_cast<int>(viewers_.size());
-  viewer->flow().Say(server_info_);
-  viewer->flow().Say(advertisement_);
+  viewer->flow().Report(server_info_);
+  viewer->flow().Report(advertisement_);
 }
 
 void ViewerHub::Leave(Viewer* viewer) {

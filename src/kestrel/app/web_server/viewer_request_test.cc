@@ -20,14 +20,15 @@ TEST(ViewerRequestTest, ReadsSubscriptions) {
 }
 
 TEST(ViewerRequestTest, RecognisesUnsupportedRequests) {
-  const auto asks = [](const std::optional<ViewerRequest>& request) {
+  const auto requests = [](const std::optional<ViewerRequest>& request) {
     return request ? std::get<OtherRequest>(*request).what : "";
   };
-  EXPECT_EQ(asks(ParseViewerText(R"({"op": "getParameters", "parameterNames": []})")),
+  EXPECT_EQ(requests(ParseViewerText(R"({"op": "getParameters", "parameterNames": []})")),
             "getParameters");
-  EXPECT_EQ(asks(ParseViewerText(R"({"op": "advertise", "channels": [{"id": 1}]})")), "advertise");
-  EXPECT_EQ(asks(ParseViewerBytes({"\x01\0\0\0\0", 5})), "message");
-  EXPECT_EQ(asks(ParseViewerBytes({"\x02\0\0\0\0\0\0\0\0\0\0\0\0", 13})), "call");
+  EXPECT_EQ(requests(ParseViewerText(R"({"op": "advertise", "channels": [{"id": 1}]})")),
+            "advertise");
+  EXPECT_EQ(requests(ParseViewerBytes({"\x01\0\0\0\0", 5})), "message");
+  EXPECT_EQ(requests(ParseViewerBytes({"\x02\0\0\0\0\0\0\0\0\0\0\0\0", 13})), "call");
 }
 
 TEST(ViewerRequestTest, RefusesMalformedRequests) {

@@ -84,16 +84,16 @@ std::vector<std::string> Warnings(const LensCalibration& calibration) {
   }
   const double focal_sigma = calibration.fit.sigmas(kFocal) / calibration.intrinsics.fx_px;
   if (focal_sigma > kGoodFocalSigma) {
-    warnings.push_back(
-        fmt::format("the views hardly tell the focal length (standard deviation {:.2g} %): take "
-                    "more, near ones and with tilts of 20 to 50 degrees to different sides",
-                    100 * focal_sigma));
+    warnings.push_back(fmt::format(
+        "the views hardly determine the focal length (standard deviation {:.2g} %): take "
+        "more, near ones and with tilts of 20 to 50 degrees to different sides",
+        100 * focal_sigma));
   }
   const double sigma_px =
       std::max(calibration.fit.sigmas(kPrincipalX), calibration.fit.sigmas(kPrincipalY));
   if (sigma_px > kMaxPrincipalSigma * calibration.intrinsics.width_px) {
     warnings.push_back(fmt::format(
-        "the views hardly tell the principal point (standard deviation {:.1f} px): tilt to "
+        "the views hardly determine the principal point (standard deviation {:.1f} px): tilt to "
         "different sides",
         sigma_px));
   }

@@ -307,13 +307,13 @@ std::vector<std::string> Warnings(const Parameters& sigmas) {
   for (int i = 0; i < kAngles; ++i) {
     if (sigmas(i) <= kMaxAngleSigma || sigmas(i) > kUselessAngleSigma) continue;
     warnings.push_back(fmt::format(
-        "the flight hardly tells the {} of the mount (standard deviation {:.2g} degrees): {}",
+        "the flight hardly determines the {} of the mount (standard deviation {:.2g} degrees): {}",
         kAngleNames[i], Degrees(sigmas(i)), kMountAdvice));
   }
   if (sigmas(kClock) > kMaxClockSigma_s && sigmas(kClock) <= kUselessClockSigma_s) {
-    warnings.push_back(
-        fmt::format("the flight hardly tells the clock offset (standard deviation {:.2g} s): {}",
-                    sigmas(kClock), kClockAdvice));
+    warnings.push_back(fmt::format(
+        "the flight hardly determines the clock offset (standard deviation {:.2g} s): {}",
+        sigmas(kClock), kClockAdvice));
   }
   return warnings;
 }

@@ -133,7 +133,7 @@ TEST_F(Ros2NodeTest, DoesNotPublishBytesOfAnotherType) {
 // As docs.ros.org has it: a publisher must offer what a subscriber requests.
 TEST_F(Ros2NodeTest, MatchesQosLikeRos) {
   struct Case {
-    Ros2Qos offered, asked;
+    Ros2Qos offered, requested;
     bool do_match;
   };
   const Ros2Qos reliable{true, false, 10}, best_effort{false, false, 1}, kept{true, true, 1},
@@ -159,7 +159,7 @@ TEST_F(Ros2NodeTest, MatchesQosLikeRos) {
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const std::string topic = "/qos" + std::to_string(i);
     sender.Advertise(topic, TfMessage::kType, cases[i].offered);
-    receiver.Subscribe(topic, TfMessage::kType, cases[i].asked);
+    receiver.Subscribe(topic, TfMessage::kType, cases[i].requested);
   }
   // Endpoints are announced in their order.
   const std::size_t last = sender.Advertise("/last", TfMessage::kType, kDefaultQos);

@@ -27,7 +27,7 @@ bool TakePart(int domain, const std::string& name, std::size_t count) {
   TeamMember member(self, {});
   MappedObject object;
   object.covariance.diagonal().head<3>().setConstant(0.01);
-  member.Tell({object}, Time());
+  member.Share({object}, Time());
   const Time start = Now();
   std::optional<Time> done;
   while (Now() - start < std::chrono::seconds(10)) {

@@ -76,8 +76,8 @@ class FastParticipant {
 
   // Call it once for each topic.
   fast::DataReader* Read(const std::string& topic, const std::string& type,
-                         const FastQos& asked = {}) {
-    auto qos = asked.Of<fast::DataReaderQos>();
+                         const FastQos& requested = {}) {
+    auto qos = requested.Of<fast::DataReaderQos>();
     qos.history().kind = fast::KEEP_ALL_HISTORY_QOS;
     return participant_->create_subscriber(fast::SUBSCRIBER_QOS_DEFAULT)
         ->create_datareader(Topic(topic, type), qos);

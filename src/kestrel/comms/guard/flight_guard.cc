@@ -9,7 +9,7 @@ namespace kestrel {
 namespace {
 
 constexpr Duration kSetPointPeriod = std::chrono::milliseconds(20);
-constexpr Duration kAskPeriod = std::chrono::milliseconds(300);
+constexpr Duration kRequestPeriod = std::chrono::milliseconds(300);
 // Shorter than the shortest time after which PX4 takes a stream of set-points for broken off.
 constexpr Duration kPause = std::chrono::milliseconds(250);
 // PX4's Hold and ArduCopter's BRAKE brake more softly than a set-point, and BRAKE lets a UAV that
@@ -141,7 +141,7 @@ GuardAction FlightGuard::Work(Time now) {
   if (now < mode_due_) return action;
   action.mode = ModeToRequest(now);
   if (!action.mode) return action;
-  mode_due_ = now + kAskPeriod;
+  mode_due_ = now + kRequestPeriod;
   // PX4 reports its mode late, and must not get a set-point once it has left OFFBOARD.
   if (kind_ == AutopilotKind::kPx4) set_point_due_ = now + kPause;
   return action;

@@ -65,7 +65,7 @@ GuardLink::GuardLink(const std::string& url, const GuardOptions& options,
 }
 
 GuardLink::~GuardLink() {
-  SayGoodbye();
+  SendGoodbye();
   // The line is free for another program when this one has ended.
   std::array<std::uint8_t, 4096> rest;
   for (const Time end = Now() + kEndPatience; has_guard_ && Now() < end;) {
@@ -92,7 +92,7 @@ void GuardLink::Start(const GuardOptions& options, const std::string& signing_ke
   if (error != 0) {
     throw InputError(fmt::format(
         "the guard's program {} cannot be started: {}; guidance does not fly without it, unless "
-        "--no-guard says so",
+        "--no-guard is for that",
         program, std::generic_category().message(error)));
   }
 }
@@ -111,7 +111,7 @@ void GuardLink::AwaitStart() {
   throw InputError("the guard has not opened the line in 10 s");
 }
 
-void GuardLink::TellLife(GuardLife life, Time now) {
+void GuardLink::SendLife(GuardLife life, Time now) {
   if (state_ != GuardState::kWatches || has_ended_) return;
   CheckGuard(now);
   if (now < life_due_) return;
@@ -131,7 +131,7 @@ void GuardLink::CheckGuard(Time now) {
   if (unanswered_ && now - *unanswered_ > kAnswerPatience) kill(process_, SIGKILL);
 }
 
-void GuardLink::SayGoodbye() {
+void GuardLink::SendGoodbye() {
   if (has_ended_) return;
   has_ended_ = true;
   SendTo(guard_.number(), GuardMessage::kGoodbye);

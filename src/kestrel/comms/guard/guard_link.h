@@ -40,10 +40,10 @@ class GuardLink : public Transport {
 
   // A sign of life, by the thread that sends set-points; sent on 50 times a second. 'life.sent_ns'
   // is filled in.
-  void TellLife(GuardLife life, Time now);
+  void SendLife(GuardLife life, Time now);
   // The program ends: no sign of life comes any more. The guard ends, too, unless by the last
   // sign of life guidance flies.
-  void SayGoodbye();
+  void SendGoodbye();
 
   GuardState state() const { return state_; }
   // Reason in words, where the state is kGone or kFailed. Called by the receiving thread.

@@ -178,10 +178,10 @@ void GuardProcess::Act(const GuardAction& action) {
     Send(ModeCommand(life_.kind, CustomModeOf(life_.kind, *action.mode), life_.autopilot_system,
                      life_.autopilot_component));
   }
-  if (action.text != nullptr) Say(action.text);
+  if (action.text != nullptr) Report(action.text);
 }
 
-void GuardProcess::Say(const char* text) {
+void GuardProcess::Report(const char* text) {
   mavlink::Statustext message;
   message.severity = mavlink::kSeverityCritical;
   SetText(text, message.text);

@@ -41,7 +41,7 @@ class GuardProcess {
   void TakeLife(const GuardLife& life);
   void Read(const mavlink::Packet& packet);
   void Act(const GuardAction& action);
-  void Say(const char* text);
+  void Report(const char* text);
   template <class Message>
   void Send(const Message& message);
 

@@ -44,7 +44,7 @@ class Flyer {
       autopilot_->Tick(now);
       Fly(now);
       const GuardTask task = is_flying_ ? GuardTask::kStop : GuardTask::kNothing;
-      guard_->TellLife(LifeOf(task, *autopilot_, *connection_), now);
+      guard_->SendLife(LifeOf(task, *autopilot_, *connection_), now);
     }
     return guard_->state();
   }

@@ -72,16 +72,16 @@ std::optional<bool> Autopilot::is_position_good(Time now) const {
   return estimator->is_good;
 }
 
-void Autopilot::Tell(AutopilotEventKind kind, std::string text) {
+void Autopilot::Notify(AutopilotEventKind kind, std::string text) {
   if (listener_.event) listener_.event({kind, std::move(text)});
 }
 
 template <class Text>
 void Autopilot::ReportOnce(AutopilotEventKind kind, const Text& make_text) {
   const std::uint32_t bit = 1u << static_cast<unsigned>(kind);
-  if ((told_ & bit) != 0) return;
-  told_ |= bit;
-  Tell(kind, make_text());
+  if ((reported_ & bit) != 0) return;
+  reported_ |= bit;
+  Notify(kind, make_text());
 }
 
 void Autopilot::Handle(const mavlink::Packet& packet, Time received) {
@@ -141,17 +141,18 @@ void Autopilot::HandleHeartbeat(const mavlink::Packet& packet, const mavlink::He
     return;
   }
   const mavlink::Heartbeat before = std::exchange(heartbeat_, heartbeat);
-  heard_ = mode_told_ = received;
+  heard_ = modereported_ = received;
   if (is_here_) return ReportChange(before);
   is_here_ = true;
   const bool is_first = kind_ == AutopilotKind::kUnknown;
   kind_ = AutopilotKindOf(heartbeat.autopilot);
   WantStreams();
-  Tell(is_first ? AutopilotEventKind::kHeard : AutopilotEventKind::kBack,
-       fmt::format("{} (system {}) {}, {}, {}", ToString(kind_), system_,
-                   is_first ? "heard" : "is back", mode_name(), is_armed() ? "armed" : "disarmed"));
+  Notify(
+      is_first ? AutopilotEventKind::kHeard : AutopilotEventKind::kBack,
+      fmt::format("{} (system {}) {}, {}, {}", ToString(kind_), system_,
+                  is_first ? "heard" : "is back", mode_name(), is_armed() ? "armed" : "disarmed"));
   if (is_in_failsafe()) {
-    Tell(AutopilotEventKind::kFailsafe, FailsafeInWords(kind_, heartbeat_.custom_mode));
+    Notify(AutopilotEventKind::kFailsafe, FailsafeInWords(kind_, heartbeat_.custom_mode));
   }
 }
 
@@ -160,11 +161,11 @@ void Autopilot::ReportChange(const mavlink::Heartbeat& before) {
     commands_.Drop(mavlink::kCommandDoSetMode);
   }
   if (heartbeat_.custom_mode != before.custom_mode || is_armed() != IsArmed(before)) {
-    Tell(AutopilotEventKind::kModeChanged,
-         fmt::format("mode {}, {}", mode_name(), is_armed() ? "armed" : "disarmed"));
+    Notify(AutopilotEventKind::kModeChanged,
+           fmt::format("mode {}, {}", mode_name(), is_armed() ? "armed" : "disarmed"));
   }
   if (is_in_failsafe() && !IsInFailsafe(before)) {
-    Tell(AutopilotEventKind::kFailsafe, FailsafeInWords(kind_, heartbeat_.custom_mode));
+    Notify(AutopilotEventKind::kFailsafe, FailsafeInWords(kind_, heartbeat_.custom_mode));
   }
 }
 
@@ -191,7 +192,7 @@ void Autopilot::HandleFromAutopilot(const mavlink::Packet& packet, Time received
   if (const auto mode = packet.As<mavlink::CurrentMode>()) {
     const mavlink::Heartbeat before = heartbeat_;
     heartbeat_.custom_mode = mode->custom_mode;
-    mode_told_ = received;
+    modereported_ = received;
     ReportChange(before);
   } else if (const auto timesync = packet.As<mavlink::Timesync>()) {
     HandleTimesync(*timesync, received);
@@ -286,7 +287,7 @@ void Autopilot::HandleStatus(const mavlink::Packet& packet, Time received) {
   const LandedState before = status_.landed();
   status_.Handle(packet, clock_.sync(), received);
   if (status_.landed() != before) {
-    Tell(AutopilotEventKind::kModeChanged, ToString(status_.landed()));
+    Notify(AutopilotEventKind::kModeChanged, ToString(status_.landed()));
   }
 }
 
@@ -353,8 +354,8 @@ void Autopilot::Restart() {
   sequence_.reset();
   questions_ = 0;
   questions_due_ = {};
-  Tell(AutopilotEventKind::kRestarted,
-       "the autopilot started again: its clock is learned and its streams are asked for anew");
+  Notify(AutopilotEventKind::kRestarted,
+         "the autopilot started again: its clock is learned and its streams are requested again");
 }
 
 void Autopilot::ReportNotFinite(const char* what) {
@@ -373,8 +374,8 @@ void Autopilot::Tick(Time now) {
 void Autopilot::CheckPresence(Time now) {
   if (!is_here_ || ToSeconds(now - heard_) < kAwayAfter_s) return;
   is_here_ = false;
-  Tell(AutopilotEventKind::kAway,
-       fmt::format("no heartbeat of the autopilot for {:.1f} s", ToSeconds(now - heard_)));
+  Notify(AutopilotEventKind::kAway,
+         fmt::format("no heartbeat of the autopilot for {:.1f} s", ToSeconds(now - heard_)));
 }
 
 void Autopilot::SendHeartbeat(Time now) {
@@ -424,7 +425,7 @@ void Autopilot::WantTimesync() {
 }
 
 void Autopilot::SendRequests(Time now) {
-  if (auto question = clock_.Ask(now)) {
+  if (auto question = clock_.Request(now)) {
     question->target_system = system_;
     question->target_component = component_;
     connection_->Send(*question);
@@ -486,13 +487,13 @@ void Autopilot::ReportEnding(const CommandRequests::Ending& ending) {
   const std::string what =
       is_mode ? "mode " + ModeName(kind_, requested_mode_) : std::string("disarming");
   if (!ending.result) {
-    Tell(AutopilotEventKind::kCommandUnanswered,
-         fmt::format("the autopilot was asked for {} and does not answer", what));
+    Notify(AutopilotEventKind::kCommandUnanswered,
+           fmt::format("the autopilot does not answer the request for {}", what));
   } else if (ending.is_accepted()) {
-    Tell(AutopilotEventKind::kCommandAccepted, fmt::format("the autopilot accepts {}", what));
+    Notify(AutopilotEventKind::kCommandAccepted, fmt::format("the autopilot accepts {}", what));
   } else {
-    Tell(AutopilotEventKind::kCommandRefused,
-         fmt::format("the autopilot refuses {}: {}", what, CommandResultName(*ending.result)));
+    Notify(AutopilotEventKind::kCommandRefused,
+           fmt::format("the autopilot refuses {}: {}", what, CommandResultName(*ending.result)));
   }
 }
 
@@ -503,12 +504,12 @@ void Autopilot::SendQuestions(Time now) {
   if (now < questions_due_) return;
   questions_due_ = now + (questions_ < kQuick ? Duration(seconds(1)) : kSlow);
   ++questions_;
-  const auto ask = [&](std::uint32_t id) {
+  const auto request_message = [&](std::uint32_t id) {
     connection_->Send(MakeCommand(mavlink::kCommandRequestMessage, static_cast<float>(id), 0));
   };
-  if (!version() && questions_ < kQuick) ask(mavlink::AutopilotVersion::kId);
-  if (!origin()) ask(mavlink::GpsGlobalOrigin::kId);
-  if (!home()) ask(mavlink::HomePosition::kId);
+  if (!version() && questions_ < kQuick) request_message(mavlink::AutopilotVersion::kId);
+  if (!origin()) request_message(mavlink::GpsGlobalOrigin::kId);
+  if (!home()) request_message(mavlink::HomePosition::kId);
 }
 
 void Autopilot::SendStreamRequest(const StreamRequests::Request& request) {
@@ -534,7 +535,8 @@ void Autopilot::ReportSlowStream(const StreamRequests::Request& request) {
   }
   ReportOnce(AutopilotEventKind::kSlowStream, [&] {
     return fmt::format(
-        "the autopilot tells its {} {:.0f} times a second, asked {} times for {:.0f}: is the line "
+        "the autopilot sends its {} {:.0f} times a second, requested {} times at {:.0f}: is the "
+        "line "
         "too slow, or another ground station asking for less?",
         is_attitude ? "attitude" : "position", streams_.RateOf(request.id), request.requests,
         request.rate_hz);

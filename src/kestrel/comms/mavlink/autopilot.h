@@ -123,8 +123,8 @@ class Autopilot {
 
   // True when a heartbeat was heard recently.
   bool is_here() const { return is_here_; }
-  Time mode_told() const { return mode_told_; }  // newest heartbeat, or PX4's CURRENT_MODE
-  Time received() const { return received_; }    // time of the newest message
+  Time modereported() const { return modereported_; }  // newest heartbeat, or PX4's CURRENT_MODE
+  Time received() const { return received_; }          // time of the newest message
   AutopilotKind kind() const { return kind_; }
   std::uint8_t system() const { return system_; }
   std::uint8_t component() const { return component_; }
@@ -212,7 +212,7 @@ class Autopilot {
   void ReportEnding(const CommandRequests::Ending& ending);
   void SendParameterRequests(Time now);
   void SendQuestions(Time now);
-  void Tell(AutopilotEventKind kind, std::string text);
+  void Notify(AutopilotEventKind kind, std::string text);
   template <class Text>
   void ReportOnce(AutopilotEventKind kind, const Text& make_text);
 
@@ -227,7 +227,7 @@ class Autopilot {
   mavlink::Heartbeat heartbeat_;
   Time heard_{};
   Time received_{};
-  Time mode_told_{};
+  Time modereported_{};
   std::optional<std::uint8_t> sequence_;
 
   ClockExchange clock_;
@@ -251,7 +251,7 @@ class Autopilot {
   int reboots_ = 0;
   std::uint32_t boot_ms_ = 0;  // its time since boot at stamped_
   Time stamped_{};
-  std::uint32_t told_ = 0;  // one bit for each kind that is reported once
+  std::uint32_t reported_ = 0;  // one bit for each kind that is reported once
 };
 
 }  // namespace kestrel

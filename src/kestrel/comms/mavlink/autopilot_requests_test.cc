@@ -22,7 +22,7 @@ TEST_F(AutopilotTest, ReadsParametersOfBothKinds) {
   SetText("PLND_ENABLED", value.param_id);
   value.param_value = 1;
   value.param_type = 2;
-  Say(value);
+  SendMessage(value);
   EXPECT_EQ(autopilot_->parameters().Find("PLND_ENABLED"), 1);
   Pass(7);
   EXPECT_TRUE(autopilot_->parameters().IsMissing("NO_SUCH"));
@@ -56,7 +56,7 @@ TEST_F(AutopilotTest, ReadsParameterByAllItsNames) {
   autopilot_->parameters().Want("GUID_TIMEOUT");
   Pass(1);
   EXPECT_EQ(heard_[mavlink::ParamRequestRead::kId], 3);
-  Say(ValueOf("WPNAV_SPEED", 1200, mavlink::kParamReal32));
+  SendMessage(ValueOf("WPNAV_SPEED", 1200, mavlink::kParamReal32));
   EXPECT_EQ(autopilot_->parameters().Find("WP_SPD"), 12) << "in m/s, as 4.7 has it";
   EXPECT_EQ(autopilot_->parameters().EntryOf("WP_SPD")->name, "WPNAV_SPEED");
   EXPECT_FALSE(autopilot_->parameters().Find("GUID_TIMEOUT"));
@@ -68,14 +68,14 @@ TEST_F(AutopilotTest, WritesParameterUntilAcknowledged) {
   autopilot_->SetParameter("WP_SPD", 8);
   Pass(1);
   EXPECT_EQ(heard_[mavlink::ParamSet::kId], 0) << "its type is not known yet";
-  Say(ValueOf("WPNAV_SPEED", 1200, mavlink::kParamReal32));
+  SendMessage(ValueOf("WPNAV_SPEED", 1200, mavlink::kParamReal32));
   Pass(1.2);
   EXPECT_GT(heard_[mavlink::ParamSet::kId], 1);
   const auto set = last_heard_[mavlink::ParamSet::kId].As<mavlink::ParamSet>();
   EXPECT_EQ(TextOf(set->param_id), "WPNAV_SPEED");
   EXPECT_EQ(set->param_value, 800);
   EXPECT_EQ(autopilot_->parameter_writes().StateOf("WP_SPD"), ParameterWriteState::kWaiting);
-  Say(ValueOf("WPNAV_SPEED", 800, mavlink::kParamReal32));
+  SendMessage(ValueOf("WPNAV_SPEED", 800, mavlink::kParamReal32));
   EXPECT_EQ(autopilot_->parameter_writes().StateOf("WP_SPD"), ParameterWriteState::kWritten);
   EXPECT_EQ(autopilot_->parameters().Find("WP_SPD"), 8);
 }
@@ -89,14 +89,14 @@ TEST_F(AutopilotTest, ReportsUnwrittenParameters) {
   };
   autopilot_->SetParameter("COM_OBL_RC_ACT", 4);
   autopilot_->SetParameter("NO_SUCH", 1);
-  Say(px4_value(0));
+  SendMessage(px4_value(0));
   Pass(0.1);
   const auto set = last_heard_[mavlink::ParamSet::kId].As<mavlink::ParamSet>();
   EXPECT_EQ(set->param_value, std::bit_cast<float>(std::int32_t{4}));
   EXPECT_EQ(set->param_type, mavlink::kParamInt32);
   for (int i = 0; i < 8; ++i) {
     Pass(1);
-    Say(px4_value(0));
+    SendMessage(px4_value(0));
   }
   EXPECT_EQ(autopilot_->parameter_writes().StateOf("COM_OBL_RC_ACT"),
             ParameterWriteState::kRefused);
@@ -120,14 +120,14 @@ TEST_F(AutopilotTest, RequestsModeUntilAnswered) {
     EXPECT_EQ(command->param2, is_px4 ? 4 : 9);
     EXPECT_EQ(command->param3, is_px4 ? 6 : 0);
     EXPECT_EQ(command->confirmation, 1);
-    Say(mavlink::CommandAck{mavlink::kCommandDoSetMode, mavlink::kResultDenied});
+    SendMessage(mavlink::CommandAck{mavlink::kCommandDoSetMode, mavlink::kResultDenied});
     EXPECT_FALSE(autopilot_->is_request_pending());
     EXPECT_EQ(TextOfEvent(AutopilotEventKind::kCommandRefused),
               "the autopilot refuses mode LAND: denied");
     autopilot_->DisarmByForce();
     Pass(3);
     EXPECT_EQ(TextOfEvent(AutopilotEventKind::kCommandUnanswered),
-              "the autopilot was asked for disarming and does not answer");
+              "the autopilot does not answer the request for disarming");
   }
 }
 
@@ -138,17 +138,17 @@ TEST_F(AutopilotTest, StopsRequestingModeWhenPilotChoosesAnother) {
   autopilot_->RequestMode(FlightMode::kLand);
   Pass(0.1);
   mode_ = 5;
-  SayHeartbeat(kind_, mode_);
+  SendHeartbeat(kind_, mode_);
   EXPECT_FALSE(autopilot_->is_request_pending());
   autopilot_->RequestMode(FlightMode::kLand);
   mode_ = 9;
-  SayHeartbeat(kind_, mode_);
+  SendHeartbeat(kind_, mode_);
   EXPECT_TRUE(autopilot_->is_request_pending());
 }
 
 TEST_F(AutopilotTest, RequestsMissingStreamsLessOften) {
   Start();
-  const auto asked = [&](double seconds) {
+  const auto requested = [&](double seconds) {
     intervals_us_.clear();
     int times = 0;
     for (int i = 0; i < std::lround(seconds); ++i) {
@@ -157,8 +157,8 @@ TEST_F(AutopilotTest, RequestsMissingStreamsLessOften) {
     }
     return times;
   };
-  EXPECT_GT(asked(8), 3);
-  EXPECT_LE(asked(60), 1);
+  EXPECT_GT(requested(8), 3);
+  EXPECT_LE(requested(60), 1);
 }
 
 }  // namespace

@@ -17,15 +17,15 @@ constexpr std::uint32_t kArduCopterLandMode = 9;
 
 TEST_F(AutopilotTest, IsFoundByItsHeartbeat) {
   Start();
-  Say(mavlink::Heartbeat{mavlink::kTypeGcs, 8, 0, 0, 4, 3}, 255, 190);
+  SendMessage(mavlink::Heartbeat{mavlink::kTypeGcs, 8, 0, 0, 4, 3}, 255, 190);
   Pass(1, false);
   EXPECT_EQ(autopilot_->kind(), AutopilotKind::kUnknown);
-  SayHeartbeat();
+  SendHeartbeat();
   EXPECT_EQ(autopilot_->kind(), AutopilotKind::kArduPilot);
   EXPECT_EQ(autopilot_->mode_name(), "GUIDED");
   EXPECT_TRUE(autopilot_->is_armed());
   EXPECT_EQ(TextOfEvent(AutopilotEventKind::kHeard), "ArduPilot (system 1) heard, GUIDED, armed");
-  SayHeartbeat(mavlink::kAutopilotArduPilot, kArduCopterLandMode);
+  SendHeartbeat(mavlink::kAutopilotArduPilot, kArduCopterLandMode);
   EXPECT_TRUE(autopilot_->is_landing_mode());
   EXPECT_EQ(TextOfEvent(AutopilotEventKind::kModeChanged), "mode LAND, armed");
 }
@@ -42,7 +42,7 @@ TEST_F(AutopilotTest, SendsHeartbeatPerSecondFromStart) {
 
 TEST_F(AutopilotTest, TakesSystemIdOfAutopilot) {
   Start();
-  Say(mavlink::Heartbeat{2, 3, 0, 0, 4, 3}, 42, 1);
+  SendMessage(mavlink::Heartbeat{2, 3, 0, 0, 4, 3}, 42, 1);
   EXPECT_EQ(autopilot_->system(), 42);
   EXPECT_EQ(connection_->system(), 42);
 }
@@ -50,7 +50,7 @@ TEST_F(AutopilotTest, TakesSystemIdOfAutopilot) {
 TEST_F(AutopilotTest, ReportsPosesInKestrelFrames) {
   Start();
   Pass(1);
-  SayPose();
+  SendPose();
   ASSERT_EQ(poses_.size(), 1u);
   const PoseSample& pose = poses_[0];
   // 0.1 s after the position, at 2 m/s.
@@ -69,24 +69,24 @@ TEST_F(AutopilotTest, ReportsPosesInKestrelFrames) {
 TEST_F(AutopilotTest, UsesEulerAnglesWithoutQuaternions) {
   Start();
   Pass(1);
-  SayPose();
+  SendPose();
   mavlink::Attitude attitude;
   attitude.time_boot_ms = BootMs() + 200;
   attitude.yaw = static_cast<float>(M_PI / 2);
   attitude.pitch = 0.3f;
-  Say(attitude);
+  SendMessage(attitude);
   EXPECT_EQ(poses_.size(), 1u);  // quaternions come
   attitude.time_boot_ms = BootMs() + 700;
-  Say(attitude);
+  SendMessage(attitude);
   EXPECT_EQ(poses_.size(), 1u);  // the position is too old by now
   now_ += milliseconds(700);
-  SayPose();
+  SendPose();
   poses_.clear();
   now_ += milliseconds(200);
   attitude.time_boot_ms = BootMs() + 600;
-  SayPose();
+  SendPose();
   attitude.time_boot_ms = BootMs() + 350;
-  Say(attitude);
+  SendMessage(attitude);
   EXPECT_EQ(autopilot_->counters().without_position, 1u);
 }
 
@@ -96,16 +96,16 @@ TEST_F(AutopilotTest, RequestsStreamsAndRenewsLostOnes) {
   EXPECT_EQ(intervals_us_[mavlink::AttitudeQuaternion::kId], 10000);
   EXPECT_EQ(intervals_us_[mavlink::LocalPositionNed::kId], 20000);
   EXPECT_EQ(intervals_us_[mavlink::ExtendedSysState::kId], 200000);
-  const auto ask_count = [&] {
+  const auto request_count = [&] {
     intervals_us_.clear();
     for (int i = 0; i < 300; ++i) {
       Pass(0.01, i % 100 == 0);
-      Say(AttitudeAt(BootMs()));
+      SendMessage(AttitudeAt(BootMs()));
     }
     return intervals_us_.count(mavlink::AttitudeQuaternion::kId);
   };
-  ask_count();
-  EXPECT_EQ(ask_count(), 0u);  // it comes already
+  request_count();
+  EXPECT_EQ(request_count(), 0u);  // it comes already
   Pass(7);
   EXPECT_EQ(intervals_us_.count(mavlink::AttitudeQuaternion::kId), 1u);
 }
@@ -123,16 +123,16 @@ TEST_F(AutopilotTest, ReportsMissingPosition) {
   Start();
   for (int i = 0; i < 2500; ++i) {
     Pass(0.01, i % 100 == 0);
-    Say(AttitudeAt(BootMs()));
+    SendMessage(AttitudeAt(BootMs()));
   }
   EXPECT_EQ(EventsOf(AutopilotEventKind::kSlowStream), 0);
   EXPECT_EQ(EventsOf(AutopilotEventKind::kNoPosition), 1);
   EXPECT_THAT(TextOfEvent(AutopilotEventKind::kNoPosition), HasSubstr("has no origin"));
   // The position follows the origin after a while: the line is not too slow.
-  Say(mavlink::GpsGlobalOrigin{-353632621, 1491652374, 584000});
+  SendMessage(mavlink::GpsGlobalOrigin{-353632621, 1491652374, 584000});
   for (int i = 0; i < 2500; ++i) {
     Pass(0.01, i % 100 == 0);
-    Say(AttitudeAt(BootMs()));
+    SendMessage(AttitudeAt(BootMs()));
   }
   EXPECT_EQ(EventsOf(AutopilotEventKind::kSlowStream), 0);
 }
@@ -144,12 +144,12 @@ TEST_F(AutopilotTest, DoesNotReportNewPositionStreamAsSlow) {
     events_.clear();
     for (int i = 0; i < 2000 + 10 * tenths; ++i) {
       Pass(0.01, i % 100 == 0);
-      Say(AttitudeAt(BootMs()));
+      SendMessage(AttitudeAt(BootMs()));
     }
     for (int i = 0; i < 1000; ++i) {
       Pass(0.01, i % 100 == 0);
-      if (i % 2 == 0) SayPose();
-      if (i == 0) SayPose();  // one packet holds several messages
+      if (i % 2 == 0) SendPose();
+      if (i == 0) SendPose();  // one packet holds several messages
     }
     EXPECT_EQ(EventsOf(AutopilotEventKind::kNoPosition), 1);
     EXPECT_EQ(EventsOf(AutopilotEventKind::kSlowStream), 0) << tenths;
@@ -158,7 +158,8 @@ TEST_F(AutopilotTest, DoesNotReportNewPositionStreamAsSlow) {
 
 TEST_F(AutopilotTest, AdvisesPilotInFailsafe) {
   Start();
-  Say(mavlink::Heartbeat{mavlink::kTypeQuadrotor, kind_, 0, mode_, mavlink::kStateCritical, 3});
+  SendMessage(
+      mavlink::Heartbeat{mavlink::kTypeQuadrotor, kind_, 0, mode_, mavlink::kStateCritical, 3});
   EXPECT_THAT(TextOfEvent(AutopilotEventKind::kFailsafe), HasSubstr("GUIDED"));
   EXPECT_THAT(FailsafeInWords(AutopilotKind::kPx4, Px4CustomMode(4, 3)),
               testing::AllOf(HasSubstr("LOITER"),
@@ -176,7 +177,7 @@ TEST_F(AutopilotTest, SynchronisesPx4ClockFast) {
   for (int i = 0; i < 700; ++i) {
     mavlink::Timesync question;
     question.ts1 = RemoteAt(now_);
-    Say(question);
+    SendMessage(question);
     Pass(0.01, i % 100 == 0);
   }
   EXPECT_GE(heard_[mavlink::Timesync::kId], 700);
@@ -188,7 +189,7 @@ TEST_F(AutopilotTest, AnswersTimesyncByAutopilotClock) {
   Pass(2);
   mavlink::Timesync question;
   question.ts1 = RemoteAt(now_ - milliseconds(2));
-  Say(question);
+  SendMessage(question);
   const auto answer = last_heard_[mavlink::Timesync::kId].As<mavlink::Timesync>();
   EXPECT_EQ(answer->ts1, question.ts1);
   EXPECT_NEAR(answer->tc1, RemoteAt(now_), 1e5);
@@ -200,7 +201,7 @@ TEST_F(AutopilotTest, EstimatesClockRoughlyWithoutTimesync) {
   Start();
   for (int i = 0; i < 800; ++i) {
     Pass(0.01, i % 100 == 0);
-    if (i % 2 == 0) SayPose();
+    if (i % 2 == 0) SendPose();
   }
   EXPECT_GT(poses_.size(), 100u);
   EXPECT_EQ(EventsOf(AutopilotEventKind::kNoTimeSync), 1);
@@ -209,14 +210,14 @@ TEST_F(AutopilotTest, EstimatesClockRoughlyWithoutTimesync) {
 TEST_F(AutopilotTest, DetectsReboot) {
   Start();
   Pass(3);
-  SayPose();
+  SendPose();
   boot_ = now_ - milliseconds(1500);
   Pass(1);
   EXPECT_EQ(EventsOf(AutopilotEventKind::kRestarted), 1);
   EXPECT_EQ(autopilot_->restarts(), 1);
   Pass(1);
   poses_.clear();
-  SayPose();
+  SendPose();
   ASSERT_EQ(poses_.size(), 1u);
   EXPECT_NEAR(ToSeconds(poses_[0].time - now_), 0.1, 0.002);
   EXPECT_EQ(autopilot_->restarts(), 1);
@@ -226,11 +227,11 @@ TEST_F(AutopilotTest, DetectsReboot) {
 TEST_F(AutopilotTest, ClockSetBackIsNoReboot) {
   Start();
   Pass(3);
-  SayPose();
+  SendPose();
   boot_ += std::chrono::seconds(20);
   for (int i = 0; i < 5; ++i) {
     now_ += milliseconds(20);
-    SayPose();
+    SendPose();
   }
   EXPECT_EQ(autopilot_->restarts(), 1);
   EXPECT_EQ(autopilot_->reboots(), 0);
@@ -239,12 +240,12 @@ TEST_F(AutopilotTest, ClockSetBackIsNoReboot) {
 TEST_F(AutopilotTest, DetectsRebootByTimestamps) {
   Start();
   Pass(3);
-  SayPose();
+  SendPose();
   answers_timesync_ = false;
   boot_ = now_ - milliseconds(1500);
   for (int i = 0; i < 5; ++i) {
     now_ += milliseconds(20);
-    SayPose();
+    SendPose();
   }
   EXPECT_EQ(autopilot_->restarts(), 1);
   EXPECT_EQ(autopilot_->reboots(), 1);
@@ -253,10 +254,10 @@ TEST_F(AutopilotTest, DetectsRebootByTimestamps) {
 TEST_F(AutopilotTest, IgnoresOldMessage) {
   Start();
   Pass(1);
-  SayPose();
+  SendPose();
   poses_.clear();
-  Say(AttitudeAt(BootMs() - 500));
-  Say(AttitudeAt(BootMs() - 50000));
+  SendMessage(AttitudeAt(BootMs() - 500));
+  SendMessage(AttitudeAt(BootMs() - 50000));
   EXPECT_TRUE(poses_.empty());
   EXPECT_EQ(autopilot_->counters().backwards, 2u);
   EXPECT_THAT(TextOfEvent(AutopilotEventKind::kTimeBackwards),
@@ -268,15 +269,15 @@ TEST_F(AutopilotTest, IgnoresOldMessage) {
 TEST_F(AutopilotTest, IgnoresNonFiniteValues) {
   Start();
   Pass(1);
-  SayPose();
+  SendPose();
   poses_.clear();
   mavlink::AttitudeQuaternion attitude = AttitudeAt(BootMs() + 120);
   attitude.q2 = std::numeric_limits<float>::quiet_NaN();
-  Say(attitude);
+  SendMessage(attitude);
   mavlink::Attitude euler;
   euler.time_boot_ms = BootMs() + 130;
   euler.roll = std::numeric_limits<float>::quiet_NaN();
-  Say(euler);
+  SendMessage(euler);
   EXPECT_TRUE(poses_.empty());
   EXPECT_EQ(autopilot_->counters().not_finite, 2u);
   EXPECT_EQ(EventsOf(AutopilotEventKind::kNotFinite), 1);
@@ -285,16 +286,16 @@ TEST_F(AutopilotTest, IgnoresNonFiniteValues) {
 TEST_F(AutopilotTest, IgnoresOtherSystems) {
   Start();
   Pass(1);
-  Say(mavlink::Heartbeat{2, 12, 0, 0, 4, 3}, 7, 1);
+  SendMessage(mavlink::Heartbeat{2, 12, 0, 0, 4, 3}, 7, 1);
   EXPECT_EQ(autopilot_->kind(), AutopilotKind::kArduPilot);
   EXPECT_THAT(TextOfEvent(AutopilotEventKind::kOtherAutopilot), HasSubstr("system 7 component 1"));
-  SayPose();
+  SendPose();
   poses_.clear();
-  Say(AttitudeAt(BootMs() + 200), 7, 1);
+  SendMessage(AttitudeAt(BootMs() + 200), 7, 1);
   EXPECT_TRUE(poses_.empty());
   EXPECT_GT(autopilot_->counters().other_systems, 0u);
-  Say(mavlink::LandingTarget{}, 1, 1);
-  Say(mavlink::LandingTarget{}, 1, 1);
+  SendMessage(mavlink::LandingTarget{}, 1, 1);
+  SendMessage(mavlink::LandingTarget{}, 1, 1);
   EXPECT_EQ(autopilot_->counters().target_echoes, 2u);
   EXPECT_EQ(EventsOf(AutopilotEventKind::kTargetEcho), 1);
 }
@@ -302,7 +303,7 @@ TEST_F(AutopilotTest, IgnoresOtherSystems) {
 TEST_F(AutopilotTest, ReportsIdClash) {
   Start();
   Pass(1);
-  Say(mavlink::Heartbeat{18, 8, 0, 0, 4, 3}, 1, 191);
+  SendMessage(mavlink::Heartbeat{18, 8, 0, 0, 4, 3}, 1, 191);
   EXPECT_THAT(TextOfEvent(AutopilotEventKind::kIdClash),
               HasSubstr("somebody else sends as system 1 component 191"));
 }
@@ -311,7 +312,7 @@ TEST_F(AutopilotTest, ReportsOwnIdsEqualToAutopilot) {
   ConnectionOptions options;
   options.component_id = 1;
   Start({}, options);
-  SayHeartbeat();
+  SendHeartbeat();
   EXPECT_THAT(TextOfEvent(AutopilotEventKind::kOwnIdIsAutopilots),
               HasSubstr("system 1 component 1 is the autopilot itself"));
 }
@@ -322,7 +323,7 @@ TEST_F(AutopilotTest, ReportsLossAndReturnOfAutopilot) {
   Pass(4, false);
   EXPECT_FALSE(autopilot_->is_here());
   EXPECT_EQ(EventsOf(AutopilotEventKind::kAway), 1);
-  SayHeartbeat();
+  SendHeartbeat();
   EXPECT_TRUE(autopilot_->is_here());
   EXPECT_EQ(EventsOf(AutopilotEventKind::kBack), 1);
 }
@@ -330,7 +331,8 @@ TEST_F(AutopilotTest, ReportsLossAndReturnOfAutopilot) {
 TEST_F(AutopilotTest, ReportsVehicleState) {
   Start();
   EXPECT_FALSE(autopilot_->is_position_good(now_));
-  Say(mavlink::Heartbeat{mavlink::kTypeSurfaceBoat, mavlink::kAutopilotArduPilot, 0, 0, 4, 3});
+  SendMessage(
+      mavlink::Heartbeat{mavlink::kTypeSurfaceBoat, mavlink::kAutopilotArduPilot, 0, 0, 4, 3});
   EXPECT_FALSE(autopilot_->is_multicopter());
   EXPECT_STREQ(VehicleName(autopilot_->vehicle_type()), "a boat");
   Pass(1);
@@ -340,7 +342,7 @@ TEST_F(AutopilotTest, ReportsVehicleState) {
   system.voltage_battery = 15200;
   system.current_battery = -1;
   system.battery_remaining = 41;
-  Say(system);
+  SendMessage(system);
   EXPECT_NEAR(*autopilot_->battery()->voltage_v, 15.2, 1e-9);
   EXPECT_FALSE(autopilot_->battery()->current_a);
   EXPECT_NEAR(*autopilot_->battery()->remaining, 0.41, 1e-9);
@@ -348,18 +350,19 @@ TEST_F(AutopilotTest, ReportsVehicleState) {
   mavlink::GpsRawInt gnss;
   gnss.fix_type = 3;
   gnss.satellites_visible = 14;
-  Say(gnss);
+  SendMessage(gnss);
   EXPECT_EQ(autopilot_->status().gnss()->fix, 3);
   EXPECT_EQ(autopilot_->status().gnss()->satellites, 14);
   gnss.satellites_visible = 255;  // not known
-  Say(gnss);
+  SendMessage(gnss);
   EXPECT_FALSE(autopilot_->status().gnss()->satellites);
   mavlink::HomePosition home;
   home.latitude = 5;
   home.altitude = 584000;
-  Say(home);
+  SendMessage(home);
   EXPECT_EQ(autopilot_->home()->altitude_m, 584);
-  Say(mavlink::Heartbeat{mavlink::kTypeQuadrotor, kind_, 0, mode_, mavlink::kStateCritical, 3});
+  SendMessage(
+      mavlink::Heartbeat{mavlink::kTypeQuadrotor, kind_, 0, mode_, mavlink::kStateCritical, 3});
   EXPECT_TRUE(autopilot_->is_in_failsafe());
   EXPECT_EQ(EventsOf(AutopilotEventKind::kFailsafe), 1);
 }
@@ -369,18 +372,18 @@ TEST_F(AutopilotTest, ReportsQualityOfEstimate) {
   Pass(1);
   mavlink::EkfStatusReport report;
   report.flags = 831;  // as ArduPilot reports it in flight
-  Say(report);
+  SendMessage(report);
   EXPECT_EQ(autopilot_->is_position_good(now_), true);
   report.flags = mavlink::kEkfUninitialized;
-  Say(report);
+  SendMessage(report);
   EXPECT_EQ(autopilot_->is_position_good(now_), false);
   report.flags = 167;  // constant position: no GNSS
-  Say(report);
+  SendMessage(report);
   EXPECT_EQ(autopilot_->is_position_good(now_), false);
   EXPECT_FALSE(autopilot_->is_position_good(now_ + std::chrono::seconds(4)));
   mavlink::EstimatorStatus status;
   status.flags = 831;
-  Say(status);
+  SendMessage(status);
   EXPECT_EQ(autopilot_->is_position_good(now_), true);
 }
 
@@ -389,16 +392,16 @@ TEST_F(AutopilotTest, ReportsVersionLandedStateRangeAndTexts) {
   Pass(1);
   mavlink::AutopilotVersion version;
   version.flight_sw_version = 4 << 24 | 5 << 16 | 7 << 8;
-  Say(version);
+  SendMessage(version);
   EXPECT_EQ(autopilot_->version()->minor, 5);
-  Say(mavlink::ExtendedSysState{0, mavlink::kLandedInAir});
+  SendMessage(mavlink::ExtendedSysState{0, mavlink::kLandedInAir});
   EXPECT_EQ(autopilot_->landed_state(), LandedState::kInAir);
   mavlink::DistanceSensor range{BootMs(), 20, 1000, 345, 0, 0, mavlink::kOrientationDown};
-  Say(range);
+  SendMessage(range);
   EXPECT_NEAR(autopilot_->range()->distance_m, 3.45, 1e-9);
   mavlink::Statustext text;
   SetText("PrecLand: Target Found", text.text);
-  Say(text);
+  SendMessage(text);
   EXPECT_THAT(texts_, testing::ElementsAre("PrecLand: Target Found"));
 }
 
@@ -409,14 +412,14 @@ TEST_F(AutopilotTest, ReportsTruePoseOfSimulation) {
   Pass(1);
   EXPECT_EQ(intervals_us_[mavlink::SimState::kId], 10000);
   const GlobalPosition origin{-353632621, 1491652374, 584};
-  Say(mavlink::GpsGlobalOrigin{origin.latitude_e7, origin.longitude_e7, 584000});
+  SendMessage(mavlink::GpsGlobalOrigin{origin.latitude_e7, origin.longitude_e7, 584000});
   const GlobalPosition place = GlobalFromLocal(AutopilotKind::kArduPilot, origin, {12.5, -7.25, 4});
   mavlink::SimState state;
   state.q1 = 1;
   state.lat_int = place.latitude_e7;
   state.lon_int = place.longitude_e7;
   state.alt = 588;
-  Say(state);
+  SendMessage(state);
   ASSERT_EQ(true_poses_.size(), 1u);
   EXPECT_LT((true_poses_[0].world_from_body.translation - Eigen::Vector3d(12.5, -7.25, 4)).norm(),
             0.01);
@@ -430,15 +433,15 @@ TEST_F(AutopilotTest, TimesTruePoseBySurroundingAttitudes) {
   options.wants_true_pose = true;
   Start(options);
   Pass(1);
-  Say(mavlink::GpsGlobalOrigin{-353632621, 1491652374, 584000});
-  SayPose();
+  SendMessage(mavlink::GpsGlobalOrigin{-353632621, 1491652374, 584000});
+  SendPose();
   ASSERT_EQ(poses_.size(), 1u);
   now_ += milliseconds(500);  // time that it is on its way
   mavlink::SimState state;
   state.q1 = 1;
   state.lat_int = -353632621;
   state.lon_int = 1491652374;
-  Say(state);
+  SendMessage(state);
   ASSERT_EQ(true_poses_.size(), 1u);
   EXPECT_GE(true_poses_[0].time, poses_[0].time);
   EXPECT_LE(true_poses_[0].time, poses_[0].time + milliseconds(10));
@@ -456,9 +459,9 @@ TEST_F(AutopilotTest, KnowsModeOfPx4BeforeNextHeartbeat) {
   EXPECT_EQ(intervals_us_[mavlink::CurrentMode::kId], 50000);
   mavlink::CurrentMode changed;
   changed.custom_mode = Px4CustomMode(3, 0);
-  Say(changed);
+  SendMessage(changed);
   EXPECT_FALSE(autopilot_->is_guided_mode());
-  EXPECT_EQ(autopilot_->mode_told(), now_);
+  EXPECT_EQ(autopilot_->modereported(), now_);
   EXPECT_EQ(EventsOf(AutopilotEventKind::kModeChanged), 1);
 }
 
@@ -481,7 +484,7 @@ TEST_F(AutopilotTest, CountsLostPackets) {
   mavlink::PacketWriter& writer = writers_.at({1, 1});
   writer.Write(mavlink::Heartbeat{});
   writer.Write(mavlink::Heartbeat{});
-  SayHeartbeat();
+  SendHeartbeat();
   EXPECT_EQ(autopilot_->counters().lost_packets, 2u);
 }
 

@@ -13,7 +13,7 @@ void ClockExchange::Reset() {
   answers_ = 0;
 }
 
-std::optional<mavlink::Timesync> ClockExchange::Ask(Time now) {
+std::optional<mavlink::Timesync> ClockExchange::Request(Time now) {
   constexpr Duration kHurry = std::chrono::seconds(10);
   constexpr Duration kHurriedly = std::chrono::milliseconds(50);
   constexpr Duration kSteadily = std::chrono::milliseconds(100);
@@ -22,7 +22,7 @@ std::optional<mavlink::Timesync> ClockExchange::Ask(Time now) {
   due_ = now + (now - *started_ < kHurry ? kHurriedly : kSteadily);
   mavlink::Timesync question;
   question.ts1 = ToNanoseconds(now);
-  asked_[question_++ % kQuestions] = question.ts1;
+  requested_[question_++ % kQuestions] = question.ts1;
   return question;
 }
 
@@ -30,9 +30,9 @@ std::optional<mavlink::Timesync> ClockExchange::Handle(const mavlink::Timesync& 
                                                        Time received) {
   if (message.tc1 != 0) {
     // Answers to other programs' requests come here, too.
-    auto* asked = std::find(asked_.begin(), asked_.end(), message.ts1);
-    if (message.ts1 == 0 || asked == asked_.end()) return std::nullopt;
-    *asked = 0;
+    auto* requested = std::find(requested_.begin(), requested_.end(), message.ts1);
+    if (message.ts1 == 0 || requested == requested_.end()) return std::nullopt;
+    *requested = 0;
     was_answered_ = true;
     sync_.AddRoundTrip(TimeFromNanoseconds(message.ts1), message.tc1, received);
     return std::nullopt;

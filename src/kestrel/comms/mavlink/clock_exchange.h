@@ -25,7 +25,7 @@ class ClockExchange {
 
   // Returns the request to send at 'now', if one is due: 20 per second for the first ten, then 10
   // per second.
-  std::optional<mavlink::Timesync> Ask(Time now);
+  std::optional<mavlink::Timesync> Request(Time now);
 
   // Takes a TIMESYNC of the autopilot. Returns the answer to send, if it is a request and the
   // answer is known.
@@ -43,7 +43,7 @@ class ClockExchange {
   static constexpr std::size_t kQuestions = 32;
 
   TimeSync sync_;
-  std::array<std::int64_t, kQuestions> asked_{};  // local times, ns; 0: answered
+  std::array<std::int64_t, kQuestions> requested_{};  // local times, ns; 0: answered
   std::size_t question_ = 0;
   Time due_{};
   std::optional<Time> started_;

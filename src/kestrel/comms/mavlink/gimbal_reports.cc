@@ -63,8 +63,8 @@ std::optional<GimbalSample> GimbalReports::Handle(const mavlink::Packet& packet,
   std::uint32_t boot_ms = 0;
   int device_id = packet.component;
   if (const auto report = packet.As<mavlink::GimbalDeviceAttitudeStatus>()) {
-    const int told = report->gimbal_device_id;
-    if (told > 0 && told <= kLastBehindAutopilot) device_id = told;
+    const int reported = report->gimbal_device_id;
+    if (reported > 0 && reported <= kLastBehindAutopilot) device_id = reported;
     has_new_reports_ = true;
     sample = GimbalSampleOf(*report);
     boot_ms = report->time_boot_ms;

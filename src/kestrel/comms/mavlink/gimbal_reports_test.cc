@@ -94,18 +94,18 @@ class GimbalOnLinkTest : public AutopilotTest {
     Start(options);
     Pass(5);
   }
-  void SayGimbal(int device_id, int component, std::uint32_t boot_ms) {
+  void SendGimbal(int device_id, int component, std::uint32_t boot_ms) {
     auto report = Report(mavlink::kGimbalYawInVehicleFrame, kPan_deg, 0);
     report.time_boot_ms = boot_ms;
     report.gimbal_device_id = static_cast<std::uint8_t>(device_id);
-    Say(report, 1, component);
+    SendMessage(report, 1, component);
   }
 };
 
 TEST_F(GimbalOnLinkTest, RequestsAndConvertsReportsOfAutopilot) {
   StartWithGimbal(0);
   EXPECT_EQ(intervals_us_[mavlink::GimbalDeviceAttitudeStatus::kId], 20000);
-  SayGimbal(1, 1, BootMs());
+  SendGimbal(1, 1, BootMs());
   ASSERT_EQ(gimbal_.size(), 1u);
   EXPECT_NEAR(ToSeconds(gimbal_[0].time - now_), 0, 0.003);
   EXPECT_LT((EarthRayOf(gimbal_[0]) - EarthRay()).norm(), 1e-6);
@@ -115,19 +115,19 @@ TEST_F(GimbalOnLinkTest, RequestsNothingWithoutGimbal) {
   Start();
   Pass(5);
   EXPECT_EQ(intervals_us_.count(mavlink::GimbalDeviceAttitudeStatus::kId), 0u);
-  SayGimbal(1, 1, BootMs());
+  SendGimbal(1, 1, BootMs());
   EXPECT_TRUE(gimbal_.empty());
 }
 
 TEST_F(GimbalOnLinkTest, UsesOneOfSeveralGimbals) {
   StartWithGimbal(2);
-  SayGimbal(1, 1, BootMs());
-  SayGimbal(2, 1, BootMs());
+  SendGimbal(1, 1, BootMs());
+  SendGimbal(2, 1, BootMs());
   EXPECT_EQ(gimbal_.size(), 1u);
   StartWithGimbal(0);
   gimbal_.clear();
-  SayGimbal(1, 1, BootMs());
-  SayGimbal(2, 1, BootMs());
+  SendGimbal(1, 1, BootMs());
+  SendGimbal(2, 1, BootMs());
   EXPECT_EQ(gimbal_.size(), 1u);
 }
 
@@ -136,7 +136,7 @@ TEST_F(GimbalOnLinkTest, LearnsClockOfGimbalThatIsComponent) {
   constexpr std::uint32_t kOtherBoot_ms = 7'000'000;
   for (int i = 0; i < 100; ++i) {
     Pass(0.05);
-    SayGimbal(0, kGimbal, BootMs() - kOtherBoot_ms);
+    SendGimbal(0, kGimbal, BootMs() - kOtherBoot_ms);
   }
   ASSERT_GT(gimbal_.size(), 20u);
   EXPECT_NEAR(ToSeconds(gimbal_.back().time - now_), 0, 0.005);
@@ -146,10 +146,10 @@ TEST_F(GimbalOnLinkTest, OldReportsYieldToNewOnes) {
   StartWithGimbal(0);
   mavlink::MountOrientation old;
   old.time_boot_ms = BootMs();
-  Say(old);
+  SendMessage(old);
   EXPECT_EQ(gimbal_.size(), 1u);
-  SayGimbal(1, 1, BootMs() + 10);
-  Say(old);
+  SendGimbal(1, 1, BootMs() + 10);
+  SendMessage(old);
   EXPECT_EQ(gimbal_.size(), 2u);
 }
 

@@ -66,7 +66,7 @@ const ParameterReader::Parameter* ParameterReader::Get(std::string_view name) co
 void ParameterReader::Start(Parameter* parameter) {
   parameter->is_wanted = true;
   parameter->requests = 0;
-  parameter->asked = 0;
+  parameter->requested = 0;
   parameter->due = {};
 }
 
@@ -132,11 +132,11 @@ std::string_view ParameterReader::Next(Time now) {
       parameter.is_wanted = false;
       continue;
     }
-    const std::string_view name = parameter.names[parameter.asked].name;
+    const std::string_view name = parameter.names[parameter.requested].name;
     next_ = now + kBetween;
     // Requests all of its names one after the other, then gives the autopilot time to answer.
-    if (++parameter.asked == parameter.names.size()) {
-      parameter.asked = 0;
+    if (++parameter.requested == parameter.names.size()) {
+      parameter.requested = 0;
       ++parameter.requests;
       parameter.due = now + kPatience;
     }

@@ -61,7 +61,7 @@ class ParameterReader {
   struct Parameter {
     std::string name;                // first of its names
     std::vector<Entry> names;        // all possible names
-    std::size_t asked = 0;           // index of the next name to request
+    std::size_t requested = 0;       // index of the next name to request
     std::optional<std::size_t> own;  // index of the autopilot's name
     double value = 0;                // value, once that is known
     bool is_wanted = true;

@@ -55,11 +55,11 @@ bool ParameterWriter::is_done() const {
 
 void ParameterWriter::Handle(AutopilotKind kind, const mavlink::ParamValue& message,
                              const ParameterReader& reader) {
-  const std::string_view told = TextOf(message.param_id);
+  const std::string_view reported = TextOf(message.param_id);
   for (Write& write : writes_) {
     const auto entry = reader.EntryOf(write.name);
     // A value that comes before the first request is no answer.
-    if (!entry || entry->name != told || write.requests == 0) continue;
+    if (!entry || entry->name != reported || write.requests == 0) continue;
     write.was_answered = true;
     if (IsSameOnWire(entry->scale * ParameterValue(kind, message), write.value)) {
       write.state = ParameterWriteState::kWritten;

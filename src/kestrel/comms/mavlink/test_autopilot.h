@@ -44,11 +44,11 @@ class AutopilotTest : public testing::Test {
     last_heard_[packet.id] = packet;
     if (const auto question = packet.As<mavlink::Timesync>(); question && answers_timesync_) {
       if (question->tc1 == 0) {
-        const Time asked = TimeFromNanoseconds(question->ts1);
+        const Time requested = TimeFromNanoseconds(question->ts1);
         mavlink::Timesync answer;
-        answer.tc1 = RemoteAt(asked + std::chrono::milliseconds(2));
+        answer.tc1 = RemoteAt(requested + std::chrono::milliseconds(2));
         answer.ts1 = question->ts1;
-        due_.push_back({asked + std::chrono::milliseconds(4), answer});
+        due_.push_back({requested + std::chrono::milliseconds(4), answer});
       }
     }
     const auto command = packet.As<mavlink::CommandLong>();
@@ -61,27 +61,28 @@ class AutopilotTest : public testing::Test {
   std::uint32_t BootMs() const { return static_cast<std::uint32_t>(RemoteAt(now_) / 1'000'000); }
 
   template <class Message>
-  void Say(const Message& message, int system = 1, int component = 1) {
+  void SendMessage(const Message& message, int system = 1, int component = 1) {
     mavlink::PacketWriter& writer =
         writers_.try_emplace({system, component}, system, component).first->second;
     mavlink::PacketParser parser;
     parser.Parse(writer.Write(message),
                  [&](const mavlink::Packet& packet) { autopilot_->Handle(packet, now_); });
   }
-  void SayHeartbeat(std::uint8_t autopilot = mavlink::kAutopilotArduPilot, std::uint32_t mode = 4) {
-    Say(mavlink::Heartbeat{mavlink::kTypeQuadrotor, autopilot, mavlink::kModeFlagArmed, mode, 4,
-                           3});
+  void SendHeartbeat(std::uint8_t autopilot = mavlink::kAutopilotArduPilot,
+                     std::uint32_t mode = 4) {
+    SendMessage(mavlink::Heartbeat{mavlink::kTypeQuadrotor, autopilot, mavlink::kModeFlagArmed,
+                                   mode, 4, 3});
   }
   // Sends attitude and position: 3 m north, 1 m east, 5 m up, moving at 2 m/s east, heading east.
-  void SayPose() {
+  void SendPose() {
     mavlink::LocalPositionNed position;
     position.time_boot_ms = BootMs();
     position.x = 3;
     position.y = 1;
     position.z = -5;
     position.vy = 2;
-    Say(position);
-    Say(AttitudeAt(BootMs() + 100));
+    SendMessage(position);
+    SendMessage(AttitudeAt(BootMs() + 100));
   }
   mavlink::AttitudeQuaternion AttitudeAt(std::uint32_t boot_ms) const {
     mavlink::AttitudeQuaternion attitude;
@@ -97,12 +98,12 @@ class AutopilotTest : public testing::Test {
   void Pass(double seconds, bool has_heartbeat = true) {
     for (int i = 0; i < std::lround(100 * seconds); ++i) {
       now_ += std::chrono::milliseconds(10);
-      if (has_heartbeat && i % 100 == 0) SayHeartbeat(kind_, mode_);
+      if (has_heartbeat && i % 100 == 0) SendHeartbeat(kind_, mode_);
       const auto due = std::exchange(due_, {});
       for (const auto& [time, answer] : due) {
         if (time <= now_) {
           const Time now = std::exchange(now_, time);
-          Say(answer);
+          SendMessage(answer);
           now_ = now;
         } else {
           due_.push_back({time, answer});

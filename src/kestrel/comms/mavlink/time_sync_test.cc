@@ -26,11 +26,11 @@ class SimulatedClocks {
   void Jump(double by_s) { jump_s_ += by_s; }
 
   // Sends a request at 'time_s'.
-  void Ask(double time_s, TimeSync* sync) {
+  void Request(double time_s, TimeSync* sync) {
     const double there_s = time_s + delay_s_(random_);
     sync->AddRoundTrip(Local(time_s), Remote(there_s), Local(there_s + delay_s_(random_)));
   }
-  void Tell(double time_s, TimeSync* sync) {
+  void Notify(double time_s, TimeSync* sync) {
     sync->AddOneWay(Remote(time_s), Local(time_s + delay_s_(random_)));
   }
   double ErrorOf(const TimeSync& sync, double time_s) const {
@@ -51,7 +51,7 @@ TEST(TimeSyncTest, ConvergesWithinMillisecondInTenSeconds) {
   for (int run = 0; run < kRuns; ++run) {
     SimulatedClocks clocks(run, run % 2 == 0 ? 50e-6 : -50e-6, 0.005, 0.05);
     TimeSync sync;
-    for (int i = 0; i < 200; ++i) clocks.Ask(0.05 * i, &sync);
+    for (int i = 0; i < 200; ++i) clocks.Request(0.05 * i, &sync);
     ASSERT_TRUE(sync.is_known());
     errors_s.push_back(std::abs(clocks.ErrorOf(sync, 10)));
     if (errors_s.back() < sync.sigma_s(clocks.Local(10))) ++within_sigma;
@@ -70,7 +70,7 @@ TEST(TimeSyncTest, FollowsDrift) {
     SimulatedClocks clocks(seed, 50e-6, 0.005, 0.05);
     TimeSync sync;
     for (int i = 0; i < 1200; ++i) {
-      clocks.Ask(0.1 * i, &sync);
+      clocks.Request(0.1 * i, &sync);
       if (i > 300) {
         EXPECT_LT(std::abs(clocks.ErrorOf(sync, 0.1 * i)), 1e-3) << i;
       }
@@ -84,7 +84,7 @@ TEST(TimeSyncTest, FollowsDrift) {
 TEST(TimeSyncTest, ConvertsBothWays) {
   SimulatedClocks clocks(1, 30e-6, 0.001, 0.002);
   TimeSync sync;
-  for (int i = 0; i < 100; ++i) clocks.Ask(0.1 * i, &sync);
+  for (int i = 0; i < 100; ++i) clocks.Request(0.1 * i, &sync);
   const std::int64_t remote_ns = clocks.Remote(12);
   EXPECT_NEAR(sync.ToRemote(sync.ToLocal(remote_ns)), remote_ns, 2);
   EXPECT_NEAR(ToSeconds(sync.ToLocal(remote_ns) - clocks.Local(12)), 0, 0.3e-3);
@@ -94,11 +94,11 @@ TEST(TimeSyncTest, DetectsRestartOfOtherComputer) {
   for (const double jump_s : {-100.0, -2.0, 2.0, 1000.0}) {
     SimulatedClocks clocks(2, 0, 0.005, 0.05);
     TimeSync sync;
-    for (int i = 0; i < 100; ++i) clocks.Ask(0.1 * i, &sync);
+    for (int i = 0; i < 100; ++i) clocks.Request(0.1 * i, &sync);
     clocks.Jump(jump_s);
     double noticed_s = 0;
     for (int i = 100; i < 120; ++i) {
-      clocks.Ask(0.1 * i, &sync);
+      clocks.Request(0.1 * i, &sync);
       if (noticed_s == 0 && sync.jumps() == 1) noticed_s = 0.1 * (i - 100);
     }
     EXPECT_GT(noticed_s, 0) << jump_s;
@@ -114,9 +114,9 @@ TEST(TimeSyncTest, FollowsClockThatStallsAndCatchesUp) {
   for (const double stall_s : {-0.2, 0.2}) {
     SimulatedClocks clocks(2, 0, 0.005, 0.05);
     TimeSync sync;
-    for (int i = 0; i < 100; ++i) clocks.Ask(0.1 * i, &sync);
+    for (int i = 0; i < 100; ++i) clocks.Request(0.1 * i, &sync);
     clocks.Jump(stall_s);
-    for (int i = 100; i < 130; ++i) clocks.Ask(0.1 * i, &sync);
+    for (int i = 100; i < 130; ++i) clocks.Request(0.1 * i, &sync);
     EXPECT_EQ(sync.jumps(), 0) << stall_s;
     EXPECT_LT(std::abs(clocks.ErrorOf(sync, 13)), 0.03) << stall_s;
   }
@@ -129,7 +129,7 @@ TEST(TimeSyncTest, FollowsSimulatedClockFromSecondToSecond) {
     TimeSync sync;
     for (int i = 0; i < 600; ++i) {
       const double time_s = 0.05 * i;
-      clocks.Ask(time_s, &sync);
+      clocks.Request(time_s, &sync);
       if (i % 100 == 99) clocks.Jump(0.004);  // it was delayed
       if (i < 60) continue;
       ASSERT_TRUE(sync.is_known());
@@ -137,7 +137,7 @@ TEST(TimeSyncTest, FollowsSimulatedClockFromSecondToSecond) {
     }
     EXPECT_EQ(sync.jumps(), 0);
     clocks.Jump(-30);
-    for (int i = 600; i < 620; ++i) clocks.Ask(0.05 * i, &sync);
+    for (int i = 600; i < 620; ++i) clocks.Request(0.05 * i, &sync);
     EXPECT_EQ(sync.jumps(), 1);
   }
 }
@@ -154,7 +154,7 @@ class StallingClock {
   // Its typical time.
   std::int64_t Mostly(double time_s) const { return std::llround(1e9 * (50 + rate_ * time_s)); }
 
-  void Ask(double time_s, TimeSync* sync) {
+  void Request(double time_s, TimeSync* sync) {
     constexpr double kEvery_s = 3;
     std::uniform_real_distribution<double> delay_s(0.0002, 0.002);
     std::uniform_real_distribution<double> part(0, 1);
@@ -185,7 +185,7 @@ TEST(TimeSyncTest, IsStableWhileSimulatedClockStalls) {
       StallingClock clock(seed, rate);
       TimeSync sync;
       for (int i = 0; i < 1200; ++i) {
-        clock.Ask(0.1 * i, &sync);
+        clock.Request(0.1 * i, &sync);
         if (i < 100) continue;
         // Until just before the next request.
         for (const double later_s : {0.0, 0.05, 0.1}) {
@@ -206,13 +206,13 @@ TEST(TimeSyncTest, IsStableWhileSimulatedClockStalls) {
 TEST(TimeSyncTest, FollowsSimulatedClockThatSlowsDown) {
   SimulatedClocks clocks(5, -0.01, 0.0001, 0.0003);
   TimeSync sync;
-  for (int i = 0; i < 200; ++i) clocks.Ask(0.1 * i, &sync);
+  for (int i = 0; i < 200; ++i) clocks.Request(0.1 * i, &sync);
   EXPECT_NEAR(sync.drift(), -0.01, 3e-4);
   // Two percent from now on.
   double most_s = 0;
   for (int i = 200; i < 400; ++i) {
     clocks.Jump(-0.001);
-    clocks.Ask(0.1 * i, &sync);
+    clocks.Request(0.1 * i, &sync);
     most_s = std::max(most_s, std::abs(clocks.ErrorOf(sync, 0.1 * i)));
   }
   EXPECT_LT(most_s, 0.02);
@@ -224,7 +224,7 @@ TEST(TimeSyncTest, OneForgedAnswerChangesNothing) {
   SimulatedClocks clocks(3, 0, 0.005, 0.02);
   TimeSync sync;
   for (int i = 0; i < 100; ++i) {
-    clocks.Ask(0.1 * i, &sync);
+    clocks.Request(0.1 * i, &sync);
     if (i % 5 == 4) sync.AddRoundTrip(clocks.Local(0.1 * i), 12345, clocks.Local(0.1 * i + 0.01));
   }
   EXPECT_EQ(sync.jumps(), 0);
@@ -234,11 +234,11 @@ TEST(TimeSyncTest, OneForgedAnswerChangesNothing) {
 TEST(TimeSyncTest, KeepsEstimateDuringPause) {
   SimulatedClocks clocks(4, 20e-6, 0.005, 0.05);
   TimeSync sync;
-  for (int i = 0; i < 300; ++i) clocks.Ask(0.1 * i, &sync);
+  for (int i = 0; i < 300; ++i) clocks.Request(0.1 * i, &sync);
   const double before_s = sync.sigma_s(clocks.Local(30));
   EXPECT_GT(sync.sigma_s(clocks.Local(90)), before_s);
   for (int i = 900; i < 910; ++i) {
-    clocks.Ask(0.1 * i, &sync);
+    clocks.Request(0.1 * i, &sync);
     EXPECT_LT(std::abs(clocks.ErrorOf(sync, 0.1 * i)), 3e-3);
   }
 }
@@ -246,7 +246,7 @@ TEST(TimeSyncTest, KeepsEstimateDuringPause) {
 TEST(TimeSyncTest, EstimatesRoughlyFromOneWayMessages) {
   SimulatedClocks clocks(5, 0, 0.005, 0.02);
   TimeSync sync;
-  for (int i = 0; i < 30; ++i) clocks.Tell(0.1 * i, &sync);
+  for (int i = 0; i < 30; ++i) clocks.Notify(0.1 * i, &sync);
   ASSERT_TRUE(sync.is_known());
   EXPECT_LT(std::abs(clocks.ErrorOf(sync, 3)), sync.sigma_s(clocks.Local(3)));
   EXPECT_GT(sync.sigma_s(clocks.Local(3)), 0.01);

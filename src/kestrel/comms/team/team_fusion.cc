@@ -26,14 +26,14 @@ TeamFusion::TeamFusion(const TeamOptions& team, const ObjectMapOptions& options)
 
 void TeamFusion::Update(const TeamMap& map) {
   bool has_changed = false;
-  for (const auto& [uav, told] : map.parts()) {
-    if (told.objects.empty()) {
+  for (const auto& [uav, reported] : map.parts()) {
+    if (reported.objects.empty()) {
       has_changed |= parts_.erase(uav) != 0;
       continue;
     }
     Part& part = parts_[uav];
-    if (part.revision == told.revision) continue;
-    Take(told, &part);
+    if (part.revision == reported.revision) continue;
+    Take(reported, &part);
     has_changed = true;
   }
   if (!has_changed) return;
@@ -42,14 +42,14 @@ void TeamFusion::Update(const TeamMap& map) {
   FuseAdrift();
 }
 
-void TeamFusion::Take(const TeamMap::Part& told, Part* part) const {
-  part->revision = told.revision;
+void TeamFusion::Take(const TeamMap::Part& reported, Part* part) const {
+  part->revision = reported.revision;
   part->is_changed = true;
   part->objects.clear();
-  for (const auto& [id, entry] : told.objects) {
+  for (const auto& [id, entry] : reported.objects) {
     if (entry.object.may_move) continue;
     part->objects.push_back(entry.object);
-    PredictObject(told.contents.now, options_.motion(), &part->objects.back());
+    PredictObject(reported.contents.now, options_.motion(), &part->objects.back());
   }
 }
 

@@ -76,7 +76,7 @@ class TeamFusion {
     bool is_changed = true;
   };
 
-  void Take(const TeamMap::Part& told, Part* part) const;
+  void Take(const TeamMap::Part& reported, Part* part) const;
   void PlaceAll();
   Group ChooseCommonGroup();
   Group TakeGroup(std::vector<Place>* waiting);

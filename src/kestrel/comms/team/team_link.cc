@@ -68,26 +68,26 @@ std::vector<std::string> TeamLinkOptions::Validate() const {
 }
 
 TeamLink::TeamLink(const std::string& team, int domain, const TeamLinkOptions& options,
-                   const ObjectMapOptions& map, const ObjectModel& model, Say say)
+                   const ObjectMapOptions& map, const ObjectModel& model, Report report)
     : options_(options),
       member_(OwnKey(options), options.team, ReadKey(options)),
       topic_(domain, CheckedTeam(team),
              fmt::format("{}/{:08x}", member_.self().name, member_.self().boot)),
       fusion_(options.team, map),
       model_(model),
-      say_(std::move(say)) {}
+      report_(std::move(report)) {}
 
-bool TeamLink::IsTimeToTell() const {
-  return !told_ || Now() - *told_ >= DurationFromSeconds(TeamOptions::kTellPeriod_s);
+bool TeamLink::IsTimeToSend() const {
+  return !reported_ || Now() - *reported_ >= DurationFromSeconds(TeamOptions::kSendPeriod_s);
 }
 
-void TeamLink::Tell(std::vector<MappedObject> objects) {
+void TeamLink::Share(std::vector<MappedObject> objects) {
   if (map_time_ == Time::min() && objects.empty()) return;  // the map has no time yet
   for (const MappedObject& object : objects) {
     map_time_ = std::max({map_time_, object.time, object.last_seen});
   }
-  member_.Tell(std::move(objects), map_time_);
-  told_ = Now();
+  member_.Share(std::move(objects), map_time_);
+  reported_ = Now();
 }
 
 void TeamLink::Exchange() {
@@ -95,7 +95,7 @@ void TeamLink::Exchange() {
   if (options_.claim && position_ && Now() >= next_claim_) ChooseAgain();
   member_.Tick(Now(), [this](std::span<const std::uint8_t> bytes) { topic_.Send(bytes); });
   for (const std::string& warning : member_.TakeWarnings()) {
-    say_("team: " + warning);
+    report_("team: " + warning);
   }
 }
 
@@ -107,12 +107,12 @@ void TeamLink::ChooseAgain() {
   std::optional<ObjectRef> claimed;
   if (const auto claim = member_.ClaimOf(member_.self(), Now())) claimed = claim->object;
   if (std::exchange(claimed_, claimed) == claimed) return;
-  if (!chosen) return say_("team: there is nothing left to go for");
+  if (!chosen) return report_("team: there is nothing left to go for");
   const MappedObject& object = view.objects[*chosen];
   const auto class_index = ClassOf(object, model_);
-  say_(fmt::format("team: goes for {} at ({:.1f}, {:.1f}) m",
-                   class_index ? model_.classes[*class_index].name : ToString(object.shape),
-                   object.position().x(), object.position().y()));
+  report_(fmt::format("team: goes for {} at ({:.1f}, {:.1f}) m",
+                      class_index ? model_.classes[*class_index].name : ToString(object.shape),
+                      object.position().x(), object.position().y()));
 }
 
 std::vector<std::optional<Claim>> TeamLink::Claims() const {
@@ -125,7 +125,7 @@ void TeamLink::Finish(std::vector<MappedObject> objects, const std::function<boo
   constexpr Duration kStay = std::chrono::seconds(1);  // others may lack data, unheard
   constexpr Duration kPause = std::chrono::milliseconds(10);
   const Duration silence = DurationFromSeconds(options_.team.silence_s);
-  Tell(std::move(objects));
+  Share(std::move(objects));
   member_.SetDone();
   bool was_reported = false;
   Time awaited = Now();  // last time at which a UAV was not done
@@ -146,7 +146,7 @@ void TeamLink::Finish(std::vector<MappedObject> objects, const std::function<boo
     if (is_stopped() || now - lacking >= kStay || now - awaited >= silence) break;
     std::this_thread::sleep_for(kPause);
   }
-  if (!member_.IsWhole()) say_("team: of what the team has seen not all was heard");
+  if (!member_.IsWhole()) report_("team: of what the team has seen not all was heard");
 }
 
 void TeamLink::ReportAwaited() const {
@@ -154,7 +154,7 @@ void TeamLink::ReportAwaited() const {
   for (const UavKey& uav : member_.Known()) {
     if (uav != member_.self() && member_.IsAlive(uav, Now())) names.push_back(uav.name);
   }
-  say_(fmt::format("team: waits for {} (Ctrl-C: no longer)", fmt::join(names, ", ")));
+  report_(fmt::format("team: waits for {} (Ctrl-C: no longer)", fmt::join(names, ", ")));
 }
 
 void TeamLink::WriteMap(const std::vector<double>& origin, const OutputFolder& folder) {

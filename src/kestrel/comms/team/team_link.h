@@ -44,20 +44,20 @@ struct TeamLinkOptions {
 // object if the options request it, and writes the map of the whole team. One thread at a time.
 class TeamLink {
  public:
-  using Say = std::function<void(const std::string&)>;
+  using Report = std::function<void(const std::string&)>;
 
   // 'team': name of the team. 'domain': DDS domain. 'map': how the UAVs' maps are fused. 'model':
-  // of the objects. 'say': receives messages for a person, one line each. Throws InputError when
+  // of the objects. 'report': receives messages for a person, one line each. Throws InputError when
   // name or options are not valid, the key cannot be read, there is no network, or this build has
   // no DDS.
   TeamLink(const std::string& team, int domain, const TeamLinkOptions& options,
-           const ObjectMapOptions& map, const ObjectModel& model, Say say);
+           const ObjectMapOptions& map, const ObjectModel& model, Report report);
 
   // True when it is time to send the map again.
-  bool IsTimeToTell() const;
+  bool IsTimeToSend() const;
 
   // Sends the objects of this UAV's map.
-  void Tell(std::vector<MappedObject> objects);
+  void Share(std::vector<MappedObject> objects);
 
   // Sets the position of the UAV in its own world; claims depend on the distance from it.
   void SetPosition(const Eigen::Vector3d& position) { position_ = position; }
@@ -91,9 +91,9 @@ class TeamLink {
   TeamTopic topic_;
   TeamFusion fusion_;
   ObjectModel model_;
-  Say say_;
+  Report report_;
   Time map_time_ = Time::min();  // time of the map that was sent last, on its own clock
-  std::optional<Time> told_;
+  std::optional<Time> reported_;
   std::optional<Eigen::Vector3d> position_;
   Time next_claim_ = Time::min();
   std::optional<ObjectRef> claimed_;  // as it was reported

@@ -17,7 +17,7 @@ using ::testing::Key;
 using ::testing::SizeIs;
 
 // Returns a UAV's messages while its map changes: objects come, move and go.
-std::vector<PartMessage> Told(const UavKey& uav, Random* random) {
+std::vector<PartMessage> Reported(const UavKey& uav, Random* random) {
   std::vector<PartMessage> messages;
   std::map<std::int64_t, std::uint64_t> versions;
   for (std::uint64_t version = 1; version <= 6; ++version) {
@@ -26,7 +26,7 @@ std::vector<PartMessage> Told(const UavKey& uav, Random* random) {
       if (random->Chance(0.3)) versions.erase(id);
       if (!random->Chance(0.5)) continue;
       versions[id] = version;
-      message.objects.push_back(*AsTold(
+      message.objects.push_back(*AsReported(
           TestDisc(id, {random->Normal(), 0, 0}, message.contents.now), message.contents.now));
     }
     message.contents.objects = versions;
@@ -38,8 +38,8 @@ std::vector<PartMessage> Told(const UavKey& uav, Random* random) {
 TEST(TeamMap, IsIndependentOfOrderAndRepetitionOfMessages) {
   Random random(1);
   for (int i = 0; i < 30; ++i) {
-    std::vector<PartMessage> messages = Told({"a", 1}, &random);
-    for (const PartMessage& message : Told({"b", 1}, &random)) messages.push_back(message);
+    std::vector<PartMessage> messages = Reported({"a", 1}, &random);
+    for (const PartMessage& message : Reported({"b", 1}, &random)) messages.push_back(message);
     TeamMap in_order;
     for (const PartMessage& message : messages) in_order.Merge(message, Time());
     TeamMap shuffled;

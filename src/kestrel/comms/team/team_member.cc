@@ -58,20 +58,20 @@ TeamMember::TeamMember(const UavKey& self, const TeamOptions& options, std::opti
   peers_[self_];
 }
 
-void TeamMember::Tell(std::vector<MappedObject> objects, Time now) {
+void TeamMember::Share(std::vector<MappedObject> objects, Time now) {
   if (objects.size() > kMaxSentObjects) {
     std::stable_sort(objects.begin(), objects.end(),
                      [](const auto& a, const auto& b) { return a.detections > b.detections; });
     objects.resize(kMaxSentObjects);
   }
-  untold_ = {std::move(objects), now};
+  unsent_ = {std::move(objects), now};
 }
 
 void TeamMember::SetClaim(const std::optional<Claim>& claim) {
-  std::optional<Claim> told = claim;
-  if (told) told->bid = static_cast<float>(told->bid);
-  if (told == peers_[self_].claim) return;
-  peers_[self_].claim = told;
+  std::optional<Claim> reported = claim;
+  if (reported) reported->bid = static_cast<float>(reported->bid);
+  if (reported == peers_[self_].claim) return;
+  peers_[self_].claim = reported;
   has_news_ = true;
 }
 
@@ -119,7 +119,7 @@ void TeamMember::Defend(const PartMessage& part, Time local) {
   const TeamMap::Part nothing;
   if (own == nullptr) own = &nothing;
   if (!Contradicts(part, *own)) return;
-  Warn("somebody tells a map under this UAV's name: use a key that the team shares");
+  Warn("somebody sends a map under this UAV's name: use a key that the team shares");
   const std::uint64_t version = std::max(part.contents.version, own->contents.version) + 1;
   if (version > kMaxVersion) return;
   PartMessage renewed{self_, local - own->sent_at, {version, own->contents.now, {}}, {}};
@@ -204,7 +204,7 @@ bool TeamMember::IsBehind(const UavKey& uav, const Peer& peer) const {
 }
 
 bool TeamMember::IsWhole() const {
-  return !untold_ && queue_.empty() &&
+  return !unsent_ && queue_.empty() &&
          std::none_of(peers_.begin(), peers_.end(),
                       [&](const auto& peer) { return IsBehind(peer.first, peer.second); });
 }
@@ -241,7 +241,7 @@ void TeamMember::Tick(Time local, const Send& send) {
   const auto is_due = [&](const std::optional<Time>& last, double period_s) {
     return !last || local - *last >= DurationFromSeconds(period_s);
   };
-  if (untold_ && is_due(told_, TeamOptions::kTellPeriod_s)) SendOwn(local);
+  if (unsent_ && is_due(reported_, TeamOptions::kSendPeriod_s)) SendOwn(local);
   if (allowance_ > 0 && (has_news_ || is_due(last_digest_, TeamOptions::kDigestPeriod_s))) {
     SendDigest(local, send);
   }
@@ -254,19 +254,19 @@ void TeamMember::SendOwn(Time local) {
   const TeamMap::Part nothing;
   if (part == nullptr) part = &nothing;
   const std::uint64_t version = part->contents.version + 1;
-  PartMessage own{self_, {}, {version, untold_->now, {}}, {}};
-  for (const MappedObject& object : untold_->objects) {
-    const auto told = AsTold(object, untold_->now);
-    if (!told) continue;
-    const auto held = part->objects.find(told->id);
-    const bool is_same = held != part->objects.end() && IsSame(*told, held->second.object);
-    own.contents.objects[told->id] = is_same ? held->second.version : version;
-    if (!is_same) own.objects.push_back(*told);
+  PartMessage own{self_, {}, {version, unsent_->now, {}}, {}};
+  for (const MappedObject& object : unsent_->objects) {
+    const auto reported = AsReported(object, unsent_->now);
+    if (!reported) continue;
+    const auto held = part->objects.find(reported->id);
+    const bool is_same = held != part->objects.end() && IsSame(*reported, held->second.object);
+    own.contents.objects[reported->id] = is_same ? held->second.version : version;
+    if (!is_same) own.objects.push_back(*reported);
   }
   const bool has_changed = !own.objects.empty() || !HaveSameIds(own.contents, part->contents);
   if (has_changed && version <= kMaxVersion) MergeOwn(own, local);
-  told_ = local;
-  untold_.reset();
+  reported_ = local;
+  unsent_.reset();
 }
 
 void TeamMember::MergeOwn(const PartMessage& own, Time local) {
@@ -285,7 +285,7 @@ void TeamMember::SendDigest(Time local, const Send& send) {
     line.uav = uav;
     line.beat = peer.beat;
     if (part != nullptr) line.version = part->contents.version;
-    line.is_done = peer.is_done && !(uav == self_ && untold_);
+    line.is_done = peer.is_done && !(uav == self_ && unsent_);
     line.claim = ClaimOf(uav, local);
     if (part != nullptr) line.missing = part->Missing(room);
     room -= line.missing.size();

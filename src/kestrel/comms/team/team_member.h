@@ -34,7 +34,7 @@ class TeamMember {
 
   // Sets the own map at its time 'now', which does not decrease. Of more than kMaxSentObjects,
   // those seen most are kept. The next Tick sends it.
-  void Tell(std::vector<MappedObject> objects, Time now);
+  void Share(std::vector<MappedObject> objects, Time now);
 
   // Sets the object that this UAV claims, with the bid as others will hear it. The next Tick sends
   // a change.
@@ -109,8 +109,8 @@ class TeamMember {
     std::vector<MappedObject> objects;
     Time now;
   };
-  std::optional<OwnMap> untold_;
-  std::optional<Time> told_;
+  std::optional<OwnMap> unsent_;
+  std::optional<Time> reported_;
   std::optional<Time> last_digest_;
   std::optional<Time> last_tick_;
   std::optional<Time> lacked_;

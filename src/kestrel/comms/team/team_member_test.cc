@@ -38,7 +38,7 @@ void Fly(SimulatedTeam* team, double seconds, int objects = 20) {
         if (object.id % 4 == step % 4) object.detections += static_cast<int>(step % 1000);
         if (object.id % 4 != step % 4) object.first_seen = object.last_seen = object.time = Time();
       }
-      team->uavs[i].member->Tell(map, team->now);
+      team->uavs[i].member->Share(map, team->now);
     }
     team->Run(0.1);
   }
@@ -232,12 +232,12 @@ TEST(TeamMember, SendsLastMapBeforeDeclaringItLast) {
   team.Add({"a", 1});
   team.Add({"b", 1});
   TeamMember& first = *team.uavs[0].member;
-  first.Tell({TestDisc(1, {0, 0, 0}, team.now)}, team.now);
+  first.Share({TestDisc(1, {0, 0, 0}, team.now)}, team.now);
   team.Run(0.6);
   team.uavs[1].member->SetDone();
-  first.Tell({TestDisc(1, {0, 0, 0}, team.now), TestDisc(2, {1, 0, 0}, team.now)}, team.now);
+  first.Share({TestDisc(1, {0, 0, 0}, team.now), TestDisc(2, {1, 0, 0}, team.now)}, team.now);
   team.Run(0.05);
-  first.Tell({TestDisc(3, {5, 0, 0}, team.now)}, team.now);
+  first.Share({TestDisc(3, {5, 0, 0}, team.now)}, team.now);
   first.SetDone();
   team.RunUntil([&] { return team.uavs[1].member->AreAllDone(team.LocalTime(1)); }, 5);
   const TeamMap::Part* const part = team.uavs[1].member->map().Find({"a", 1});

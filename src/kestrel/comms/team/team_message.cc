@@ -280,12 +280,12 @@ std::vector<std::uint8_t> EncodeObject(const MappedObject& object, Time now) {
   return out;
 }
 
-std::optional<MappedObject> AsTold(const MappedObject& object, Time now) {
+std::optional<MappedObject> AsReported(const MappedObject& object, Time now) {
   const std::vector<std::uint8_t> bytes = EncodeObject(object, now);
   ByteReader in(bytes);
-  MappedObject told = ReadObject(now, &in);
+  MappedObject reported = ReadObject(now, &in);
   if (in.has_failed()) return std::nullopt;
-  return told;
+  return reported;
 }
 
 }  // namespace kestrel

@@ -100,6 +100,6 @@ std::optional<TeamMessage> ParseMessage(std::span<const std::uint8_t> bytes);
 std::vector<std::uint8_t> EncodeObject(const MappedObject& object, Time now);
 
 // Returns the object as others will hear it: rounded. Nothing when it cannot be sent.
-std::optional<MappedObject> AsTold(const MappedObject& object, Time now);
+std::optional<MappedObject> AsReported(const MappedObject& object, Time now);
 
 }  // namespace kestrel

@@ -32,11 +32,11 @@ TEST(TeamMessage, PartRoundTrips) {
   moving.covariance += 0.25 * MappedObject::Covariance::Identity();
   moving.covariance(0, 4) = moving.covariance(4, 0) = 0.125;
   moving.first_seen -= std::chrono::seconds(4);
-  moving = *AsTold(moving, kNow);
+  moving = *AsReported(moving, kNow);
   MappedObject cuboid = TestDisc(2, {1, 2, 3}, kNow);
   cuboid.shape = ObjectShape::kCuboid;
   cuboid.digit_log_likelihoods[3] = -1;
-  cuboid = *AsTold(cuboid, kNow);
+  cuboid = *AsReported(cuboid, kNow);
   const auto message = ParseMessage(EncodeMessage(PartOf({moving, cuboid})));
   ASSERT_TRUE(message);
   const auto& part = std::get<PartMessage>(message->body);
@@ -105,7 +105,7 @@ TEST(TeamMessage, DoesNotSendInvalidObjects) {
   objects[7].id = -1;
   objects[8].color_log_likelihoods[2] = -std::numeric_limits<double>::infinity();
   for (const MappedObject& object : objects) {
-    EXPECT_FALSE(AsTold(object, kNow));
+    EXPECT_FALSE(AsReported(object, kNow));
     EXPECT_FALSE(ParseMessage(EncodeMessage(PartOf({object}))));
   }
 }

@@ -10,7 +10,7 @@ namespace kestrel {
 struct TeamOptions {
   // Period of sending the own map, if it has changed, and of sending the digest, for which the
   // others send what is missing. Longer where the rate is used up.
-  static constexpr double kTellPeriod_s = 0.5;
+  static constexpr double kSendPeriod_s = 0.5;
   static constexpr double kDigestPeriod_s = 0.25;
   // A part sent or heard more recently than this is not sent again; covers the link's round trip.
   static constexpr double kResend_s = 0.5;

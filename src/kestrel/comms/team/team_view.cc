@@ -126,10 +126,10 @@ std::vector<TeamObject> CommonMap(const TeamMember& member, const TeamView& view
   std::vector<bool> is_found(objects.size());  // for objects that move
   for (const auto& [ref, i] : view.index) {
     if (i < standing.size()) continue;
-    const MappedObject& told = member.map().Find(ref.uav)->objects.at(ref.id).object;
-    if (is_found[i] && told.sigma_m() >= objects[i].object.sigma_m()) continue;
+    const MappedObject& reported = member.map().Find(ref.uav)->objects.at(ref.id).object;
+    if (is_found[i] && reported.sigma_m() >= objects[i].object.sigma_m()) continue;
     is_found[i] = true;
-    objects[i].object = told;
+    objects[i].object = reported;
     MoveToWorld(fusion.CommonFromWorld(ref.uav), &objects[i].object);
   }
   for (std::size_t i = 0; i < objects.size(); ++i) {

@@ -36,7 +36,7 @@ struct FieldTeam {
                                  0.05 * Eigen::Vector3d{random.Normal(), random.Normal(), 0};
         seen.push_back(object);
       }
-      team.uavs[i].member->Tell(seen, Time());
+      team.uavs[i].member->Share(seen, Time());
     }
     team.Run(3);
   }
@@ -99,7 +99,7 @@ TEST(TeamView, ObjectsArePredictedToTimeOfView) {
   moving.may_move = true;
   moving.covariance.diagonal().array() += 0.01;
   moving.state[3] = 2;
-  team.uavs[0].member->Tell({moving}, Time());
+  team.uavs[0].member->Share({moving}, Time());
   team.Run(2);
   TeamFusion fusion({}, {});
   const TeamView view = ViewTeam(*team.uavs[1].member, team.LocalTime(1), &fusion);

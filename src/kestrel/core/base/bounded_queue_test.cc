@@ -44,14 +44,14 @@ TEST(BoundedQueue, ClosedQueueDrainsAndRefusesNewValues) {
 }
 
 TEST(BoundedQueue, DestroysDroppedValueWithoutLock) {
-  struct Asks {
-    explicit Asks(BoundedQueue<std::unique_ptr<Asks>>* asked) : queue(asked) {}
-    ~Asks() { queue->size(); }  // would deadlock under the lock
-    BoundedQueue<std::unique_ptr<Asks>>* queue;
+  struct Requests {
+    explicit Requests(BoundedQueue<std::unique_ptr<Requests>>* requested) : queue(requested) {}
+    ~Requests() { queue->size(); }  // would deadlock under the lock
+    BoundedQueue<std::unique_ptr<Requests>>* queue;
   };
-  BoundedQueue<std::unique_ptr<Asks>> queue(1);
-  queue.Push(std::make_unique<Asks>(&queue));
-  queue.Push(std::make_unique<Asks>(&queue));
+  BoundedQueue<std::unique_ptr<Requests>> queue(1);
+  queue.Push(std::make_unique<Requests>(&queue));
+  queue.Push(std::make_unique<Requests>(&queue));
   EXPECT_EQ(queue.dropped(), 1u);
   queue.TryPop().reset();
 }

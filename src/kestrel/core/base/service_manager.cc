@@ -14,7 +14,7 @@ ServiceManager::ServiceManager() {
   if (name != nullptr) socket_ = name;
 }
 
-bool ServiceManager::Tell(std::string_view state) const {
+bool ServiceManager::Notify(std::string_view state) const {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (socket_.empty() || socket_.size() >= sizeof(address.sun_path)) return false;

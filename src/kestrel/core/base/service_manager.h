@@ -13,7 +13,7 @@ class ServiceManager {
   ServiceManager();
 
   // Sends a state, as "READY=1" or "WATCHDOG=1"; does not wait. False: nobody has taken it.
-  bool Tell(std::string_view state) const;
+  bool Notify(std::string_view state) const;
 
  private:
   std::string socket_;  // empty: there is none

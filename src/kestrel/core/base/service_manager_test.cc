@@ -31,18 +31,18 @@ TEST_F(ServiceManagerTest, ReceivesState) {
   const int file = socket(AF_UNIX, SOCK_DGRAM, 0);
   ASSERT_EQ(bind(file, reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
   setenv("NOTIFY_SOCKET", path.c_str(), 1);
-  EXPECT_TRUE(ServiceManager().Tell("READY=1"));
+  EXPECT_TRUE(ServiceManager().Notify("READY=1"));
   std::array<char, 64> text{};
   const ssize_t size = recv(file, text.data(), text.size(), MSG_DONTWAIT);
   EXPECT_EQ(std::string(text.data(), static_cast<std::size_t>(std::max<ssize_t>(size, 0))),
             "READY=1");
   close(file);
-  EXPECT_FALSE(ServiceManager().Tell("WATCHDOG=1"));  // it is gone
+  EXPECT_FALSE(ServiceManager().Notify("WATCHDOG=1"));  // it is gone
 }
 
 TEST_F(ServiceManagerTest, WorksWithoutServiceManager) {
   unsetenv("NOTIFY_SOCKET");
-  EXPECT_FALSE(ServiceManager().Tell("READY=1"));
+  EXPECT_FALSE(ServiceManager().Notify("READY=1"));
 }
 
 }  // namespace

@@ -364,18 +364,18 @@ std::vector<std::string> UnusedKeys(const Entry& map) {
 // The file that is read, and the function that gets the lines for the user.
 struct Teller {
   const std::string& file;
-  const std::function<void(const std::string&)>& tell;
+  const std::function<void(const std::string&)>& notify;
 };
 
 void ReportUnusedKeys(const Entry& map, const Teller& teller) {
   constexpr std::size_t kMost = 8;
   std::vector<std::string> unused = UnusedKeys(map);
-  if (unused.empty() || !teller.tell) return;
+  if (unused.empty() || !teller.notify) return;
   const std::size_t more = unused.size() - std::min(unused.size(), kMost);
   unused.resize(unused.size() - more);
-  teller.tell(fmt::format("{}: not used, as not known here: {}{}", teller.file,
-                          fmt::join(unused, ", "),
-                          more == 0 ? "" : fmt::format(" and {} more", more)));
+  teller.notify(fmt::format("{}: not used, as not known here: {}{}", teller.file,
+                            fmt::join(unused, ", "),
+                            more == 0 ? "" : fmt::format(" and {} more", more)));
 }
 
 CameraCalibration ReadCamera(const Entry& camera, const Teller& teller) {
@@ -445,16 +445,16 @@ void RequireSmall(std::string_view text, const std::string& file) {
 }  // namespace
 
 CameraCalibration ReadCalibration(const std::filesystem::path& file, const std::string& camera,
-                                  const std::function<void(const std::string&)>& tell) {
-  return ParseCalibration(ReadFile(file.string()), file.string(), camera, tell);
+                                  const std::function<void(const std::string&)>& notify) {
+  return ParseCalibration(ReadFile(file.string()), file.string(), camera, notify);
 }
 
 CameraCalibration ParseCalibration(std::string_view text, const std::string& file,
                                    const std::string& camera,
-                                   const std::function<void(const std::string&)>& tell) {
+                                   const std::function<void(const std::string&)>& notify) {
   RequireSmall(text, file);
   const YAML::Node root = IsXml(text) ? LoadOpenCvXml(text, file) : LoadYaml(text, file);
-  CameraCalibration calibration = ReadRoot(Entry(root, file), camera, {file, tell});
+  CameraCalibration calibration = ReadRoot(Entry(root, file), camera, {file, notify});
   const std::vector<std::string> violations = calibration.intrinsics.Validate();
   if (!violations.empty()) {
     throw InputError(fmt::format("{}: {}", file, fmt::join(violations, "; ")));

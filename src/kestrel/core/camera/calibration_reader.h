@@ -26,19 +26,19 @@ namespace kestrel {
 // or extrinsicRotation with extrinsicTranslation, and the clock offset from timeshift_cam_imu, td
 // or time_offset_s (s, t_imu = t_cam + shift). A camera on a gimbal has T_GS (platform_from_camera)
 // and 'gimbal': a map with T_BG (body_from_pivot), time_offset_s and device_id, or the name of the
-// folder whose sensor.yaml has these. 'tell' is called with the keys that are not known, a line for
-// the user.
+// folder whose sensor.yaml has these. 'notify' is called with the keys that are not known, a line
+// for the user.
 //
 // Throws InputError with file, line, key and what was expected: file missing, not YAML or
 // truncated, key missing or of the wrong type, two keys that contradict each other, NaN, wrong
 // number of coefficients, unsupported lens (omni, eucm, ds, fov, MEI), a mount that is not rigid,
 // binning or a region of interest, and all violations of CameraIntrinsics::Validate.
 CameraCalibration ReadCalibration(const std::filesystem::path& file, const std::string& camera = "",
-                                  const std::function<void(const std::string&)>& tell = {});
+                                  const std::function<void(const std::string&)>& notify = {});
 
 // The same from text. 'file' is the name in messages.
 CameraCalibration ParseCalibration(std::string_view text, const std::string& file,
                                    const std::string& camera = "",
-                                   const std::function<void(const std::string&)>& tell = {});
+                                   const std::function<void(const std::string&)>& notify = {});
 
 }  // namespace kestrel

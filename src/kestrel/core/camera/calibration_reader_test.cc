@@ -130,10 +130,10 @@ std::string Refusal(const std::string& text, const std::string& camera = "") {
 }
 
 // Returns the message about a text that is read.
-std::string ToldOf(const std::string& text) {
-  std::string told;
-  ParseCalibration(text, "lens.yaml", "", [&](const std::string& line) { told += line; });
-  return told;
+std::string WarningsOf(const std::string& text) {
+  std::string reported;
+  ParseCalibration(text, "lens.yaml", "", [&](const std::string& line) { reported += line; });
+  return reported;
 }
 
 TEST(CalibrationReader, ReadsEuroc) {
@@ -439,7 +439,7 @@ TEST(CalibrationReader, ReadsVins) {
   EXPECT_TRUE((*read.body_from_camera * Eigen::Vector3d(0, -1, 0))
                   .isApprox(Eigen::Vector3d(1.1, 0.2, -0.05), 1e-12));
   EXPECT_EQ(*read.clock_offset, std::chrono::milliseconds(20));
-  EXPECT_EQ(ToldOf(kVins), "lens.yaml: not used, as not known here: 'imu_topic'");
+  EXPECT_EQ(WarningsOf(kVins), "lens.yaml: not used, as not known here: 'imu_topic'");
   EXPECT_THAT(ParseCalibration(Replaced(kVins, "p2: -0.001", "p2: -0.001\n   k3: 0.5"), "")
                   .intrinsics.distortion,
               ElementsAre(-0.1, 0.02, 0.001, -0.001, 0.5));
@@ -522,15 +522,15 @@ TEST(CalibrationReader, RefusesBinningAndRegionsOfInterest) {
 
 TEST(CalibrationReader, ReportsUnusedKeys) {
   for (const char* text : {kEuroc, kKalibr, kRos, kRosMessage, kOpenCv, kCamodocal}) {
-    EXPECT_EQ(ToldOf(text), "") << text;
+    EXPECT_EQ(WarningsOf(text), "") << text;
   }
-  EXPECT_EQ(ToldOf(std::string(kEuroc) + "T_BX: 3\nlens_shift: 2\n"),
+  EXPECT_EQ(WarningsOf(std::string(kEuroc) + "T_BX: 3\nlens_shift: 2\n"),
             "lens.yaml: not used, as not known here: 'T_BX', 'lens_shift'");
-  EXPECT_EQ(ToldOf(std::string(kKalibr) + "T_imu_body: []\n"),
+  EXPECT_EQ(WarningsOf(std::string(kKalibr) + "T_imu_body: []\n"),
             "lens.yaml: not used, as not known here: 'T_imu_body'");
   std::string many = kRos;
   for (int i = 0; i < 20; ++i) many += fmt::format("key{}: {}\n", i, i);
-  EXPECT_THAT(ToldOf(many), HasSubstr("'key7' and 12 more"));
+  EXPECT_THAT(WarningsOf(many), HasSubstr("'key7' and 12 more"));
 }
 
 TEST(CalibrationReader, RefusesFileWithoutCalibration) {

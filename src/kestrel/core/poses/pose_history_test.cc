@@ -201,9 +201,9 @@ TEST(PoseHistory, PredictsFromLastSamplesWithoutGivenMotion) {
   ASSERT_TRUE(pose);
   EXPECT_NEAR(pose->world_from_body.translation.x(), 4 * 1.09, 1e-9);
   EXPECT_NEAR(RotationVector(pose->world_from_body.rotation).z(), 1.09, 1e-9);
-  PoseSample told = Sample(1.07, 4 * 1.07, 1.07);
-  told.motion = BodyMotion{{4, 0, 0}, {0, 0, 1}};
-  history.Add(told);
+  PoseSample reported = Sample(1.07, 4 * 1.07, 1.07);
+  reported.motion = BodyMotion{{4, 0, 0}, {0, 0, 1}};
+  history.Add(reported);
   EXPECT_LT(history.Predict(At(1.1), kAhead, {})->uncertainty.position_m,
             pose->uncertainty.position_m)
       << "a motion that is told is newer than a mean one";

@@ -222,7 +222,7 @@ Finding CheckDisk(const DoctorObservations& observations) {
   const std::string check = "disk";
   const ComputerObservations& computer = observations.computer;
   if (observations.use.record.empty()) return NotChecked(check, "nothing is recorded", "--record");
-  if (!computer.free_disk_mb) return Wrong(check, "cannot be asked", "the folder of --record");
+  if (!computer.free_disk_mb) return Wrong(check, "cannot be read", "the folder of --record");
   const double needed_mb =
       computer.least_disk_mb + kFlight_s * kRate_hz * kCompressed * computer.frame_mb;
   if (computer.is_disk_read_only) {
@@ -256,7 +256,7 @@ Finding CheckDisk(const DoctorObservations& observations) {
 
 Finding CheckTimeOfDay(const ComputerObservations& computer) {
   const std::string check = "time of day";
-  if (!computer.is_time_synchronized) return NotChecked(check, "not asked");
+  if (!computer.is_time_synchronized) return NotChecked(check, "not requested");
   if (*computer.is_time_synchronized) return Good(check, "synchronised");
   return Doubtful(
       check,

@@ -151,8 +151,8 @@ void Examination::TakePacket(const mavlink::Packet& packet, Time received) {
 }
 
 void Examination::WantParameters() {
-  if (asked_parameters_) return;
-  asked_parameters_ = true;
+  if (requested_parameters_) return;
+  requested_parameters_ = true;
   for (const ListedCheck& checked : CheckedParameters(parts_.autopilot->kind())) {
     parts_.autopilot->parameters().Want(checked.name);
   }
@@ -167,7 +167,7 @@ void Examination::TakeEvent(const AutopilotEvent& event) {
     case AutopilotEventKind::kTargetEcho:
     case AutopilotEventKind::kNotFinite:
     case AutopilotEventKind::kTimeBackwards:
-      if (told_.size() < kMost) told_.push_back(event.text);
+      if (reported_.size() < kMost) reported_.push_back(event.text);
       break;
     case AutopilotEventKind::kNoTimeSync:
       is_one_way_ = true;
@@ -247,7 +247,7 @@ void Examination::SummarizeLink(Time end, LinkObservations* link) const {
   link->is_one_way = is_one_way_;
   link->clock_jumps = clock.jumps();
   link->restarts = autopilot.restarts();
-  link->events = told_;
+  link->events = reported_;
 }
 
 void Examination::SummarizeParameters(ParameterValues* values) const {
@@ -256,7 +256,8 @@ void Examination::SummarizeParameters(ParameterValues* values) const {
     const auto value = reader.Find(name);
     const auto entry = reader.EntryOf(name);
     if (!value || !entry) continue;
-    values->insert_or_assign(std::string(name), ToldParameter{*value, entry->name, entry->scale});
+    values->insert_or_assign(std::string(name),
+                             ReportedParameter{*value, entry->name, entry->scale});
   }
 }
 

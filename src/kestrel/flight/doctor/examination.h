@@ -81,7 +81,7 @@ class Examination {
   std::vector<double> detect_s_;
   std::vector<double> latency_s_;
   // Used by the link's thread.
-  bool asked_parameters_ = false;
+  bool requested_parameters_ = false;
   int heartbeats_ = 0;
   bool hears_signed_ = false;
   bool is_one_way_ = false;  // TIMESYNC is not answered
@@ -92,7 +92,7 @@ class Examination {
   std::optional<Time> listening_;  // time since which the streams are counted
   Time attitude_time_;
   Time position_time_;
-  std::vector<std::string> told_;
+  std::vector<std::string> reported_;
 };
 
 // Returns the part of a detection that the checks use; the caller adds its time and the UAV's pose.

@@ -49,7 +49,7 @@ Finding CheckStream(const std::string& check, int messages, double listened_s, d
   constexpr double kOld_s = 1;
   const double rate_hz = listened_s > 0 ? messages / listened_s : 0;
   const std::string measured =
-      fmt::format("{:.0f} of {:.0f} asked per second", rate_hz, requested_hz);
+      fmt::format("{:.0f} of {:.0f} requested per second", rate_hz, requested_hz);
   if (messages == 0) return Wrong(check, "none came", missing_advice);
   if (age_s > kOld_s) {
     return Wrong(check, fmt::format("the last one came {:.1f} s ago", age_s), missing_advice);
@@ -72,7 +72,7 @@ Finding CheckLine(const LinkObservations& link) {
   constexpr double kLost = 0.05;
   constexpr double kMuchLost = 0.3;
   const std::string check = "line";
-  if (!link.is_asked) {
+  if (!link.isrequested) {
     return NotChecked(check, "no autopilot was named", "--autopilot URL");
   }
   if (!link.open_error.empty()) {
@@ -106,7 +106,7 @@ Finding CheckSigning(const LinkObservations& link) {
   const ConnectionCounters& counters = link.counters;
   if (!link.is_signed) {
     if (!link.hears_signed) return Good(check, "neither side signs");
-    return Wrong(check, "the autopilot signs, this side does not: it ignores what it is told",
+    return Wrong(check, "the autopilot signs, this side does not: it ignores what it receives",
                  "--signing-key FILE with the autopilot's key");
   }
   const std::string refused =
@@ -148,7 +148,7 @@ Finding CheckVersion(const LinkObservations& link) {
   if (link.kind != AutopilotKind::kArduPilot && link.kind != AutopilotKind::kPx4) {
     return Doubtful(check, ToString(link.kind), "Kestrel is tried with ArduPilot and PX4 only");
   }
-  if (!link.version) return NotChecked(check, "not told");
+  if (!link.version) return NotChecked(check, "not reported");
   const AutopilotVersion& version = *link.version;
   const bool is_ardupilot = link.kind == AutopilotKind::kArduPilot;
   constexpr int kPx4Minor = 13;
@@ -165,7 +165,7 @@ Finding CheckVersion(const LinkObservations& link) {
 
 Finding CheckVehicle(const LinkObservations& link) {
   const std::string check = "vehicle";
-  if (!link.vehicle_type) return NotChecked(check, "not told");
+  if (!link.vehicle_type) return NotChecked(check, "not reported");
   const std::string measured = VehicleName(*link.vehicle_type);
   if (IsMulticopter(*link.vehicle_type)) return Good(check, measured);
   return Wrong(
@@ -207,7 +207,7 @@ Finding CheckGimbal(const LinkObservations& link) {
 
 Finding CheckEstimate(const LinkObservations& link) {
   const std::string check = "position estimate";
-  if (!link.has_good_position) return NotChecked(check, "the autopilot does not say");
+  if (!link.has_good_position) return NotChecked(check, "the autopilot does not report it");
   if (*link.has_good_position) return Good(check, "the autopilot trusts its own position");
   return Wrong(check, "the autopilot does not trust its own position",
                "GNSS (or another source of position), compass, and some time; without it neither "
@@ -265,7 +265,7 @@ Finding CheckLinkEvents(const LinkObservations& link) {
 
 std::vector<Finding> CheckLink(const LinkObservations& link, const DoctorUse& use) {
   std::vector<Finding> findings = {CheckLine(link)};
-  if (!link.is_asked || !link.open_error.empty()) return findings;
+  if (!link.isrequested || !link.open_error.empty()) return findings;
   findings.push_back(CheckSigning(link));
   findings.push_back(CheckHeartbeat(link));
   if (!link.is_heard) return findings;

@@ -80,9 +80,9 @@ struct VisionObservations {
 };
 
 struct LinkObservations {
-  bool is_asked = false;   // an autopilot was given at all
-  std::string open_error;  // why the line could not be opened; empty: it could be
-  std::string silence;     // why no autopilot is heard, see WhySilent; empty: it is heard
+  bool isrequested = false;  // an autopilot was given at all
+  std::string open_error;    // why the line could not be opened; empty: it could be
+  std::string silence;       // why no autopilot is heard, see WhySilent; empty: it is heard
   LinkScheme scheme = LinkScheme::kUdpIn;
   int baud = 0;               // baud rate of a serial line
   bool is_signed = false;     // this side signs its packets

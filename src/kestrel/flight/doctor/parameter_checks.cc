@@ -98,14 +98,14 @@ class ParameterRules {
   void Want(std::string_view name, Verdict otherwise, const Wanted& wanted, const IsGood& is_good) {
     const auto found = all_.parameters.find(name);
     if (found == all_.parameters.end()) return;
-    const ToldParameter& told = found->second;
-    Finding finding = Good(told.own_name, fmt::format("{:g}", told.value / told.scale));
-    if (!is_good(told.value)) {
+    const ReportedParameter& reported = found->second;
+    Finding finding = Good(reported.own_name, fmt::format("{:g}", reported.value / reported.scale));
+    if (!is_good(reported.value)) {
       finding.verdict = otherwise;
       finding.measured += fmt::format(": {}", wanted.why);
       finding.advice =
-          fmt::format("param set {} {:g}{}; or kestrel doctor --fix", told.own_name,
-                      wanted.value / told.scale, wanted.needs_reboot ? ", then reboot" : "");
+          fmt::format("param set {} {:g}{}; or kestrel doctor --fix", reported.own_name,
+                      wanted.value / reported.scale, wanted.needs_reboot ? ", then reboot" : "");
       finding.fix = ParameterFix{std::string(name), wanted.value, wanted.needs_reboot};
     }
     findings_.push_back(std::move(finding));
@@ -394,7 +394,7 @@ void CheckLossOfPx4(ParameterRules* rules) {
           : "when set-points stop it waits for the sticks, and drifts without a pilot; "
             "5 holds";
   rules->Want("COM_OBL_RC_ACT", flies_on || falls ? Verdict::kWrong : Verdict::kDoubtful,
-              {kHold, why}, [](double told) { return told == kHold; });
+              {kHold, why}, [](double reported) { return reported == kHold; });
 }
 
 void CheckPilotOfPx4(ParameterRules* rules) {
@@ -513,7 +513,7 @@ std::vector<Finding> CheckParameters(const DoctorObservations& observations) {
   findings.push_back(CheckLatency(observations));
   if (observations.parameters.empty()) {
     findings.push_back(
-        NotChecked("parameters", "the autopilot told none", "a line in both directions"));
+        NotChecked("parameters", "the autopilot sent none", "a line in both directions"));
     return findings;
   }
   ParameterRules rules(observations);

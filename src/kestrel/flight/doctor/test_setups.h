@@ -76,7 +76,7 @@ inline CameraObservations GoodCamera() {
 
 inline LinkObservations GoodLink(AutopilotKind kind) {
   LinkObservations link;
-  link.is_asked = true;
+  link.isrequested = true;
   link.scheme = LinkScheme::kSerial;
   link.baud = 921600;
   link.counters.received = 1500;

@@ -122,7 +122,7 @@ struct GuidanceOptions {
           "link outage after which guidance waits for the mode and goes around");
     visit("stream_before_start", self.stream_before_start,
           "send set-points of standing still before the mode is given");
-    visit("land_in_contact", self.land_in_contact, "ask for the LAND mode in contact");
+    visit("land_in_contact", self.land_in_contact, "request the LAND mode in contact");
     visit("disarm_after_s", self.disarm_after_s, Range{0, 60},
           "time in contact after which the UAV is disarmed by force; 0: never");
     visit("disarm_carried_s", self.disarm_carried_s, Range{0, 60},

@@ -145,15 +145,15 @@ TEST_P(LinkGoneTest, SendsNothingAndGoesAroundAfterLongLoss) {
       },
       GetParam(), gone);
   const Time back = flight.Input().now;
-  const auto mode_not_told = [&](GuidanceInput& input) {
+  const auto mode_notreported = [&](GuidanceInput& input) {
     input.mode_age_s = 0.3 + ToSeconds(input.now - back);
   };
   if (GetParam() < 0.8) {
-    EXPECT_TRUE(flight.Step(mode_not_told).set_point);
+    EXPECT_TRUE(flight.Step(mode_notreported).set_point);
     EXPECT_EQ(flight.guidance.go_arounds(), 0);
     return;
   }
-  for (int i = 0; i < 20; ++i) EXPECT_FALSE(flight.Step(mode_not_told).set_point);
+  for (int i = 0; i < 20; ++i) EXPECT_FALSE(flight.Step(mode_notreported).set_point);
   flight.Step();
   ASSERT_TRUE(flight.output.set_point);
   EXPECT_EQ(flight.guidance.go_arounds(), 1);

@@ -323,9 +323,9 @@ TEST(LandingGuidanceTest, RequestsLandOnceDeckHasStoppedForGood) {
   vehicle.path = "standing";
   TestFlight flight(options, {}, vehicle);
   flight.LandOnDeck();
-  const auto is_asked = [&] { return flight.output.request == GuidanceRequest::kLand; };
-  EXPECT_FALSE(flight.FlyUntil(is_asked, 4.5)) << "a car at a traffic light drives on";
-  EXPECT_TRUE(flight.FlyUntil(is_asked, 2));
+  const auto isrequested = [&] { return flight.output.request == GuidanceRequest::kLand; };
+  EXPECT_FALSE(flight.FlyUntil(isrequested, 4.5)) << "a car at a traffic light drives on";
+  EXPECT_TRUE(flight.FlyUntil(isrequested, 2));
 }
 
 TEST(LandingGuidanceTest, DisarmsOnDeckThatCarriesItThroughCurves) {

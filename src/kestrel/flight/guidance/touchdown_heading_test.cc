@@ -132,17 +132,17 @@ TEST(TouchdownHeadingTest, WaitsAboveCommitHeightForHeadingThenGivesUp) {
 TEST(TouchdownHeadingTest, WaitsAtFollowHeightWithoutHeadingThenGivesUp) {
   TestFlight flight(To("0"));
   double lowest_m = 10;
-  std::string said;
+  std::string reported;
   const bool gave_up = flight.FlyUntil(
       [&] {
         lowest_m = std::min(lowest_m, flight.Height());
-        if (flight.output.phase == GuidancePhase::kFollow) said = flight.output.reason;
+        if (flight.output.phase == GuidancePhase::kFollow) reported = flight.output.reason;
         return flight.guidance.has_given_up();
       },
       60, Turned{.period = 0});
   EXPECT_TRUE(gave_up);
   EXPECT_GT(lowest_m, 2);
-  EXPECT_THAT(said, HasSubstr("the pad's heading is not known"));
+  EXPECT_THAT(reported, HasSubstr("the pad's heading is not known"));
   EXPECT_THAT(flight.output.reason, HasSubstr("is not known: gave up"));
 }
 

@@ -56,7 +56,7 @@ class FlightKeeperTest : public ::testing::Test {
   FlightRecorderOptions options_;
   RecordingSwitch recording_{[this](const fs::path& folder, bool replace) {
     return std::make_unique<FlightRecorder>(folder, replace, SmallCamera(), 50, options_,
-                                            FlightRecorder::Tell());
+                                            FlightRecorder::Notify());
   }};
   FlightKeeper keeper_{folder_ / "kept", &recording_};
 };
@@ -99,8 +99,8 @@ TEST_F(FlightKeeperTest, StartsAndStopsWhileFramesArrive) {
 
 TEST_F(FlightKeeperTest, SnapshotsReplaceNothing) {
   const Frame frame = NoiseFrame(7);
-  const std::string said = keeper_.KeepSnapshot(frame.image, frame.time);
-  EXPECT_THAT(said, HasSubstr("snapshot_1000007000000.png"));
+  const std::string reported = keeper_.KeepSnapshot(frame.image, frame.time);
+  EXPECT_THAT(reported, HasSubstr("snapshot_1000007000000.png"));
   EXPECT_THAT(keeper_.KeepSnapshot(frame.image, frame.time), HasSubstr("-2.png"));
   for (const fs::path& kept : Kept()) {
     const cv::Mat image = ReadImage(kept.string());

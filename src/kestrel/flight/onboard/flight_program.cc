@@ -31,10 +31,10 @@ constexpr char kNoImageYet[] = "waits for the camera: no image yet";
 }  // namespace
 
 FlightProgram::FlightProgram(const FlightOptions& options, const FlightParts& parts,
-                             std::function<void(const std::string&)> say)
+                             std::function<void(const std::string&)> report)
     : options_(Checked(options)),
       parts_(parts),
-      say_(std::move(say)),
+      report_(std::move(report)),
       events_(options.events, parts.vision->pose_lead()),
       poses_(kPoses, kPoseGap),
       latency_({"capture to arrival", "capture to vision", "detection", "capture to message",
@@ -44,13 +44,13 @@ FlightProgram::FlightProgram(const FlightOptions& options, const FlightParts& pa
       landing_(pad_.size_m / 2) {
   if (parts.connection == nullptr) return;
   sender_.emplace(options, pad_.tracker, parts.profile, pad_.size_m, pad_.range_m, parts.guides,
-                  parts.autopilot, parts.connection, say_);
+                  parts.autopilot, parts.connection, report_);
   if (parts.guides) {
     guided_.emplace(options, pad_.tracker, !parts.source_has_poses, parts.autopilot,
-                    parts.connection, say_);
+                    parts.connection, report_);
   }
   if (parts.guard != nullptr) {
-    guard_.emplace(parts.guard, parts.autopilot, parts.connection, options.guard, say_);
+    guard_.emplace(parts.guard, parts.autopilot, parts.connection, options.guard, report_);
   }
 }
 
@@ -68,36 +68,36 @@ FlightEnd FlightProgram::Run(const std::function<bool()>& is_stopped) {
   }
   events_.Close();
   for (std::thread& thread : threads) thread.join();
-  TellEnd();
+  ReportEnd();
   if (error) std::rethrow_exception(error);
   return end_;
 }
 
-void FlightProgram::TellEnd() {
-  say_(InWords(end_));
+void FlightProgram::ReportEnd() {
+  report_(InWords(end_));
   if (parts_.sink != nullptr) parts_.sink->Take(Report());
 }
 
 void FlightProgram::Watch(const std::function<bool()>& is_stopped) {
-  service_manager_.Tell("READY=1");
+  service_manager_.Notify("READY=1");
   while (!is_over_) {
-    TellServiceManager(Now());
+    NotifyServiceManager(Now());
     if (is_stopped()) End({FlightOutcome::kStopped});
     if (parts_.sink != nullptr) parts_.sink->Take(Report());
     std::this_thread::sleep_for(kPatience);
   }
   // To write what waits may take a while.
-  service_manager_.Tell("WATCHDOG_USEC=60000000");
+  service_manager_.Notify("WATCHDOG_USEC=60000000");
 }
 
 // A thread that hangs keeps the sign of life from systemd's watchdog, which then kills the program;
 // the guard sees to the UAV.
-void FlightProgram::TellServiceManager(Time now) {
+void FlightProgram::NotifyServiceManager(Time now) {
   constexpr Duration kLinkLimit = std::chrono::seconds(1);
   constexpr Duration kLimit = std::chrono::seconds(5);
   if (link_life_.IsAlive(now, kLinkLimit) && vision_life_.IsAlive(now, kLimit) &&
       capture_life_.IsAlive(now, kLimit)) {
-    service_manager_.Tell("WATCHDOG=1");
+    service_manager_.Notify("WATCHDOG=1");
   }
 }
 
@@ -140,7 +140,7 @@ void FlightProgram::Capture() {
     }
     if (const std::string now = SourceTrouble(); now != trouble) {
       const char* const end = trouble == kNoImageYet ? "images come" : "the camera is back";
-      say_(now.empty() ? end : now);
+      report_(now.empty() ? end : now);
       trouble = now;
     }
     if (ToSeconds(Now() - last) < options_.source_timeout_s) continue;
@@ -185,7 +185,7 @@ void FlightProgram::TakeGimbal(const GimbalSample& report) {
 void FlightProgram::See() {
   if (const std::string problem = SetUpThisThread("vision", options_.vision_thread);
       !problem.empty()) {
-    say_(problem);
+    report_(problem);
   }
   for (;;) {
     vision_life_.Rest();
@@ -243,7 +243,7 @@ void FlightProgram::WarnOnce() {
   const std::string warning = parts_.vision->Warning();
   if (warning.empty()) return;
   was_warned_ = true;
-  say_(warning);
+  report_(warning);
 }
 
 // True when the camera repeats an image: it shows where the target was, not where it is.
@@ -252,8 +252,8 @@ bool FlightProgram::IsFrozen(const Frame& frame) {
   const bool was_frozen = repeated_image_.in_a_row() >= kFrozen;
   const bool is_repeated = repeated_image_.IsRepeated(frame.image);
   if (is_repeated) ++repeated_frames_;
-  if (repeated_image_.in_a_row() == kFrozen) say_("the camera repeats its image");
-  if (was_frozen && !is_repeated) say_("the camera's images move again");
+  if (repeated_image_.in_a_row() == kFrozen) report_("the camera repeats its image");
+  if (was_frozen && !is_repeated) report_("the camera's images move again");
   return is_repeated;
 }
 
@@ -274,7 +274,7 @@ void FlightProgram::Communicate() {
     if (parts_.source_has_poses) poses_.Add(source_pose_.Get());  // a repeated one is ignored
     const Time now = Now();
     parts_.autopilot->Tick(now);
-    TellTarget(now);
+    SendTarget(now);
     WatchFlight(now);
     if (guard_ && !guard_->Watch(now, *guided_)) {
       End({FlightOutcome::kNotLanded, {}, guard_->reason()});
@@ -282,13 +282,13 @@ void FlightProgram::Communicate() {
   }
   const auto severity = ExitStatus(end_) == 0 ? mavlink::kSeverityInfo : mavlink::kSeverityWarning;
   parts_.autopilot->Announce(severity, "Kestrel: " + InWords(end_));
-  if (parts_.guard != nullptr) parts_.guard->SayGoodbye();
+  if (parts_.guard != nullptr) parts_.guard->SendGoodbye();
 }
 
-void FlightProgram::TellTarget(Time now) {
+void FlightProgram::SendTarget(Time now) {
   const TrackSnapshot& track = track_.Get();
   if (guided_) sender_->set_may_stand(!guided_->is_flying());
-  if (sender_->Tell(now, track, poses_)) latency_.step(kMessage).Add(Now() - track.captured);
+  if (sender_->Send(now, track, poses_)) latency_.step(kMessage).Add(Now() - track.captured);
   phase_ = sender_->phase();
   height_m_ = sender_->height_m();
   messages_ = sender_->messages();
@@ -315,7 +315,7 @@ void FlightProgram::WatchFlight(Time now) {
     if (landing_.end()) EndByLanding(*landing_.end());
     return;
   }
-  SayWhatItWaitsFor(now);
+  ReportWhatItWaitsFor(now);
   if (ToSeconds(now - heard_) < options_.autopilot_timeout_s) return;
   End({FlightOutcome::kLinkLost,
        {},
@@ -323,7 +323,7 @@ void FlightProgram::WatchFlight(Time now) {
 }
 
 // Until the first heartbeat. That one which was there is gone is said by its events.
-void FlightProgram::SayWhatItWaitsFor(Time now) {
+void FlightProgram::ReportWhatItWaitsFor(Time now) {
   constexpr Duration kPeriod = std::chrono::milliseconds(500);
   if (was_heard_ || now - began_ < kQuietStart || now < wait_due_) return;
   wait_due_ = now + kPeriod;
@@ -333,7 +333,7 @@ void FlightProgram::SayWhatItWaitsFor(Time now) {
     if (autopilot_state_.waits == waits) return;
     autopilot_state_.waits = waits;
   }
-  say_(waits);
+  report_(waits);
 }
 
 void FlightProgram::ShowAutopilot(Time now) {

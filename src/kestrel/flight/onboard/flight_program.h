@@ -62,10 +62,10 @@ struct FlightParts {
 // count.
 class FlightProgram {
  public:
-  // 'say': receives lines for the user, from any thread. Throws InputError when the options are not
-  // valid.
+  // 'report': receives lines for the user, from any thread. Throws InputError when the options are
+  // not valid.
   FlightProgram(const FlightOptions& options, const FlightParts& parts,
-                std::function<void(const std::string&)> say);
+                std::function<void(const std::string&)> report);
 
   // Flies until the UAV has landed, the source ends or 'is_stopped', which is called ten times a
   // second, returns true. The end is also said to the user, the ground station and the sink. Throws
@@ -95,7 +95,7 @@ class FlightProgram {
   enum Step { kArrival, kVision, kDetection, kMessage, kSetPoint };
 
   void Watch(const std::function<bool()>& is_stopped);
-  void TellServiceManager(Time now);
+  void NotifyServiceManager(Time now);
   void Capture();
   void See();
   TrackSnapshot See(const Frame& frame);
@@ -105,21 +105,21 @@ class FlightProgram {
   void WarnOnce();
   void Take(Event event);
   void TakePose(const PoseSample& pose);
-  void TellTarget(Time now);
+  void SendTarget(Time now);
   void WatchFlight(Time now);
   LandingWatchInput LandingInput(Time now);
   void ShowAutopilot(Time now);
-  void SayWhatItWaitsFor(Time now);
+  void ReportWhatItWaitsFor(Time now);
   std::string SourceTrouble() const;
   void End(const FlightEnd& end);
   void EndByLanding(FlightEnd end);
-  void TellEnd();
+  void ReportEnd();
   std::shared_ptr<FlightRecorder> Recorder() const;  // null: nothing is recorded
 
   FlightOptions options_;
   FlightParts parts_;
   const Time began_ = Now();
-  std::function<void(const std::string&)> say_;
+  std::function<void(const std::string&)> report_;
   LiveEvents events_;
   LatestValue<TrackSnapshot> track_;
   mutable std::mutex other_tag_mutex_;

@@ -56,11 +56,11 @@ Duration UtcOffset() {
 
 FlightRecorder::FlightRecorder(const fs::path& folder, bool replace,
                                const CameraCalibration& calibration, double rate_hz,
-                               const FlightRecorderOptions& options, Tell tell)
+                               const FlightRecorderOptions& options, Notify notify)
     : options_(options),
       folder_(MadeFolder(folder, replace, options)),
       lock_(folder_.string()),
-      tell_(std::move(tell)),
+      notify_(std::move(notify)),
       utc_offset_(UtcOffset()),
       gimbal_(calibration.gimbal),
       writer_(Emptied(folder_), kEurocTables),
@@ -85,8 +85,8 @@ FlightRecorder::~FlightRecorder() {
   commit_thread_.join();
 }
 
-void FlightRecorder::Say(const std::string& text) const {
-  if (tell_) tell_(text);
+void FlightRecorder::Report(const std::string& text) const {
+  if (notify_) notify_(text);
 }
 
 void FlightRecorder::AddFrame(const Frame& frame, const std::optional<TruePattern>& truth) {
@@ -131,7 +131,7 @@ RecorderCounters FlightRecorder::counters() const {
 void FlightRecorder::RunWriter() {
   constexpr Duration kIdle = std::chrono::milliseconds(50);
   const std::string refused = SetUpThisThread("recorder", {});
-  if (!refused.empty()) Say(refused);
+  if (!refused.empty()) Report(refused);
   for (;;) {
     const bool was_closing = is_closing_;
     const std::optional<RecordedImage> image = images_.Pop(kIdle);
@@ -144,7 +144,7 @@ void FlightRecorder::RunWriter() {
 // Commits in a thread of its own: it takes time, during which images go on being written.
 void FlightRecorder::RunCommitter() {
   SetUpThisThread("recorder-sync", {});
-  std::string told;
+  std::string reported;
   const Duration period = DurationFromSeconds(options_.commit_period_s);
   for (bool is_last = false; !is_last;) {
     {
@@ -152,8 +152,8 @@ void FlightRecorder::RunCommitter() {
       is_last = stop_.wait_for(lock, period, [this] { return is_stopping_; });
     }
     const std::string failure = writer_.Commit();
-    if (!failure.empty() && failure != told) Say("recording: " + failure);
-    told = failure;
+    if (!failure.empty() && failure != reported) Report("recording: " + failure);
+    reported = failure;
   }
 }
 
@@ -187,7 +187,7 @@ void FlightRecorder::StopImages(const std::string& reason) {
   constexpr Duration kPause = std::chrono::seconds(1);
   next_attempt_ = Now() + kPause;
   if (are_images_stopped_.exchange(true)) return;
-  Say(fmt::format("recording: no more images, the flight goes on: {}", reason));
+  Report(fmt::format("recording: no more images, the flight goes on: {}", reason));
 }
 
 void FlightRecorder::Encode(const cv::Mat& image) {
@@ -205,7 +205,7 @@ bool FlightRecorder::WriteImage(const Frame& frame) {
     return false;
   }
   byte_count_.fetch_add(encoded_.size(), std::memory_order_relaxed);
-  if (are_images_stopped_.exchange(false)) Say("recording: there is room again, images go on");
+  if (are_images_stopped_.exchange(false)) Report("recording: there is room again, images go on");
   return true;
 }
 

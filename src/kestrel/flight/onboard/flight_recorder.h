@@ -69,14 +69,14 @@ class FlightRecorder {
  public:
   // Receives messages for the user: the disk is full for images, and writing goes on. Called by a
   // thread of the recorder.
-  using Tell = std::function<void(const std::string&)>;
+  using Notify = std::function<void(const std::string&)>;
 
   // Throws InputError when 'folder' has something else in it (or a recording, unless 'replace'),
   // cannot be written or is in use by another writer, or the options are not valid. 'rate_hz': rate
   // of the images. A calibration of width 0 (none is known) is not written.
   FlightRecorder(const std::filesystem::path& folder, bool replace,
                  const CameraCalibration& calibration, double rate_hz,
-                 const FlightRecorderOptions& options, Tell tell);
+                 const FlightRecorderOptions& options, Notify notify);
   // Writes all data that it has received.
   ~FlightRecorder();
   FlightRecorder(const FlightRecorder&) = delete;
@@ -125,7 +125,7 @@ class FlightRecorder {
 
   void RunWriter();
   void RunCommitter();
-  void Say(const std::string& text) const;
+  void Report(const std::string& text) const;
 
   void Write(const RecordedImage& image);
   void Drop(Time time, const char* reason);
@@ -146,7 +146,7 @@ class FlightRecorder {
   FlightRecorderOptions options_;
   std::filesystem::path folder_;
   FolderLock lock_;
-  Tell tell_;
+  Notify notify_;
   std::optional<JpegEncoder> jpeg_encoder_;  // for images that are not PNG
   Duration utc_offset_;                      // UTC minus Now()
   std::optional<GimbalMount> gimbal_;        // of the calibration

@@ -59,18 +59,18 @@ class FlightRecorderTest : public ::testing::Test {
     return std::make_unique<FlightRecorder>(Folder(), replace, Mounted(), 50, options,
                                             [this](const std::string& text) {
                                               const std::lock_guard lock(mutex_);
-                                              told_.push_back(text);
+                                              reported_.push_back(text);
                                             });
   }
 
-  std::vector<std::string> Told() {
+  std::vector<std::string> Reported() {
     const std::lock_guard lock(mutex_);
-    return told_;
+    return reported_;
   }
 
   TestFolder folder_;
   std::mutex mutex_;
-  std::vector<std::string> told_;
+  std::vector<std::string> reported_;
 };
 
 TEST_F(FlightRecorderTest, WritesReadableRecording) {
@@ -98,7 +98,7 @@ TEST_F(FlightRecorderTest, WritesReadableRecording) {
     EXPECT_EQ(calibration.clock_offset, milliseconds(12));
     EXPECT_TRUE(calibration.body_from_camera);
   }
-  EXPECT_THAT(Told(), IsEmpty());
+  EXPECT_THAT(Reported(), IsEmpty());
 }
 
 TEST_F(FlightRecorderTest, WritesTruthForEvaluation) {
@@ -197,7 +197,7 @@ TEST_F(FlightRecorderTest, FullDiskStopsImagesOnly) {
     }
     EXPECT_FALSE(recorder->is_recording_images());
   }
-  EXPECT_THAT(Told(), ElementsAre(HasSubstr("no more images, the flight goes on")));
+  EXPECT_THAT(Reported(), ElementsAre(HasSubstr("no more images, the flight goes on")));
   const std::string file = Mav0("nav0/data.csv");
   EXPECT_THAT(ParsePoseRows(ReadFile(file), file), SizeIs(3));
   EXPECT_THAT(ReadFile(Mav0("cam0/dropped.csv")), HasSubstr("the disk is full"));
@@ -220,7 +220,7 @@ TEST_F(FlightRecorderTest, ResumesImagesWhenDiskIsWritableAgain) {
     std::filesystem::create_directory(data);
     record_until(true);
   }
-  EXPECT_THAT(Told(), ElementsAre(HasSubstr("no more images"), HasSubstr("images go on")));
+  EXPECT_THAT(Reported(), ElementsAre(HasSubstr("no more images"), HasSubstr("images go on")));
   const auto source = OpenSource({Folder()});
   Frame frame;
   EXPECT_TRUE(source->Next(&frame));

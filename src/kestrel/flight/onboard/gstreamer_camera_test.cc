@@ -127,13 +127,13 @@ TEST(GstreamerCamera, ReportsLostCameraAndReopensIt) {
   GstreamerCamera camera = Camera(
       "videotestsrc is-live=true num-buffers=3 ! video/x-raw,width=64,height=48,framerate=50/1",
       {.reopen_s = 0.05});
-  std::string told;
+  std::string reported;
   const Time deadline = Now() + seconds(20);
   while (camera.counters().reopened < 2 && Now() < deadline) {
     camera.Next(milliseconds(20));
-    if (!camera.error().empty()) told = camera.error();
+    if (!camera.error().empty()) reported = camera.error();
   }
-  EXPECT_THAT(told, HasSubstr("the camera has stopped"));
+  EXPECT_THAT(reported, HasSubstr("the camera has stopped"));
   EXPECT_GE(camera.counters().reopened, 2u);
   EXPECT_GT(NextFrame(&camera).time, Time());
 }

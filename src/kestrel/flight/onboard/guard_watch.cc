@@ -11,27 +11,27 @@
 namespace kestrel {
 
 GuardWatch::GuardWatch(GuardLink* guard, Autopilot* autopilot, const Connection* connection,
-                       const GuardOptions& options, std::function<void(const std::string&)> say)
+                       const GuardOptions& options, std::function<void(const std::string&)> report)
     : guard_(guard),
       autopilot_(autopilot),
       connection_(connection),
       options_(options),
-      say_(std::move(say)) {}
+      report_(std::move(report)) {}
 
 bool GuardWatch::Watch(Time now, const GuidedFlight& guided) {
-  guard_->TellLife(Life(guided), now);
+  guard_->SendLife(Life(guided), now);
   const GuardState state = guard_->state();
-  if (state == told_) return true;
-  told_ = state;
+  if (state == reported_) return true;
+  reported_ = state;
   switch (state) {
     case GuardState::kWaits:
-      say_("the guard of an earlier flight still has the line: waiting for it");
+      report_("the guard of an earlier flight still has the line: waiting for it");
       return true;
     case GuardState::kWatches:
-      say_("the line is free");
+      report_("the line is free");
       return true;
     case GuardState::kGone:
-      TellGone();
+      ReportGone();
       return true;
     case GuardState::kTookOver:
       reason_ =
@@ -60,8 +60,8 @@ GuardLife GuardWatch::Life(const GuidedFlight& guided) const {
 }
 
 // Guidance goes on: to end it here would leave the UAV to itself for certain.
-void GuardWatch::TellGone() {
-  say_(fmt::format("the guard is gone ({}): the flight goes on without it", guard_->error()));
+void GuardWatch::ReportGone() {
+  report_(fmt::format("the guard is gone ({}): the flight goes on without it", guard_->error()));
   autopilot_->Announce(mavlink::kSeverityError, "Kestrel: the guard is gone, flying on without");
 }
 

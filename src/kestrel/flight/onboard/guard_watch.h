@@ -17,9 +17,9 @@ namespace kestrel {
 // Used by the link's thread only.
 class GuardWatch {
  public:
-  // All that pointers name outlives this. 'say': receives lines for the user.
+  // All that pointers name outlives this. 'report': receives lines for the user.
   GuardWatch(GuardLink* guard, Autopilot* autopilot, const Connection* connection,
-             const GuardOptions& options, std::function<void(const std::string&)> say);
+             const GuardOptions& options, std::function<void(const std::string&)> report);
 
   // Called after each set-point that was due. False: the guard has the UAV, or the line cannot be
   // opened, and the flight has to end.
@@ -30,15 +30,15 @@ class GuardWatch {
 
  private:
   GuardLife Life(const GuidedFlight& guided) const;
-  void TellGone();
+  void ReportGone();
 
   GuardLink* guard_;
   Autopilot* autopilot_;
   const Connection* connection_;
   GuardOptions options_;
-  std::function<void(const std::string&)> say_;
+  std::function<void(const std::string&)> report_;
   std::string reason_;
-  GuardState told_ = GuardState::kWatches;
+  GuardState reported_ = GuardState::kWatches;
 };
 
 }  // namespace kestrel

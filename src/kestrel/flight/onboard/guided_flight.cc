@@ -21,8 +21,8 @@ constexpr double kMinRate_hz = 20;  // lowest rate that guidance is made for
 constexpr double kMaxFrameAge_s = 1;
 constexpr double kLinkAge_s = 0.5;  // after so long without a pose the link is away
 constexpr Duration kPermissionPeriod = std::chrono::milliseconds(500);
-constexpr Duration kAskPeriod = std::chrono::seconds(1);
-constexpr double kAskForLand_s = 10;
+constexpr Duration kRequestPeriod = std::chrono::seconds(1);
+constexpr double kRequestLandAfter_s = 10;
 
 const FlightOptions& CheckedRate(const FlightOptions& options) {
   if (options.rate_hz < kMinRate_hz) {
@@ -46,19 +46,19 @@ UavState StateOf(const PredictedPose& pose, const Eigen::Vector3d& acceleration)
 
 GuidedFlight::GuidedFlight(const FlightOptions& options, const TargetTrackerOptions& tracker,
                            bool is_in_its_frame, Autopilot* autopilot, Connection* connection,
-                           std::function<void(const std::string&)> say)
+                           std::function<void(const std::string&)> report)
     : options_(CheckedRate(options)),
       noise_(tracker.Noise()),
       is_in_its_frame_(is_in_its_frame),
       autopilot_(*autopilot),
       connection_(connection),
-      say_(std::move(say)),
+      report_(std::move(report)),
       schedule_(options.rate_hz) {
   guidance_.emplace(options.guidance);
 }
 
 bool GuidedFlight::Fly(Time now, const TrackSnapshot& track, const PoseHistory& poses) {
-  const bool is_news = track.captured != told_frame_;
+  const bool is_news = track.captured != reported_frame_;
   if (!schedule_.IsDue(now, is_news)) return false;
   KnowAutopilot(now);
   if (kind_ == AutopilotKind::kUnknown) return false;
@@ -66,12 +66,12 @@ bool GuidedFlight::Fly(Time now, const TrackSnapshot& track, const PoseHistory& 
   WatchMode(input, now);
   input.is_guided = is_begun_;
   const GuidanceOutput output = guidance_->Update(input);
-  SayPhase(output);
-  SayWhetherItKeepsUp(output);
-  SayWhenContactIsUnseen(input);
-  Ask(now, output.request);
+  ReportPhase(output);
+  ReportWhetherItKeepsUp(output);
+  ReportWhenContactIsUnseen(input);
+  Request(now, output.request);
   EndLostLanding(input, now);
-  told_frame_ = track.captured;
+  reported_frame_ = track.captured;
   const bool is_allowed = is_begun_ || may_begin_;
   if (!output.set_point || !is_allowed) return false;
   if (!SendSetPoint(*output.set_point, autopilot_, now, connection_)) return false;
@@ -82,7 +82,7 @@ bool GuidedFlight::Fly(Time now, const TrackSnapshot& track, const PoseHistory& 
 std::string GuidedFlight::gave_up() const {
   if (!guidance_->has_given_up()) return "";
   constexpr std::string_view kEnding = ": gave up";
-  std::string reason = said_reason_;
+  std::string reason = reported_reason_;
   if (reason.ends_with(kEnding)) reason.resize(reason.size() - kEnding.size());
   return reason;
 }
@@ -96,8 +96,8 @@ void GuidedFlight::KnowAutopilot(Time now) {
   permission_due_ = now;
   was_mode_ = autopilot_.is_guided_mode();
   if (was_mode_ && autopilot_.is_armed()) {
-    Tell(mavlink::kSeverityWarning,
-         fmt::format("{} was on before: leave it and give it again", autopilot_.mode_name()));
+    Notify(mavlink::kSeverityWarning,
+           fmt::format("{} was on before: leave it and give it again", autopilot_.mode_name()));
   }
 }
 
@@ -109,8 +109,8 @@ void GuidedFlight::WatchMode(const GuidanceInput& input, Time now) {
   const bool is_landing = autopilot_.custom_mode() == CustomModeOf(kind_, FlightMode::kLand);
   if (!is_mode && is_begun_ && phase() == GuidancePhase::kLanded && !input.uav && !is_landing) {
     left_on_deck_ = now;
-    Tell(mavlink::kSeverityWarning,
-         "the autopilot has left its mode on the deck, without a position");
+    Notify(mavlink::kSeverityWarning,
+           "the autopilot has left its mode on the deck, without a position");
   }
   if (!is_mode) is_given_ = is_begun_ = false;
   was_mode_ = is_mode;
@@ -125,21 +125,21 @@ void GuidedFlight::WatchMode(const GuidanceInput& input, Time now) {
   is_begun_ = may_begin_;
   is_given_ = false;
   if (const auto home = HomeOf(autopilot_)) guidance_->SetFenceCenter(*home);
-  if (!is_begun_) Tell(mavlink::kSeverityWarning, "guidance refused: " + refusal_);
+  if (!is_begun_) Notify(mavlink::kSeverityWarning, "guidance refused: " + refusal_);
 }
 
 void GuidedFlight::CheckPermission(const GuidanceInput& input, Time now) {
   permission_due_ = now + kPermissionPeriod;
   refusal_ = input.uav ? WhyNotGuide(autopilot_, options_.guidance,
                                      input.uav->world_from_body.translation, now)
-                       : "no position is told";
+                       : "no position is sent";
   may_begin_ = refusal_.empty();
   if (knows_parameters_ || !autopilot_.parameters().is_done()) return;
   knows_parameters_ = true;
   guidance_.emplace(OptionsFor(autopilot_, options_.guidance, is_in_its_frame_));
   guidance_->Update(input);  // guidance has not begun
   if (const std::string unsafe = UnsafeLoss(autopilot_); !unsafe.empty()) {
-    Tell(mavlink::kSeverityWarning, unsafe);
+    Notify(mavlink::kSeverityWarning, unsafe);
   }
 }
 
@@ -160,7 +160,7 @@ GuidanceInput GuidedFlight::Input(Time now, const TrackSnapshot& track,
   input.is_landed = autopilot_.landed_state() == LandedState::kOnGround;
   input.is_link_up = ToSeconds(now - autopilot_.received()) < kLinkAge_s;
   input.is_camera_up = ToSeconds(now - track.captured) < kMaxFrameAge_s;
-  input.mode_age_s = ToSeconds(now - autopilot_.mode_told());
+  input.mode_age_s = ToSeconds(now - autopilot_.modereported());
   input.link_delay_s = ToSeconds(LinkDelay(options_, autopilot_));
   return input;
 }
@@ -174,10 +174,10 @@ std::optional<TargetEstimate> GuidedFlight::Target(Time now, const TrackSnapshot
                         track.target->yaw_period};
 }
 
-void GuidedFlight::Ask(Time now, GuidanceRequest request) {
-  if (request == GuidanceRequest::kNone || now < asked_ + kAskPeriod) return;
+void GuidedFlight::Request(Time now, GuidanceRequest request) {
+  if (request == GuidanceRequest::kNone || now < requested_ + kRequestPeriod) return;
   if (autopilot_.is_request_pending()) return;
-  asked_ = now;
+  requested_ = now;
   switch (request) {
     case GuidanceRequest::kNone:
       return;
@@ -188,7 +188,7 @@ void GuidedFlight::Ask(Time now, GuidanceRequest request) {
       autopilot_.RequestMode(FlightMode::kHold);
       return;
     case GuidanceRequest::kDisarm:
-      Tell(mavlink::kSeverityWarning, "disarming by force, in contact");
+      Notify(mavlink::kSeverityWarning, "disarming by force, in contact");
       autopilot_.DisarmByForce();
       return;
   }
@@ -199,50 +199,52 @@ void GuidedFlight::Ask(Time now, GuidanceRequest request) {
 void GuidedFlight::EndLostLanding(const GuidanceInput& input, Time now) {
   if (!left_on_deck_) return;
   const bool is_over = !input.is_armed || is_begun_ || input.uav.has_value() ||
-                       ToSeconds(now - *left_on_deck_) > kAskForLand_s;
+                       ToSeconds(now - *left_on_deck_) > kRequestLandAfter_s;
   if (is_over) {
     left_on_deck_.reset();
   } else if (autopilot_.custom_mode() == CustomModeOf(kind_, FlightMode::kHold)) {
-    Ask(now, GuidanceRequest::kLand);
+    Request(now, GuidanceRequest::kLand);
   }
 }
 
-void GuidedFlight::SayPhase(const GuidanceOutput& output) {
-  if (output.phase == said_phase_ && output.reason == std::string_view(said_reason_)) return;
-  said_phase_ = output.phase;
-  said_reason_ = output.reason;
-  Tell(mavlink::kSeverityInfo, fmt::format("{}{}{}", ToString(output.phase),
-                                           *output.reason == '\0' ? "" : ": ", output.reason));
+void GuidedFlight::ReportPhase(const GuidanceOutput& output) {
+  if (output.phase == reported_phase_ && output.reason == std::string_view(reported_reason_))
+    return;
+  reported_phase_ = output.phase;
+  reported_reason_ = output.reason;
+  Notify(mavlink::kSeverityInfo, fmt::format("{}{}{}", ToString(output.phase),
+                                             *output.reason == '\0' ? "" : ": ", output.reason));
 }
 
 // Says before the mode is given, too, that the target is too fast for the UAV.
-void GuidedFlight::SayWhetherItKeepsUp(const GuidanceOutput& output) {
-  if (output.cannot_follow == said_cannot_follow_) return;
-  said_cannot_follow_ = output.cannot_follow;
-  if (!output.cannot_follow) return Tell(mavlink::kSeverityInfo, "can keep up with the target");
-  Tell(mavlink::kSeverityWarning,
-       "cannot keep up with the target: it needs " + guidance_->demand().InWords());
+void GuidedFlight::ReportWhetherItKeepsUp(const GuidanceOutput& output) {
+  if (output.cannot_follow == reported_cannot_follow_) return;
+  reported_cannot_follow_ = output.cannot_follow;
+  if (!output.cannot_follow) return Notify(mavlink::kSeverityInfo, "can keep up with the target");
+  Notify(mavlink::kSeverityWarning,
+         "cannot keep up with the target: it needs " + guidance_->demand().InWords());
 }
 
 // The land detectors of autopilots take no deck that turns fast for ground: the rotors go on.
-void GuidedFlight::SayWhenContactIsUnseen(const GuidanceInput& input) {
+void GuidedFlight::ReportWhenContactIsUnseen(const GuidanceInput& input) {
   constexpr double kPatience_s = 8;
   if (phase() != GuidancePhase::kLanded || input.is_landed) {
     in_contact_since_.reset();
-    said_unseen_contact_ = false;
+    reported_unseen_contact_ = false;
     return;
   }
   if (!in_contact_since_) in_contact_since_ = input.now;
-  if (said_unseen_contact_ || ToSeconds(input.now - *in_contact_since_) < kPatience_s) return;
-  said_unseen_contact_ = true;
-  Tell(mavlink::kSeverityWarning,
-       fmt::format("on the deck for {:g} s, and the autopilot does not see it: disarm by hand, or "
-                   "set fly.guidance.disarm_after_s",
-                   kPatience_s));
+  if (reported_unseen_contact_ || ToSeconds(input.now - *in_contact_since_) < kPatience_s) return;
+  reported_unseen_contact_ = true;
+  Notify(
+      mavlink::kSeverityWarning,
+      fmt::format("on the deck for {:g} s, and the autopilot does not see it: disarm by hand, or "
+                  "set fly.guidance.disarm_after_s",
+                  kPatience_s));
 }
 
-void GuidedFlight::Tell(std::uint8_t severity, const std::string& text) {
-  say_(text);
+void GuidedFlight::Notify(std::uint8_t severity, const std::string& text) {
+  report_(text);
   autopilot_.Announce(severity, "Kestrel: " + text);
 }
 

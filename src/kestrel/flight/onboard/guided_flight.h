@@ -23,11 +23,11 @@ namespace kestrel {
 class GuidedFlight {
  public:
   // 'tracker': options of the predicted track. 'is_in_its_frame': the world is the autopilot's
-  // local frame. 'say': receives lines for the user. Throws InputError when the options are not
+  // local frame. 'report': receives lines for the user. Throws InputError when the options are not
   // valid, or the rate is too low for flying.
   GuidedFlight(const FlightOptions& options, const TargetTrackerOptions& tracker,
                bool is_in_its_frame, Autopilot* autopilot, Connection* connection,
-               std::function<void(const std::string&)> say);
+               std::function<void(const std::string&)> report);
 
   // Sends what is due at 'now'; true when it was the first set-point of a new frame.
   bool Fly(Time now, const TrackSnapshot& track, const PoseHistory& poses);
@@ -44,7 +44,7 @@ class GuidedFlight {
   // Part of the limits that following the target takes.
   const FollowingDemand& demand() const { return guidance_->demand(); }
   // True while that is more than there is.
-  bool cannot_follow() const { return said_cannot_follow_; }
+  bool cannot_follow() const { return reported_cannot_follow_; }
 
  private:
   void KnowAutopilot(Time now);
@@ -52,19 +52,19 @@ class GuidedFlight {
   void CheckPermission(const GuidanceInput& input, Time now);
   GuidanceInput Input(Time now, const TrackSnapshot& track, const PoseHistory& poses) const;
   std::optional<TargetEstimate> Target(Time now, const TrackSnapshot& track) const;
-  void Ask(Time now, GuidanceRequest request);
-  void SayPhase(const GuidanceOutput& output);
-  void SayWhetherItKeepsUp(const GuidanceOutput& output);
-  void SayWhenContactIsUnseen(const GuidanceInput& input);
+  void Request(Time now, GuidanceRequest request);
+  void ReportPhase(const GuidanceOutput& output);
+  void ReportWhetherItKeepsUp(const GuidanceOutput& output);
+  void ReportWhenContactIsUnseen(const GuidanceInput& input);
   void EndLostLanding(const GuidanceInput& input, Time now);
-  void Tell(std::uint8_t severity, const std::string& text);
+  void Notify(std::uint8_t severity, const std::string& text);
 
   FlightOptions options_;
   TurnNoise noise_;
   bool is_in_its_frame_;
   Autopilot& autopilot_;
   Connection* connection_;
-  std::function<void(const std::string&)> say_;
+  std::function<void(const std::string&)> report_;
   std::optional<LandingGuidance> guidance_;  // for this autopilot, once its parameters are known
   AutopilotKind kind_ = AutopilotKind::kUnknown;
   SendSchedule schedule_;
@@ -79,13 +79,13 @@ class GuidedFlight {
   std::string refusal_;     // reason why it may not
   bool knows_parameters_ = false;
 
-  Time told_frame_;  // the newest frame used for a set-point
-  Time asked_{};     // when the autopilot was last asked for a mode or to disarm
-  GuidancePhase said_phase_ = GuidancePhase::kIdle;
-  const char* said_reason_ = "";
-  bool said_cannot_follow_ = false;
+  Time reported_frame_;  // the newest frame used for a set-point
+  Time requested_{};     // when the autopilot was last asked for a mode or to disarm
+  GuidancePhase reported_phase_ = GuidancePhase::kIdle;
+  const char* reported_reason_ = "";
+  bool reported_cannot_follow_ = false;
   std::optional<Time> in_contact_since_;
-  bool said_unseen_contact_ = false;
+  bool reported_unseen_contact_ = false;
   int set_points_ = 0;
 };
 

@@ -36,7 +36,7 @@ class GuidedFlightTest : public testing::Test {
         std::make_unique<Autopilot>(AutopilotOptions(), connection_.get(), AutopilotListener());
     guided_ = std::make_unique<GuidedFlight>(
         options, TargetTrackerOptions(), true, autopilot_.get(), connection_.get(),
-        [this](const std::string& text) { said_ += text + "\n"; });
+        [this](const std::string& text) { reported_ += text + "\n"; });
   }
 
   // Receives Kestrel's packets.
@@ -58,7 +58,7 @@ class GuidedFlightTest : public testing::Test {
   }
 
   template <class Message>
-  void Say(const Message& message) {
+  void Report(const Message& message) {
     mavlink::PacketParser().Parse(writer_.Write(message), [&](const mavlink::Packet& packet) {
       autopilot_->Handle(packet, now_);
     });
@@ -68,15 +68,15 @@ class GuidedFlightTest : public testing::Test {
   void Pass(double seconds) {
     for (int i = 0; i < 100 * seconds; ++i) {
       now_ += 10ms;
-      if (i % 10 == 0) Say(heartbeat_);
+      if (i % 10 == 0) Report(heartbeat_);
       if (i % 20 == 0) {
-        Say(mavlink::ExtendedSysState{0, landed_});
-        Say(mavlink::EkfStatusReport{.flags = ekf_flags_});
-        Say(mavlink::EstimatorStatus{.flags = ekf_flags_});
-        Say(mavlink::GpsGlobalOrigin{473977420, 85455940, 488000, 0});
-        if (has_home_) Say(home_);
+        Report(mavlink::ExtendedSysState{0, landed_});
+        Report(mavlink::EkfStatusReport{.flags = ekf_flags_});
+        Report(mavlink::EstimatorStatus{.flags = ekf_flags_});
+        Report(mavlink::GpsGlobalOrigin{473977420, 85455940, 488000, 0});
+        if (has_home_) Report(home_);
       }
-      for (const auto& answer : std::exchange(answers_, {})) Say(answer);
+      for (const auto& answer : std::exchange(answers_, {})) Report(answer);
       if (has_poses_) {
         poses_.Add({now_, {Eigen::Quaterniond::Identity(), {3, 1, height_m_}}, BodyMotion()});
       }
@@ -129,7 +129,7 @@ class GuidedFlightTest : public testing::Test {
   std::unique_ptr<Connection> connection_;
   std::unique_ptr<Autopilot> autopilot_;
   std::unique_ptr<GuidedFlight> guided_;
-  std::string said_;
+  std::string reported_;
   int set_points_ = 0;
   std::set<std::uint32_t> requested_modes_;  // of PX4
 };
@@ -139,7 +139,7 @@ TEST_F(GuidedFlightTest, FliesWhilePilotSelectsMode) {
   EXPECT_EQ(SetPointsDuring(2), 0);
   heartbeat_.custom_mode = kGuided;
   EXPECT_NEAR(SetPointsDuring(2), 120, 15) << "a beat, and each frame at once";
-  EXPECT_NE(guided_->phase(), GuidancePhase::kIdle) << said_;
+  EXPECT_NE(guided_->phase(), GuidancePhase::kIdle) << reported_;
   heartbeat_.custom_mode = kLoiter;
   EXPECT_LE(SetPointsDuring(0.1), 6) << "until the heartbeat";
   EXPECT_EQ(SetPointsDuring(3), 0);
@@ -173,14 +173,14 @@ TEST_F(GuidedFlightTest, SendsNothingDuringTakeOff) {
   }
   landed_ = mavlink::kLandedInAir;
   Pass(0.3);
-  EXPECT_GT(SetPointsDuring(1), 30) << said_;
+  EXPECT_GT(SetPointsDuring(1), 30) << reported_;
 }
 
 TEST_F(GuidedFlightTest, DoesNotStartInModeEnteredBefore) {
   Start(mavlink::kAutopilotArduPilot);
   heartbeat_.custom_mode = kGuided;
   EXPECT_EQ(SetPointsDuring(3), 0);
-  EXPECT_THAT(said_, HasSubstr("GUIDED was on before: leave it and give it again"));
+  EXPECT_THAT(reported_, HasSubstr("GUIDED was on before: leave it and give it again"));
 }
 
 TEST_F(GuidedFlightTest, RefusesInOneLineBeforeFlight) {
@@ -208,13 +208,13 @@ TEST_F(GuidedFlightTest, RefusesInOneLineBeforeFlight) {
     limit_ = 50;
     parameters_ = parameters;
     fault();
-    said_.clear();
+    reported_.clear();
     Start(mavlink::kAutopilotArduPilot);
     Pass(2);
     heartbeat_.custom_mode = kGuided;
     EXPECT_EQ(SetPointsDuring(2), 0) << words;
-    EXPECT_THAT(said_, HasSubstr("guidance refused: "));
-    EXPECT_THAT(said_, HasSubstr(words));
+    EXPECT_THAT(reported_, HasSubstr("guidance refused: "));
+    EXPECT_THAT(reported_, HasSubstr(words));
   }
 }
 
@@ -228,7 +228,7 @@ TEST_F(GuidedFlightTest, RefusesTooLowRate) {
 TEST_F(GuidedFlightTest, EndsLandingWhenAutopilotLeavesModeWithoutPosition) {
   constexpr std::uint32_t kHold = (4 << 16) | (3 << 24);
   for (const std::uint32_t mode : {kHold, kPositionControl}) {
-    said_.clear();
+    reported_.clear();
     requested_modes_.clear();
     has_poses_ = true;
     height_m_ = 8;
@@ -238,12 +238,12 @@ TEST_F(GuidedFlightTest, EndsLandingWhenAutopilotLeavesModeWithoutPosition) {
     heartbeat_.custom_mode = kOffboard;
     for (; height_m_ > 0.35; height_m_ -= 0.05) Pass(0.05);
     Pass(2);
-    ASSERT_EQ(guided_->phase(), GuidancePhase::kLanded) << said_;
+    ASSERT_EQ(guided_->phase(), GuidancePhase::kLanded) << reported_;
     has_poses_ = false;
     Pass(0.5);
     heartbeat_.custom_mode = mode;
     Pass(3);
-    EXPECT_THAT(said_, HasSubstr("left its mode on the deck, without a position"));
+    EXPECT_THAT(reported_, HasSubstr("left its mode on the deck, without a position"));
     const std::uint32_t land = CustomModeOf(AutopilotKind::kPx4, FlightMode::kLand);
     EXPECT_EQ(requested_modes_.contains(land), mode == kHold) << "a pilot's mode is left alone";
   }

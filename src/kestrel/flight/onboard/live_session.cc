@@ -49,9 +49,10 @@ class RecordedActuator : public ExposureActuator {
 // Writes the tables. The rows after one that the disk does not take are tried all the same.
 class TableWriter : public SinkWriter {
  public:
-  // 'tell' is called for the first such row.
-  TableWriter(std::unique_ptr<ObservationSink> tables, std::function<void(const std::string&)> tell)
-      : tables_(std::move(tables)), tell_(std::move(tell)) {}
+  // 'notify' is called for the first such row.
+  TableWriter(std::unique_ptr<ObservationSink> tables,
+              std::function<void(const std::string&)> notify)
+      : tables_(std::move(tables)), notify_(std::move(notify)) {}
 
   void Write(const Observation& observation, std::size_t /*waiting*/) override {
     Try([&] { tables_->Take(observation); });
@@ -67,12 +68,12 @@ class TableWriter : public SinkWriter {
       action();
     } catch (const InputError&) {
       if (std::exchange(has_failed_, true)) return;
-      tell_("the results cannot be written any more: is the disk full? The flight goes on");
+      notify_("the results cannot be written any more: is the disk full? The flight goes on");
     }
   }
 
   std::unique_ptr<ObservationSink> tables_;
-  std::function<void(const std::string&)> tell_;
+  std::function<void(const std::string&)> notify_;
   bool has_failed_ = false;
 };
 
@@ -145,7 +146,7 @@ class LiveSession::Impl {
   void OpenAutopilot();
   std::unique_ptr<FlightRecorder> OpenRecorder(const std::filesystem::path& folder, bool replace);
   FlightParts ProgramParts();
-  void Say(const std::string& text, EventLevel level = EventLevel::kInfo);
+  void Notify(const std::string& text, EventLevel level = EventLevel::kInfo);
   void TakePose(const PoseSample& pose);
   void TakeTruePose(const PoseSample& pose);
 
@@ -182,7 +183,8 @@ LiveSession::Impl::Impl(LiveSessionParts parts, LiveSessionOptions options)
   if (pad && options_.exposure) OpenExposure();
   if (!parts_.autopilot.empty() && pad) StayWithinSight(pad->range_m);
   if (!parts_.autopilot.empty()) OpenAutopilot();
-  program_.emplace(options_.flight, ProgramParts(), [this](const std::string& text) { Say(text); });
+  program_.emplace(options_.flight, ProgramParts(),
+                   [this](const std::string& text) { Notify(text); });
 }
 
 // The recorder may still give events to the sink, which outlives the session.
@@ -204,7 +206,7 @@ std::string LiveSession::Impl::Summary() const {
   return summary;
 }
 
-void LiveSession::Impl::Say(const std::string& text, EventLevel level) {
+void LiveSession::Impl::Notify(const std::string& text, EventLevel level) {
   if (sink_) sink_->Take(SessionEvent{Now(), level, text});
 }
 
@@ -232,30 +234,30 @@ void LiveSession::Impl::OpenTables() {
   auto tables = vision_->MakeTables({.folder = parts_.output, .force = parts_.replace});
   if (!tables) return;
   constexpr std::size_t kFrames = 256;  // that may wait for the disk
-  tables_.emplace(AsynchronousSinkOptions{.thread_name = "output", .frames = kFrames, .tell = {}},
+  tables_.emplace(AsynchronousSinkOptions{.thread_name = "output", .frames = kFrames, .notify = {}},
                   std::make_unique<TableWriter>(std::move(tables),
-                                                [this](const std::string& text) { Say(text); }));
+                                                [this](const std::string& text) { Notify(text); }));
 }
 
 // A small pad, or a coarse image, shows nothing from the search altitude.
 void LiveSession::Impl::StayWithinSight(double range_m) {
   if (!parts_.guides) {
-    return Say(fmt::format(
+    return Notify(fmt::format(
         "this camera sees the pad from {:.1f} m at most: begin the autopilot's landing below that",
         range_m));
   }
   GuidanceOptions& guidance = options_.flight.guidance;
-  const double asked_m = guidance.search_altitude_m;
+  const double requested_m = guidance.search_altitude_m;
   guidance = guidance.WithinSight(range_m);
-  if (guidance.search_altitude_m == asked_m) return;
-  Say(
+  if (guidance.search_altitude_m == requested_m) return;
+  Notify(
       fmt::format("this camera sees the pad from {:.1f} m at most: guidance searches at {:.1f} m, "
                   "not at search_altitude_m {:g}, and out to {:.1f} m around the place",
-                  range_m, guidance.search_altitude_m, asked_m, guidance.search_radius_m));
+                  range_m, guidance.search_altitude_m, requested_m, guidance.search_radius_m));
   if (range_m < guidance.limits.floor_m) {
-    Say(fmt::format("limits.floor_m {:g} is above that: a lost pad will not be found again",
-                    guidance.limits.floor_m),
-        EventLevel::kWarning);
+    Notify(fmt::format("limits.floor_m {:g} is above that: a lost pad will not be found again",
+                       guidance.limits.floor_m),
+           EventLevel::kWarning);
   }
 }
 
@@ -271,7 +273,7 @@ std::unique_ptr<FlightRecorder> LiveSession::Impl::OpenRecorder(const std::files
                                                                 bool replace) {
   return std::make_unique<FlightRecorder>(folder, replace, parts_.calibration, parts_.rate_hz,
                                           options_.recorder,
-                                          [this](const std::string& text) { Say(text); });
+                                          [this](const std::string& text) { Notify(text); });
 }
 
 void LiveSession::Impl::OpenAutopilot() {
@@ -293,9 +295,10 @@ void LiveSession::Impl::OpenAutopilot() {
       AutopilotListener{
           .pose = [this](const PoseSample& pose) { TakePose(pose); },
           .true_pose = [this](const PoseSample& pose) { TakeTruePose(pose); },
-          .event = [this](const AutopilotEvent& e) { Say(e.text); },
-          .text = [this](std::uint8_t severity,
-                         std::string_view text) { Say(WordsOfAutopilot(text), LevelOf(severity)); },
+          .event = [this](const AutopilotEvent& e) { Notify(e.text); },
+          .text = [this](
+                      std::uint8_t severity,
+                      std::string_view text) { Notify(WordsOfAutopilot(text), LevelOf(severity)); },
           .gimbal = [this](const GimbalSample& report) { program_->TakeGimbal(report); },
       });
 }

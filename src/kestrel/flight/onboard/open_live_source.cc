@@ -41,7 +41,7 @@ OpenedLiveSource OpenReplay(const RecordingChoice& choice, bool is_looped) {
 }  // namespace
 
 CameraCalibration ChosenCalibration(const RecordingChoice& choice) {
-  CameraCalibration calibration = ReadCalibration(choice.camera, "", choice.bag.tell);
+  CameraCalibration calibration = ReadCalibration(choice.camera, "", choice.bag.notify);
   if (choice.clock_offset) calibration.clock_offset = choice.clock_offset;
   return calibration;
 }

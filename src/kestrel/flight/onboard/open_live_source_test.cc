@@ -15,15 +15,15 @@ using ::testing::HasSubstr;
 LiveSourceChoice Choice(const std::string& uri) { return {.recording = {.sources = {uri}}}; }
 
 TEST(OpenLiveSourceTest, SchemeOpensMatchingUris) {
-  std::string asked;
+  std::string requested;
   const SourceScheme scheme{"mine:", [&](const LiveSourceChoice& choice) {
-                              asked = choice.uri();
+                              requested = choice.uri();
                               OpenedLiveSource opened;
                               opened.rate_hz = 12;
                               return opened;
                             }};
   EXPECT_EQ(OpenLiveSource(Choice("mine:left"), {}, {scheme}).rate_hz, 12);
-  EXPECT_EQ(asked, "mine:left");
+  EXPECT_EQ(requested, "mine:left");
   EXPECT_THROW(OpenLiveSource(Choice("/nowhere/mine:left"), {}, {scheme}), InputError);
 }
 

@@ -31,7 +31,7 @@ Duration LinkDelay(const FlightOptions& options, const Autopilot& autopilot) {
 TargetSender::TargetSender(const FlightOptions& options, const TargetTrackerOptions& tracker,
                            std::optional<LinkProfile> profile, double size_m, double sight_range_m,
                            bool is_guided, Autopilot* autopilot, Connection* connection,
-                           std::function<void(const std::string&)> say)
+                           std::function<void(const std::string&)> report)
     : options_(options),
       profile_(profile),
       size_m_(size_m),
@@ -39,24 +39,24 @@ TargetSender::TargetSender(const FlightOptions& options, const TargetTrackerOpti
       is_guided_(is_guided),
       autopilot_(*autopilot),
       connection_(connection),
-      say_(std::move(say)),
+      report_(std::move(report)),
       reporter_(options.target, tracker),
       schedule_(options.rate_hz) {}
 
-bool TargetSender::Tell(Time now, const TrackSnapshot& track, const PoseHistory& poses) {
-  SayLanding();
-  const bool is_news = track.captured != told_frame_;
+bool TargetSender::Send(Time now, const TrackSnapshot& track, const PoseHistory& poses) {
+  ReportLanding();
+  const bool is_news = track.captured != reported_frame_;
   if (!schedule_.IsDue(now, is_news) || !autopilot_.is_here()) return false;
   WantParameters();
   const LinkProfile profile = profile_.value_or(ProfileFor(autopilot_.kind()));
   auto report = reporter_.Report(now, UntilUse(), track, poses);
-  SayPhase();
+  ReportPhase();
   // PX4's target estimator filters by itself, and corrects the UAV's velocity by the messages. A
   // track contains the UAV's own estimate: sending it would close a loop. It gets the measurement
   // of each frame, with its time.
   if (report && !is_guided_) WarnOfSpeed(report->velocity_in_world);
   if (profile == LinkProfile::kPx4Vte) report = is_news ? track.sighting : std::nullopt;
-  told_frame_ = track.captured;
+  reported_frame_ = track.captured;
   if (!report) return false;
   report->size_m = size_m_;
   if (profile == LinkProfile::kArduPilot) {
@@ -69,8 +69,8 @@ bool TargetSender::Tell(Time now, const TrackSnapshot& track, const PoseHistory&
 
 // Requests parameters only from an autopilot that has them.
 void TargetSender::WantParameters() {
-  if (asked_parameters_ || autopilot_.kind() != AutopilotKind::kArduPilot) return;
-  asked_parameters_ = true;
+  if (requested_parameters_ || autopilot_.kind() != AutopilotKind::kArduPilot) return;
+  requested_parameters_ = true;
   for (const std::string_view parameter : kParameters) autopilot_.parameters().Want(parameter);
 }
 
@@ -98,7 +98,7 @@ void TargetSender::WarnOfSpeed(const Eigen::Vector3d& velocity) {
   if (moving_messages_ != kSure || is_warned_) return;
   is_warned_ = true;
   const bool is_px4 = autopilot_.kind() == AutopilotKind::kPx4;
-  say_(fmt::format(
+  report_(fmt::format(
       "the pattern moves at {:.1f} m/s: {}; kestrel fly --guide lands on it", speed_mps,
       is_px4
           ? "PX4's own precision landing is for patterns that stand, and trails behind this one"
@@ -110,10 +110,10 @@ void TargetSender::WarnOfSpeed(const Eigen::Vector3d& velocity) {
 }
 
 // Tells the user and the ground station when the target is found, lost, or stood on.
-void TargetSender::SayPhase() {
+void TargetSender::ReportPhase() {
   const TargetPhase phase = reporter_.phase();
-  if (phase == said_phase_) return;
-  said_phase_ = phase;
+  if (phase == reported_phase_) return;
+  reported_phase_ = phase;
   std::string text;
   std::uint8_t severity = mavlink::kSeverityInfo;
   switch (phase) {
@@ -130,13 +130,13 @@ void TargetSender::SayPhase() {
       text = "on the pattern";
       break;
   }
-  say_(text);
+  report_(text);
   autopilot_.Announce(severity, "Kestrel: " + text);
 }
 
 // Tells them when the autopilot begins to land by it. Without a pattern in view it comes down where
 // it is.
-void TargetSender::SayLanding() {
+void TargetSender::ReportLanding() {
   const bool begins = autopilot_.is_landing_mode() && autopilot_.is_armed() && !was_landing_;
   was_landing_ = autopilot_.is_landing_mode() && autopilot_.is_armed();
   if (!begins) return;
@@ -145,7 +145,7 @@ void TargetSender::SayLanding() {
     return autopilot_.Announce(mavlink::kSeverityInfo,
                                fmt::format("Kestrel: landing, pattern {}", ToString(phase())));
   }
-  say_(fmt::format(
+  report_(fmt::format(
       "the autopilot lands, and the pattern is not in view: this camera sees it from {:.1f} m at "
       "most. Stop the landing, go lower above the pattern, and begin it again",
       sight_range_m_));

@@ -28,14 +28,14 @@ class TargetSender {
  public:
   // 'profile': nothing: chosen by the heartbeat. 'size_m': diameter of the pattern.
   // 'sight_range_m': from which the camera sees it at most, 0: not known. 'is_guided': the
-  // autopilot is to land by set-points, not by the targets. 'say': receives lines for the user.
+  // autopilot is to land by set-points, not by the targets. 'report': receives lines for the user.
   TargetSender(const FlightOptions& options, const TargetTrackerOptions& tracker,
                std::optional<LinkProfile> profile, double size_m, double sight_range_m,
                bool is_guided, Autopilot* autopilot, Connection* connection,
-               std::function<void(const std::string&)> say);
+               std::function<void(const std::string&)> report);
 
   // Sends what is due at 'now'; true when it was the first message of a new frame.
-  bool Tell(Time now, const TrackSnapshot& track, const PoseHistory& poses);
+  bool Send(Time now, const TrackSnapshot& track, const PoseHistory& poses);
 
   // See TargetReporter.
   void set_may_stand(bool may_stand) { reporter_.set_may_stand(may_stand); }
@@ -49,8 +49,8 @@ class TargetSender {
   Duration UntilUse() const;
   Eigen::Vector3d CameraOfArduPilot() const;
   void WarnOfSpeed(const Eigen::Vector3d& velocity);
-  void SayPhase();
-  void SayLanding();
+  void ReportPhase();
+  void ReportLanding();
 
   FlightOptions options_;
   std::optional<LinkProfile> profile_;
@@ -59,15 +59,15 @@ class TargetSender {
   bool is_guided_;
   Autopilot& autopilot_;
   Connection* connection_;
-  std::function<void(const std::string&)> say_;
+  std::function<void(const std::string&)> report_;
   TargetReporter reporter_;
   SendSchedule schedule_;
-  Time told_frame_;  // the newest frame used for a message
-  TargetPhase said_phase_ = TargetPhase::kSearching;
+  Time reported_frame_;  // the newest frame used for a message
+  TargetPhase reported_phase_ = TargetPhase::kSearching;
   int moving_messages_ = 0;  // in a row whose target moved
   bool is_warned_ = false;
   bool was_landing_ = false;
-  bool asked_parameters_ = false;
+  bool requested_parameters_ = false;
   int messages_ = 0;
 };
 

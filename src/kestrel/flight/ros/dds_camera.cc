@@ -34,7 +34,7 @@ Ros2Qos QosFor(const RosTopic& topic) {
 }  // namespace
 
 DdsCamera::DdsCamera(std::shared_ptr<Ros2Node> node, DdsCameraOptions options,
-                     const std::function<void(const std::string&)>& tell)
+                     const std::function<void(const std::string&)>& notify)
     : node_(std::move(node)), options_(std::move(options)), name_("dds:" + options_.image) {
   const std::vector<RosTopic> found = FindTopics();
   std::vector<std::string> names = options_.topics;
@@ -52,7 +52,7 @@ DdsCamera::DdsCamera(std::shared_ptr<Ros2Node> node, DdsCameraOptions options,
   source_->Begin(options_.camera ? *options_.camera : calibration_->intrinsics);
   has_poses_ = source_->has_poses();
   if (std::chrono::abs(-to_stamps() + RosTimeAhead()) > kLiveStamps) {
-    tell(fmt::format(
+    notify(fmt::format(
         "{}: the stamps are not of the present time: times are counted from the first one", name_));
   }
 }

@@ -34,9 +34,9 @@ struct DdsCameraOptions {
 class DdsCamera : public LiveSource {
  public:
   // Waits for all topics. Throws InputError, with the topic and what exists instead, when there are
-  // no images or no camera_info, or when these are wrong. 'tell' receives messages for the user.
+  // no images or no camera_info, or when these are wrong. 'notify' receives messages for the user.
   DdsCamera(std::shared_ptr<Ros2Node> node, DdsCameraOptions options,
-            const std::function<void(const std::string&)>& tell);
+            const std::function<void(const std::string&)>& notify);
 
   // From camera_info and tf; nothing when the user gave another one and there is no camera_info.
   const std::optional<CameraCalibration>& calibration() const { return calibration_; }

@@ -38,8 +38,8 @@ std::shared_ptr<Ros2Node> OpenRos2Node(int domain, const DdsOptions& options) {
 }
 
 DdsSource::DdsSource(const DdsOptions& options, OpenNode open_node,
-                     std::function<void(const std::string&)> tell)
-    : options_(options), open_node_(std::move(open_node)), tell_(std::move(tell)) {}
+                     std::function<void(const std::string&)> notify)
+    : options_(options), open_node_(std::move(open_node)), notify_(std::move(notify)) {}
 
 SourceScheme DdsSource::Scheme() {
   return {std::string(kPrefix), [this](const LiveSourceChoice& choice) { return Open(choice); }};
@@ -51,7 +51,7 @@ OpenedLiveSource DdsSource::Open(const LiveSourceChoice& choice) {
   if (!choice.recording.camera.empty()) given = ChosenCalibration(choice.recording);
   if (given) options.camera = given->intrinsics;
   node_ = open_node_();
-  auto camera = std::make_unique<DdsCamera>(node_, options, tell_);
+  auto camera = std::make_unique<DdsCamera>(node_, options, notify_);
   OpenedLiveSource opened;
   opened.calibration = given ? *given : *camera->calibration();
   if (!opened.calibration.body_from_camera) opened.calibration.body_from_camera = camera->mount();
@@ -60,7 +60,7 @@ OpenedLiveSource DdsSource::Open(const LiveSourceChoice& choice) {
   }
   opened.has_poses = camera->has_poses();
   if (opened.has_poses && !opened.calibration.body_from_camera) {
-    tell_(
+    notify_(
         fmt::format("no mount: no positions in the world; expected a static transform from {} to "
                     "{}, or --camera FILE with T_BS",
                     options_.body_frame, camera->camera_frame()));

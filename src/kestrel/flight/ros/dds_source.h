@@ -22,9 +22,9 @@ class DdsSource {
  public:
   using OpenNode = std::function<std::shared_ptr<Ros2Node>()>;
 
-  // 'open_node': called when a topic is opened. 'tell': receives messages for the user.
+  // 'open_node': called when a topic is opened. 'notify': receives messages for the user.
   DdsSource(const DdsOptions& options, OpenNode open_node,
-            std::function<void(const std::string&)> tell);
+            std::function<void(const std::string&)> notify);
 
   // The source takes calibration and mount from the topics beside the images, unless the user has
   // given them. It throws InputError as DdsCamera does.
@@ -40,7 +40,7 @@ class DdsSource {
 
   DdsOptions options_;
   OpenNode open_node_;
-  std::function<void(const std::string&)> tell_;
+  std::function<void(const std::string&)> notify_;
   std::shared_ptr<Ros2Node> node_;
   std::optional<RosFrames> frames_;
 };

@@ -21,8 +21,8 @@ void Publish(const Observation& observation, RosResults* results) {
 
 class RosWriter : public SinkWriter {
  public:
-  RosWriter(std::shared_ptr<RosResults> results, std::function<void(const std::string&)> tell)
-      : results_(std::move(results)), tell_(std::move(tell)) {}
+  RosWriter(std::shared_ptr<RosResults> results, std::function<void(const std::string&)> notify)
+      : results_(std::move(results)), notify_(std::move(notify)) {}
 
   void Write(const Observation& observation, std::size_t /*waiting*/) override {
     Publish(observation, results_.get());
@@ -37,12 +37,12 @@ class RosWriter : public SinkWriter {
   void Finish(std::size_t dropped) override {
     results_->Flush();
     if (dropped == 0) return;
-    tell_(fmt::format("ROS: {} frames are left out: the network is too slow", dropped));
+    notify_(fmt::format("ROS: {} frames are left out: the network is too slow", dropped));
   }
 
  private:
   std::shared_ptr<RosResults> results_;
-  std::function<void(const std::string&)> tell_;
+  std::function<void(const std::string&)> notify_;
   Time next_report_ = Now();
 };
 
@@ -63,13 +63,13 @@ class WaitingRosSink : public ObservationSink {
 }  // namespace
 
 std::unique_ptr<AsynchronousSink> MakeRosSink(std::shared_ptr<RosResults> results,
-                                              std::function<void(const std::string&)> tell) {
-  AsynchronousSinkOptions options{.thread_name = "ros", .frames = kFrames, .tell = {}};
-  options.tell = [tell](const std::string& error) {
-    tell(fmt::format("ROS: {}: the flight goes on without it", error));
+                                              std::function<void(const std::string&)> notify) {
+  AsynchronousSinkOptions options{.thread_name = "ros", .frames = kFrames, .notify = {}};
+  options.notify = [notify](const std::string& error) {
+    notify(fmt::format("ROS: {}: the flight goes on without it", error));
   };
   return std::make_unique<AsynchronousSink>(
-      std::move(options), std::make_unique<RosWriter>(std::move(results), std::move(tell)));
+      std::move(options), std::make_unique<RosWriter>(std::move(results), std::move(notify)));
 }
 
 std::unique_ptr<ObservationSink> MakeWaitingRosSink(std::unique_ptr<RosResults> results) {

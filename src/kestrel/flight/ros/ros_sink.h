@@ -10,11 +10,11 @@
 
 namespace kestrel {
 
-// Returns a sink that publishes on ROS topics. Its thread calls 'tell' with the number of frames
+// Returns a sink that publishes on ROS topics. Its thread calls 'notify' with the number of frames
 // that are left out because the network is too slow, or why nothing is published any more. The
 // flight's state is published once a second.
 std::unique_ptr<AsynchronousSink> MakeRosSink(std::shared_ptr<RosResults> results,
-                                              std::function<void(const std::string&)> tell);
+                                              std::function<void(const std::string&)> notify);
 
 // Returns a sink that publishes in the caller's thread and leaves nothing out; for sessions over
 // recordings. Waits up to a second for subscribers, as the frames of a recording do not wait for

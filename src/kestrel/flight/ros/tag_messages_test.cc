@@ -161,9 +161,9 @@ class Published final : public ResultConnection {
 TEST_F(TagMessagesTest, ArePublishedOnRequest) {
   const TagBoard board = BoardOf({7});
   const LandingObservation observation = Seen(board);
-  const auto topics_of = [&](bool asked) {
+  const auto topics_of = [&](bool requested) {
     LandingResultsOptions options;
-    options.apriltag_topics = asked;
+    options.apriltag_topics = requested;
     options.shape = ShapeOf(board);
     Published published;
     LandingResults(options, &published).PublishDetection(camera_, observation);

@@ -36,7 +36,7 @@ void AsynchronousSink::Run() {
     writer_->Finish(observations_.dropped() + DropWaiting());
   } catch (const std::exception& error) {
     has_failed_ = true;
-    if (options_.tell) options_.tell(error.what());
+    if (options_.notify) options_.notify(error.what());
   }
 }
 

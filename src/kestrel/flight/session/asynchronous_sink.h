@@ -44,7 +44,7 @@ struct AsynchronousSinkOptions {
   Duration last_patience = std::chrono::seconds(5);
   int niceness = 0;  // 0 to 19, as in nice(1)
   // Receives what the writer has thrown, from the sink's thread; empty: nobody does.
-  std::function<void(const std::string&)> tell = {};
+  std::function<void(const std::string&)> notify = {};
 };
 
 // A sink that works in a thread of its own. The caller never waits: when too many frames wait the

@@ -15,10 +15,10 @@ namespace kestrel {
 // the program otherwise, as the session's threads call it.
 class GuardedSink : public ObservationSink {
  public:
-  // 'tell' is called once, with what the sink has thrown, by the thread that had called it. 'sink'
-  // outlives this.
-  GuardedSink(ObservationSink* sink, std::function<void(const std::string&)> tell)
-      : sink_(sink), tell_(std::move(tell)) {}
+  // 'notify' is called once, with what the sink has thrown, by the thread that had called it.
+  // 'sink' outlives this.
+  GuardedSink(ObservationSink* sink, std::function<void(const std::string&)> notify)
+      : sink_(sink), notify_(std::move(notify)) {}
 
   bool IsWanted() const override { return !is_over_ && sink_->IsWanted(); }
   void Take(const Observation& observation) override { TakeAny(observation); }
@@ -31,7 +31,7 @@ class GuardedSink : public ObservationSink {
     try {
       sink_->Finish();
     } catch (const std::exception& error) {
-      tell_(error.what());
+      notify_(error.what());
     }
   }
 
@@ -42,12 +42,12 @@ class GuardedSink : public ObservationSink {
     try {
       sink_->Take(value);
     } catch (const std::exception& error) {
-      if (!is_over_.exchange(true)) tell_(error.what());
+      if (!is_over_.exchange(true)) notify_(error.what());
     }
   }
 
   ObservationSink* sink_;
-  std::function<void(const std::string&)> tell_;
+  std::function<void(const std::string&)> notify_;
   std::atomic<bool> is_over_{false};  // it has failed, or is finished
 };
 

@@ -12,10 +12,10 @@
 #include "kestrel/flight/session/landing_files.h"
 #include "kestrel/flight/session/task.h"
 #include "kestrel/vision/pipeline/calibration_monitor.h"
+#include "kestrel/vision/pipeline/input_contradictions.h"
 #include "kestrel/vision/pipeline/measurement_noise.h"
 #include "kestrel/vision/pipeline/pattern_area.h"
 #include "kestrel/vision/pipeline/require_altitude.h"
-#include "kestrel/vision/pipeline/told_contradictions.h"
 
 namespace kestrel {
 namespace {

@@ -36,7 +36,7 @@ std::unique_ptr<Vision> VisionWith(double focal_px, std::optional<double> altitu
 
 constexpr double kFocal_px = 400;  // of the camera that takes the images
 
-TEST(LandTask, SaysThatTheGivenAltitudeIsWrong) {
+TEST(LandTask, WarnsThatTheGivenAltitudeIsWrong) {
   const cv::Mat image = DrawPattern(CameraModel(Camera(kFocal_px)), LandingPattern(),
                                     {Eigen::Quaterniond(0, 1, 0, 0), {0.3, 0.2, 3}});
   const auto warning = [&](double altitude_m) {

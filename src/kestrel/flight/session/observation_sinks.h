@@ -34,7 +34,7 @@ class ObservationSinks : public ObservationSink {
   Sink* Add(std::unique_ptr<Sink> sink) {
     Sink* const added = sink.get();
     sinks_.push_back(std::make_unique<OwnedSink>(
-        std::move(sink), errors_, [this](const std::string& error) { Tell(error); }));
+        std::move(sink), errors_, [this](const std::string& error) { Notify(error); }));
     return added;
   }
 
@@ -56,8 +56,8 @@ class ObservationSinks : public ObservationSink {
  private:
   struct OwnedSink {
     OwnedSink(std::unique_ptr<ObservationSink> owned_sink, SinkErrors errors,
-              std::function<void(const std::string&)> tell)
-        : owned(std::move(owned_sink)), guarded(owned.get(), std::move(tell)) {
+              std::function<void(const std::string&)> notify)
+        : owned(std::move(owned_sink)), guarded(owned.get(), std::move(notify)) {
       if (errors == SinkErrors::kLeaveOut) used = &guarded;
     }
 
@@ -71,7 +71,7 @@ class ObservationSinks : public ObservationSink {
     for (const auto& sink : sinks_) sink->used->Take(value);
   }
 
-  void Tell(const std::string& error) {
+  void Notify(const std::string& error) {
     TakeAll(SessionEvent{
         Now(), EventLevel::kError,
         "a sink of the results has failed: " + error + ": the flight goes on without it"});

@@ -18,8 +18,8 @@ TeamSharing::TeamSharing(std::unique_ptr<TeamLink> team, const ObjectMap* map,
 void TeamSharing::Take(const Observation& observation) {
   if (const auto pose = WorldFromCamera(observation)) team_->SetPosition(pose->translation);
   seen_ = observation.frame.time;
-  if (team_->IsTimeToTell()) {
-    team_->Tell(map_->Confirmed());
+  if (team_->IsTimeToSend()) {
+    team_->Share(map_->Confirmed());
     Publish();
   }
   team_->Exchange();

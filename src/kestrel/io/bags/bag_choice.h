@@ -13,7 +13,7 @@ struct BagChoice {
   bool use_arrival_times = false;        // instead of the stamps in the headers
   // Called with what the user should know: what was cut off or left out, one line each. May be
   // empty.
-  std::function<void(const std::string&)> tell = {};
+  std::function<void(const std::string&)> notify = {};
 };
 
 }  // namespace kestrel

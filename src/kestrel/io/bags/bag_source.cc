@@ -23,12 +23,12 @@ constexpr std::size_t kImagesForRate = 32;
 
 BagSource::BagSource(const std::string& path, BagChoice choice)
     : path_(path), choice_(std::move(choice)), bag_(OpenBag(path)) {
-  if (!bag_->remark().empty()) Tell(bag_->remark());
+  if (!bag_->remark().empty()) Notify(bag_->remark());
   topics_ = ChooseTopics(bag_->topics(), choice_.topics, path_);
   ReadCameraInfo();
   const std::string camera_frame = ReadFirstImages();
   BagPoses poses = ReadPoses(bag_.get(), topics_, camera_frame, choice_.use_arrival_times, path_);
-  if (!poses.remark.empty()) Tell(poses.remark);
+  if (!poses.remark.empty()) Notify(poses.remark);
   poses_ = std::move(poses.poses);
   body_from_camera_ = poses.body_from_camera;
   bag_->Select({topics_.image});
@@ -38,8 +38,8 @@ std::string BagSource::NameOf(std::size_t topic) const {
   return fmt::format("{}: {}", path_, bag_->topics()[topic].name);
 }
 
-void BagSource::Tell(const std::string& text) const {
-  if (choice_.tell) choice_.tell(text);
+void BagSource::Notify(const std::string& text) const {
+  if (choice_.notify) choice_.notify(text);
 }
 
 void BagSource::ReadCameraInfo() {
@@ -145,9 +145,9 @@ bool BagSource::ReadMessage(ReadFrame* read) {
 }
 
 void BagSource::ReportMissing() const {
-  if (!bag_->damage().empty()) Tell(bag_->damage());
+  if (!bag_->damage().empty()) Notify(bag_->damage());
   if (repeated_ == 0) return;
-  Tell(fmt::format(
+  Notify(fmt::format(
       "{}: {} images with the stamp of another, or late by more than {} images, are left out",
       NameOf(topics_.image), repeated_, kMaxWaiting));
 }

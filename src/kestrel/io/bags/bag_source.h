@@ -36,7 +36,7 @@ class BagSource : public FrameSource {
 
  private:
   std::string NameOf(std::size_t topic) const;
-  void Tell(const std::string& text) const;
+  void Notify(const std::string& text) const;
   void ReportMissing() const;
   void ReadCameraInfo();
   std::string ReadFirstImages();

@@ -48,8 +48,8 @@ TEST_P(EveryBag, HasImagesCalibrationMountAndPoses) {
   const std::string path = folder / GetParam().file;
   constexpr int kImages = 2500;  // several chunks
   WriteTestFlight(path, kImages, GetParam().compression);
-  std::vector<std::string> told;
-  BagSource source(path, {.tell = [&](const std::string& text) { told.push_back(text); }});
+  std::vector<std::string> reported;
+  BagSource source(path, {.notify = [&](const std::string& text) { reported.push_back(text); }});
 
   const auto calibration = source.calibration();
   ASSERT_TRUE(calibration);
@@ -68,7 +68,7 @@ TEST_P(EveryBag, HasImagesCalibrationMountAndPoses) {
   ASSERT_TRUE(source.Next(&first));
   EXPECT_EQ(first.name, "camera/image_raw/1600000000000000000");
   EXPECT_EQ(ImagesOf(&source).size(), kImages - 1u);
-  EXPECT_THAT(told, IsEmpty());
+  EXPECT_THAT(reported, IsEmpty());
 }
 
 TEST_P(EveryBag, IsReadUpToCutOrRefusedWhenTruncated) {
@@ -80,14 +80,14 @@ TEST_P(EveryBag, IsReadUpToCutOrRefusedWhenTruncated) {
   for (int part = 0; part < 40; ++part) {
     std::filesystem::copy_file(whole, cut, std::filesystem::copy_options::overwrite_existing);
     std::filesystem::resize_file(cut, size * part / 40);
-    std::vector<std::string> told;
+    std::vector<std::string> reported;
     std::vector<int> images;
     const std::string error = InputErrorOf([&] {
-      BagSource source(cut, {.tell = [&](const std::string& text) { told.push_back(text); }});
+      BagSource source(cut, {.notify = [&](const std::string& text) { reported.push_back(text); }});
       images = ImagesOf(&source);
     });
     if (error.empty()) {
-      EXPECT_THAT(told, ElementsAre(HasSubstr("was not closed"))) << part;
+      EXPECT_THAT(reported, ElementsAre(HasSubstr("was not closed"))) << part;
       for (std::size_t i = 0; i < images.size(); ++i) EXPECT_EQ(images[i], static_cast<int>(i));
     } else {
       EXPECT_THAT(error, HasSubstr(cut)) << part;
@@ -174,15 +174,15 @@ TEST(BagSource, SkipsDamagedChunks) {
     std::string bytes = ReadFile(path);
     bytes.replace(bytes.size() / 3, 100, 100, '\x5a');
     folder.Write(name, bytes);
-    std::vector<std::string> told;
-    BagSource source(path, {.tell = [&](const std::string& text) { told.push_back(text); }});
+    std::vector<std::string> reported;
+    BagSource source(path, {.notify = [&](const std::string& text) { reported.push_back(text); }});
     int images = 0;
     Time last;
     for (Frame frame; source.Next(&frame); ++images) last = frame.time;
     EXPECT_LT(images, kImages) << name;
     EXPECT_GT(images, kImages / 3) << name;
     EXPECT_EQ(last, BagTime(kImages - 1)) << name;
-    EXPECT_THAT(told, ElementsAre(HasSubstr("; left out: 1 of "))) << name;
+    EXPECT_THAT(reported, ElementsAre(HasSubstr("; left out: 1 of "))) << name;
   }
 }
 
@@ -192,10 +192,10 @@ TEST(BagSource, SortsImagesByStamp) {
   TestBag bag(path);
   for (const int image : {1, 0, 3, 2, 5, 4, 6, 6, 7}) bag.AddImage(image);
   bag.Close();
-  std::vector<std::string> told;
-  BagSource source(path, {.tell = [&](const std::string& text) { told.push_back(text); }});
+  std::vector<std::string> reported;
+  BagSource source(path, {.notify = [&](const std::string& text) { reported.push_back(text); }});
   EXPECT_THAT(ImagesOf(&source), ElementsAre(0, 1, 2, 3, 4, 5, 6, 7));
-  EXPECT_THAT(told, ElementsAre(HasSubstr("1 images with the stamp of another")));
+  EXPECT_THAT(reported, ElementsAre(HasSubstr("1 images with the stamp of another")));
 }
 
 TEST(BagSource, UsesArrivalTimesOnRequestOnly) {
@@ -278,10 +278,10 @@ TEST(BagSource, SkipsInvalidPoses) {
   bag.Add("/pose", PoseStampedMessage{{0, BagTime(2), "map"}, {{std::nan(""), 0, 0}, {}}});
   bag.AddPose(3);
   bag.Close();
-  std::vector<std::string> told;
-  BagSource source(path, {.tell = [&](const std::string& text) { told.push_back(text); }});
+  std::vector<std::string> reported;
+  BagSource source(path, {.notify = [&](const std::string& text) { reported.push_back(text); }});
   EXPECT_EQ(source.poses().size(), 2u);
-  EXPECT_THAT(told, ElementsAre(HasSubstr("/pose: poses left out: 2")));
+  EXPECT_THAT(reported, ElementsAre(HasSubstr("/pose: poses left out: 2")));
 }
 
 TEST(BagSource, ReportsFaultyBags) {
@@ -420,11 +420,12 @@ TEST(BagSource, ReportsEmptyClosedBag) {
   for (const char* name : {"empty.bag", "empty.mcap", "empty.db3"}) {
     const std::string path = folder / name;
     TestBag(path).Close();
-    std::vector<std::string> told;
-    const std::string error = InputErrorOf(
-        [&] { BagSource(path, {.tell = [&](const std::string& text) { told.push_back(text); }}); });
+    std::vector<std::string> reported;
+    const std::string error = InputErrorOf([&] {
+      BagSource(path, {.notify = [&](const std::string& text) { reported.push_back(text); }});
+    });
     EXPECT_THAT(error, HasSubstr(path + ": has no images")) << name;
-    EXPECT_THAT(told, IsEmpty()) << name;
+    EXPECT_THAT(reported, IsEmpty()) << name;
   }
 }
 

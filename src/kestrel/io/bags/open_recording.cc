@@ -15,7 +15,7 @@ constexpr double kUsualFov_deg = 75;
 
 // The size of the images is known with the first of them, which the source then has to give again.
 CameraIntrinsics AssumeLens(RecordingChoice choice, std::string* first_image) {
-  choice.bag.tell = {};  // the user hears of it when the source is read
+  choice.bag.notify = {};  // the user hears of it when the source is read
   Frame first;
   if (!OpenFrames(choice)->Next(&first)) throw InputError("the source has no images");
   *first_image = first.name;
@@ -25,8 +25,8 @@ CameraIntrinsics AssumeLens(RecordingChoice choice, std::string* first_image) {
 
 // Reports the assumed lens, and how to calibrate it.
 void ReportAssumption(const RecordingChoice& choice) {
-  if (!choice.bag.tell) return;
-  choice.bag.tell(
+  if (!choice.bag.notify) return;
+  choice.bag.notify(
       choice.fov_deg
           ? fmt::format("no calibration: distances are as coarse as the {} degrees of --fov; "
                         "`kestrel calibrate lens` measures the lens",
@@ -39,7 +39,7 @@ void ReportAssumption(const RecordingChoice& choice) {
 // 'first_image': see OpenedSource.
 CameraCalibration KnownCalibration(const FrameSource& source, const RecordingChoice& choice,
                                    std::string* first_image) {
-  if (const auto known = CalibrationOf(source, choice.camera, choice.bag.tell)) return *known;
+  if (const auto known = CalibrationOf(source, choice.camera, choice.bag.notify)) return *known;
   if (!choice.may_assume_lens && !choice.fov_deg) {
     throw InputError(
         "no calibration: the source has none, give one (--camera FILE, camera= in Python: EuRoC "
@@ -55,21 +55,21 @@ CameraCalibration KnownCalibration(const FrameSource& source, const RecordingCho
 CameraCalibration FindCalibration(const FrameSource& source, const RecordingChoice& choice,
                                   std::string* first_image) {
   CameraCalibration calibration = KnownCalibration(source, choice, first_image);
-  if (choice.fov_deg && (!choice.camera.empty() || source.calibration()) && choice.bag.tell) {
-    choice.bag.tell("--fov is not used: there is a calibration");
+  if (choice.fov_deg && (!choice.camera.empty() || source.calibration()) && choice.bag.notify) {
+    choice.bag.notify("--fov is not used: there is a calibration");
   }
   if (!calibration.body_from_camera) {
     const CameraMount own = source.mount();
     calibration.body_from_camera = own.body_from_camera;
     calibration.gimbal = own.gimbal;
-    if (!choice.camera.empty() && own.body_from_camera && choice.bag.tell) {
-      choice.bag.tell(choice.camera + " has no mount (T_BS): the recording's is used");
+    if (!choice.camera.empty() && own.body_from_camera && choice.bag.notify) {
+      choice.bag.notify(choice.camera + " has no mount (T_BS): the recording's is used");
     }
     if (!calibration.clock_offset) calibration.clock_offset = own.clock_offset;
   }
   if (choice.clock_offset) calibration.clock_offset = choice.clock_offset;
-  if (!calibration.body_from_camera && !source.poses().empty() && choice.bag.tell) {
-    choice.bag.tell("the calibration has no mount: no positions in the world");
+  if (!calibration.body_from_camera && !source.poses().empty() && choice.bag.notify) {
+    choice.bag.notify("the calibration has no mount: no positions in the world");
   }
   return calibration;
 }
@@ -78,12 +78,14 @@ CameraCalibration FindCalibration(const FrameSource& source, const RecordingChoi
 
 std::unique_ptr<FrameSource> OpenFrames(const RecordingChoice& choice) {
   auto source = OpenSourceOrBag(choice.sources, choice.format, choice.bag);
-  if (!choice.bag.tell) return source;
-  source->set_on_broken([tell = choice.bag.tell, told = 0](const BrokenImage& broken) mutable {
-    constexpr int kMostReported = 3;
-    if (told < kMostReported) tell(fmt::format("an image is left out: {}", broken.what()));
-    if (told++ == kMostReported) tell("further images are left out");
-  });
+  if (!choice.bag.notify) return source;
+  source->set_on_broken(
+      [notify = choice.bag.notify, reported = 0](const BrokenImage& broken) mutable {
+        constexpr int kMostReported = 3;
+        if (reported < kMostReported)
+          notify(fmt::format("an image is left out: {}", broken.what()));
+        if (reported++ == kMostReported) notify("further images are left out");
+      });
   return source;
 }
 

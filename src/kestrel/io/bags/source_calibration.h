@@ -11,8 +11,9 @@
 namespace kestrel {
 
 // Returns the calibration of the file, or the source's own where 'file' is empty; nothing if it has
-// none. Calls 'tell' with the keys of either file that are not used. Throws as ReadCalibration.
-std::optional<CameraCalibration> CalibrationOf(const FrameSource& source, const std::string& file,
-                                               const std::function<void(const std::string&)>& tell);
+// none. Calls 'notify' with the keys of either file that are not used. Throws as ReadCalibration.
+std::optional<CameraCalibration> CalibrationOf(
+    const FrameSource& source, const std::string& file,
+    const std::function<void(const std::string&)>& notify);
 
 }  // namespace kestrel

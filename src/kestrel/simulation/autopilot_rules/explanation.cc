@@ -27,7 +27,7 @@ using Eigen::Vector3d;
 constexpr std::array kProfiles = {LinkProfile::kArduPilot, LinkProfile::kPx4, LinkProfile::kPx4Vte};
 constexpr std::int64_t kBoot_us = 100'000'000;  // the autopilot's own clock at the beginning
 constexpr Duration kStep = std::chrono::milliseconds(4);
-constexpr Duration kTold = std::chrono::seconds(4);
+constexpr Duration kSendTime = std::chrono::seconds(4);
 constexpr int kStepsPerMessage = 12;  // 20 messages per second
 
 RigidTransform BodyOf(const ExplainedScene& scene) {
@@ -58,27 +58,28 @@ FlightState HoverOf(const ExplainedScene& scene, int step) {
   return state;
 }
 
-// Runs 'target' on the scene for a while. 'tell' is called 20 times a second to send messages.
-template <class Target, class Tell>
-void TellFor(const ExplainedScene& scene, Target* target, const Tell& tell) {
-  for (int step = 0; step * kStep < kTold; ++step) {
+// Runs 'target' on the scene for a while. 'notify' is called 20 times a second to send messages.
+template <class Target, class Notify>
+void SendFor(const ExplainedScene& scene, Target* target, const Notify& notify) {
+  for (int step = 0; step * kStep < kSendTime; ++step) {
     const FlightState state = HoverOf(scene, step);
-    if (step % kStepsPerMessage == 0) tell(state);
+    if (step % kStepsPerMessage == 0) notify(state);
     target->Estimate(state);
   }
 }
 
 Announce KeepLast(std::string* text) {
-  return [text](Severity /*severity*/, const std::string& said) { *text = said; };
+  return [text](Severity /*severity*/, const std::string& reported) { *text = reported; };
 }
 
-void AskArduPilot(const ExplainedScene& scene, LinkProfile profile, Understanding* understanding) {
+void ObserveArduPilot(const ExplainedScene& scene, LinkProfile profile,
+                      Understanding* understanding) {
   // ArduPilot does not use TARGET_RELATIVE.
   if (profile == LinkProfile::kPx4Vte) return;
   const AutopilotParameters parameters(AutopilotFirmware::kArduPilot);
   ArduPilotTarget target(parameters, KeepLast(&understanding->ardupilot_text));
   const TargetState report = ReportOf(scene);
-  TellFor(scene, &target, [&](const FlightState& state) {
+  SendFor(scene, &target, [&](const FlightState& state) {
     const auto stamp_us = static_cast<std::uint64_t>(state.boot_us);
     target.Handle(profile == LinkProfile::kArduPilot ? LandingTargetForArduPilot(report, stamp_us)
                                                      : LandingTargetForPx4(report, stamp_us),
@@ -89,14 +90,14 @@ void AskArduPilot(const ExplainedScene& scene, LinkProfile profile, Understandin
   understanding->ardupilot_in_ned = NedFromEnu(report.world_from_body.translation + from_body);
 }
 
-void AskPx4(const ExplainedScene& scene, LinkProfile profile, Understanding* understanding) {
+void ObservePx4(const ExplainedScene& scene, LinkProfile profile, Understanding* understanding) {
   AutopilotParameters parameters(AutopilotFirmware::kPx4);
   const bool is_vte = profile == LinkProfile::kPx4Vte;
   if (const auto estimator = parameters.Find("VTE_EN")) parameters.Set(*estimator, is_vte ? 1 : 0);
   const Px4TimeSync clock;
   Px4Target target(parameters, clock, KeepLast(&understanding->px4_text));
   const TargetState report = ReportOf(scene);
-  TellFor(scene, &target, [&](const FlightState& state) {
+  SendFor(scene, &target, [&](const FlightState& state) {
     const auto stamp_us = static_cast<std::uint64_t>(state.boot_us);
     if (is_vte) {
       target.Handle(TargetRelativeForPx4(report, stamp_us), state);
@@ -168,17 +169,17 @@ std::string PlaceInWords(const ExplainedScene& scene, const Vector3d& in_ned) {
 
 std::string ThoughtOf(const ExplainedScene& scene, const char* who,
                       const std::optional<Vector3d>& in_ned, const std::string& text) {
-  const std::string said = text.empty() ? "" : fmt::format(" (\"{}\")", text);
-  if (!in_ned) return fmt::format("  {} ignores it{}\n", who, said);
-  return fmt::format("  {} thinks: {}{}\n", who, PlaceInWords(scene, *in_ned), said);
+  const std::string reported = text.empty() ? "" : fmt::format(" (\"{}\")", text);
+  if (!in_ned) return fmt::format("  {} ignores it{}\n", who, reported);
+  return fmt::format("  {} thinks: {}{}\n", who, PlaceInWords(scene, *in_ned), reported);
 }
 
 }  // namespace
 
 Understanding UnderstandingOf(const ExplainedScene& scene, LinkProfile profile) {
   Understanding understanding;
-  AskArduPilot(scene, profile, &understanding);
-  AskPx4(scene, profile, &understanding);
+  ObserveArduPilot(scene, profile, &understanding);
+  ObservePx4(scene, profile, &understanding);
   return understanding;
 }
 

@@ -41,14 +41,14 @@ void ArduPilotGuided::Handle(const mavlink::SetPositionTargetLocalNed& message,
   constexpr double kFastest_mps = 1000;
   if (!is_guided) return;
   if (std::exchange(attitude_, std::nullopt)) Start(state);
-  told_.reset();
+  reported_.reset();
   const bool has_place = (message.type_mask & mavlink::kIgnorePosition) != mavlink::kIgnorePosition;
   if (!IsFrameOfGuided(message.coordinate_frame) || has_place) return;
   const auto order = FlightOrderOf(message, state);
   if (!order || order->set_point.velocity.norm() > kFastest_mps) return;
   wanted_ = order->set_point;
   turn_rate_ = order->turn_rate;
-  told_ = state.time;
+  reported_ = state.time;
 }
 
 // A message that it does not accept stops it, as above.
@@ -56,16 +56,16 @@ void ArduPilotGuided::Handle(const mavlink::SetAttitudeTarget& message, const Fl
                              bool is_guided) {
   if (!is_guided) return;
   attitude_ = AttitudeOrderOf(message, parameters_["WP_SPD_UP"], parameters_["WP_SPD_DN"]);
-  told_.reset();
+  reported_.reset();
   if (attitude_) {
-    told_ = state.time;
+    reported_ = state.time;
   } else {
     Start(state);
   }
 }
 
 void ArduPilotGuided::Start(const FlightState& state) {
-  told_.reset();
+  reported_.reset();
   attitude_.reset();
   heading_.Reset();
   limit_ = {};
@@ -79,9 +79,9 @@ void ArduPilotGuided::Start(const FlightState& state) {
 FlightCommand ArduPilotGuided::Fly(const FlightState& state) {
   constexpr double kLeastTimeout_s = 0.1;
   const double timeout_s = std::max(parameters_["GUID_TIMEOUT"], kLeastTimeout_s);
-  if (told_ && ToSeconds(state.time - *told_) > timeout_s) told_.reset();
+  if (reported_ && ToSeconds(state.time - *reported_) > timeout_s) reported_.reset();
   if (attitude_) return FlyAttitude(state);
-  if (!told_) {
+  if (!reported_) {
     wanted_ = {};
     turn_rate_ = 0;
   }
@@ -118,7 +118,7 @@ std::optional<double> ArduPilotGuided::Heading(const FlightState& state) {
 
 // Without messages it is level, and neither climbs nor sinks.
 FlightCommand ArduPilotGuided::FlyAttitude(const FlightState& state) {
-  if (!told_) *attitude_ = {};
+  if (!reported_) *attitude_ = {};
   FlightCommand command;
   command.is_thrust = true;
   command.set_point.velocity = state.velocity();

@@ -45,7 +45,7 @@ class ArduPilotGuided : public GuidedRules {
   SetPoint wanted_;
   std::optional<double> turn_rate_;  // ENU, rad/s
   HeadingControl heading_;
-  std::optional<Time> told_;  // time of the last one; nothing: it has to stop
+  std::optional<Time> reported_;  // time of the last one; nothing: it has to stop
   ShapedPath<2> horizontal_;
   ShapedPath<2>::Limit limit_;
   ShapedPath<1> vertical_;

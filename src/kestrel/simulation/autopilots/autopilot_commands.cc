@@ -171,7 +171,7 @@ std::uint8_t AutopilotModel::Arm(bool arm, bool by_force) {
     landing_since_.reset();
   } else {
     result_.was_forced = by_force;
-    Say(Severity::kInfo, "Disarming motors");
+    SendText(Severity::kInfo, "Disarming motors");
   }
   return mavlink::kResultAccepted;
 }

@@ -94,7 +94,7 @@ AutopilotModel::AutopilotModel(AutopilotFirmware firmware, const AutopilotModelO
       booted_at_(start),
       boot_uptime_s_(options.uptime_s) {
   const Announce announce = [this](Severity severity, const std::string& text) {
-    Say(severity, text);
+    SendText(severity, text);
   };
   if (is_px4()) {
     landing_ = std::make_unique<Px4Landing>(parameters_, px4_clock_, announce);
@@ -191,7 +191,7 @@ void AutopilotModel::EnterBatteryFailsafe(Time now) {
   const bool lands = is_px4() ? parameters_["COM_LOW_BAT_ACT"] == kPx4Lands
                               : parameters_["BATT_FS_LOW_ACT"] == kArduPilotLands;
   is_in_failsafe_ = true;
-  Say(Severity::kCritical, is_px4() ? "Critical battery" : "Battery 1 low: failsafe");
+  SendText(Severity::kCritical, is_px4() ? "Critical battery" : "Battery 1 low: failsafe");
   // Like the pilot's, this mode is not left for set-points.
   EnterMode(lands ? FlightMode::kLand : FlightMode::kReturn, Wish::kPilot, now);
 }
@@ -201,7 +201,7 @@ void AutopilotModel::WatchSetPoints(Time now) {
   if (!is_armed_) return;
   if (IsIn(FlightMode::kGuided)) {
     if (const auto action = guided_->LossAction(state_)) {
-      Say(Severity::kCritical, "Failsafe activated: no offboard signal");
+      SendText(Severity::kCritical, "Failsafe activated: no offboard signal");
       EnterMode(*action, Wish::kFailsafe, now);
     }
   } else if (resumes_guided_ && guided_->IsAvailable(state_)) {
@@ -325,7 +325,7 @@ void AutopilotModel::DisarmAfterLanding(Time now) {
   resumes_guided_ = false;
   result_.is_disarmed = true;
   if (result_.contact) result_.disarm_s = ToSeconds(now - result_.contact->time);
-  Say(Severity::kInfo, is_px4() ? "Disarmed by landing" : "Disarming motors");
+  SendText(Severity::kInfo, is_px4() ? "Disarmed by landing" : "Disarming motors");
 }
 
 void AutopilotModel::Reboot(Time now) {

@@ -101,7 +101,7 @@ class AutopilotModel {
   bool SendMessage(std::uint32_t id, Time now);
   bool SendPose(std::uint32_t id, Time now);
   bool SendPlace(std::uint32_t id, Time now);
-  void Say(Severity severity, const std::string& text) const;
+  void SendText(Severity severity, const std::string& text) const;
   std::uint8_t LandedState() const;
   mavlink::Heartbeat HeartbeatOf() const;
   mavlink::AutopilotVersion VersionOf() const;

@@ -23,7 +23,7 @@ constexpr double kLongest_s = 90;
 // Lands with 50 messages per second; continues for a while after contact.
 template <class MakeMessage>
 SitlResult Land(TestAutopilot* autopilot, MakeMessage&& message, double seconds = kLongest_s) {
-  autopilot->Run(seconds, [&] { autopilot->Tell(message()); });
+  autopilot->Run(seconds, [&] { autopilot->Send(message()); });
   return autopilot->model.result();
 }
 
@@ -81,10 +81,10 @@ TEST(Px4LandingTest, LandsByTargetRelative) {
 
 TEST(ArduPilotLandingTest, ReportsStateOfPrecisionLanding) {
   TestAutopilot autopilot(AutopilotFirmware::kArduPilot, {}, TestVehicle("standing", 0));
-  autopilot.Run(1, [&] { autopilot.Tell(autopilot.ArduPilotTargetMessage()); });
+  autopilot.Run(1, [&] { autopilot.Send(autopilot.ArduPilotTargetMessage()); });
   EXPECT_EQ(autopilot.CountText("PrecLand: Target Found"), 1);
   EXPECT_EQ(autopilot.CountText("PrecLand: Init Complete"), 0);
-  autopilot.Run(1.2, [&] { autopilot.Tell(autopilot.ArduPilotTargetMessage()); });
+  autopilot.Run(1.2, [&] { autopilot.Send(autopilot.ArduPilotTargetMessage()); });
   EXPECT_EQ(autopilot.CountText("PrecLand: Init Complete"), 1);
   autopilot.Run(1.9);
   EXPECT_EQ(autopilot.CountText("PrecLand: Target Lost"), 0);
@@ -95,7 +95,7 @@ TEST(ArduPilotLandingTest, ReportsStateOfPrecisionLanding) {
 TEST(ArduPilotLandingTest, OneTargetPerSecondIsNotEnough) {
   TestAutopilot autopilot(AutopilotFirmware::kArduPilot, {}, TestVehicle("standing", 0));
   for (int i = 0; i < 5; ++i) {
-    autopilot.Tell(autopilot.ArduPilotTargetMessage());
+    autopilot.Send(autopilot.ArduPilotTargetMessage());
     autopilot.Run(1);
   }
   EXPECT_GE(autopilot.CountText("PrecLand: Init Failed"), 4);
@@ -104,7 +104,7 @@ TEST(ArduPilotLandingTest, OneTargetPerSecondIsNotEnough) {
 
 TEST(ArduPilotLandingTest, RefusesOtherFramesWithOneMessage) {
   TestAutopilot autopilot(AutopilotFirmware::kArduPilot, {}, TestVehicle("standing", 0));
-  autopilot.Run(3, [&] { autopilot.Tell(autopilot.Px4TargetMessage()); });
+  autopilot.Run(3, [&] { autopilot.Send(autopilot.Px4TargetMessage()); });
   EXPECT_EQ(autopilot.CountText("Plnd: Frame not supported"), 1);
   EXPECT_EQ(autopilot.CountText("PrecLand"), 0);
 }
@@ -114,9 +114,9 @@ TEST(ArduPilotLandingTest, IgnoresTargetsWithoutDistance) {
   autopilot.Run(3, [&] {
     mavlink::LandingTarget message = autopilot.ArduPilotTargetMessage();
     message.distance = 0;
-    autopilot.Tell(message);
+    autopilot.Send(message);
     message.position_valid = 0;
-    autopilot.Tell(message);
+    autopilot.Send(message);
   });
   EXPECT_EQ(autopilot.CountText(""), 0);
 }
@@ -132,14 +132,14 @@ TEST(ArduPilotLandingTest, LandsBesideWhenTargetIsLost) {
 TEST(ArduPilotLandingTest, HoversAtPlaceOfLossWithStrictTwo) {
   TestAutopilot autopilot(AutopilotFirmware::kArduPilot, WithParameters("PLND_STRICT=2"),
                           TestVehicle("standing", 0));
-  autopilot.Run(15, [&] { autopilot.Tell(autopilot.ArduPilotTargetMessage()); });
+  autopilot.Run(15, [&] { autopilot.Send(autopilot.ArduPilotTargetMessage()); });
   autopilot.Run(60);
   EXPECT_FALSE(autopilot.model.result().contact);
 }
 
 TEST(ArduPilotLandingTest, TrailsMovingTargetWithoutOptionBit0) {
   TestAutopilot autopilot(AutopilotFirmware::kArduPilot, {}, TestVehicle("straight", 2));
-  autopilot.Run(20, [&] { autopilot.Tell(autopilot.ArduPilotTargetMessage()); });
+  autopilot.Run(20, [&] { autopilot.Send(autopilot.ArduPilotTargetMessage()); });
   EXPECT_NEAR(autopilot.HorizontalError(), 2.1, 0.4) << "measured: 2.2 m";
 }
 
@@ -153,7 +153,7 @@ TEST(ArduPilotLandingTest, OscillatesWithUnconfiguredLag) {
     autopilot.Run(20, [&] {
       late.push_back(autopilot.ArduPilotTargetMessage());
       constexpr std::size_t kDelay = 10;  // messages, 20 ms apart
-      if (late.size() > kDelay) autopilot.Tell(late[late.size() - 1 - kDelay]);
+      if (late.size() > kDelay) autopilot.Send(late[late.size() - 1 - kDelay]);
       if (autopilot.now < kTestStart + std::chrono::seconds(10)) return;
       sum += autopilot.HorizontalError() * autopilot.HorizontalError();
       ++count;
@@ -181,7 +181,7 @@ TEST(ArduPilotLandingTest, DisarmsOnMovingDeckOnlyWhileTargetsContinue) {
 TEST(Px4LandingTest, RefusesBodyFramesWithMessageToGroundStation) {
   for (const bool has_gcs : {false, true}) {
     TestAutopilot autopilot(AutopilotFirmware::kPx4, {}, TestVehicle("standing", 0));
-    if (has_gcs) autopilot.Tell(mavlink::Heartbeat{.type = mavlink::kTypeGcs});
+    if (has_gcs) autopilot.Send(mavlink::Heartbeat{.type = mavlink::kTypeGcs});
     const SitlResult result = Land(&autopilot, [&] { return autopilot.ArduPilotTargetMessage(); });
     EXPECT_EQ(autopilot.CountText("landing target: coordinate frame 12 unsupported") > 100,
               has_gcs);
@@ -202,7 +202,7 @@ TEST(Px4LandingTest, RefusesFutureStampsAndStampsOfAnotherClock) {
   for (const std::int64_t error_us : {300'000, 1'000'000'000, -700'000}) {
     TestAutopilot autopilot(AutopilotFirmware::kPx4, WithParameters("VTE_EN=1"),
                             TestVehicle("standing", 0));
-    autopilot.Tell(mavlink::Heartbeat{.type = mavlink::kTypeGcs});
+    autopilot.Send(mavlink::Heartbeat{.type = mavlink::kTypeGcs});
     const SitlResult result = Land(&autopilot, [&] {
       mavlink::TargetRelative message = autopilot.RelativeMessage();
       message.timestamp += error_us;
@@ -246,14 +246,14 @@ TEST(AutopilotModelTest, ArduPilotSendsRequestedStreamsOnly) {
   autopilot.Run(2);
   EXPECT_EQ(autopilot.Sent<mavlink::Heartbeat>().size(), 2);
   EXPECT_EQ(autopilot.Sent<mavlink::Attitude>().size(), 0);
-  const auto ask = [&](float id, float interval_us) {
-    autopilot.Tell(Command(mavlink::kCommandSetMessageInterval, {id, interval_us}));
+  const auto request = [&](float id, float interval_us) {
+    autopilot.Send(Command(mavlink::kCommandSetMessageInterval, {id, interval_us}));
     return autopilot.Sent<mavlink::CommandAck>().back().result;
   };
-  EXPECT_EQ(ask(mavlink::Attitude::kId, 20000), mavlink::kResultAccepted);
-  EXPECT_EQ(ask(mavlink::SimState::kId, 10000), mavlink::kResultAccepted);
-  EXPECT_EQ(ask(mavlink::Attitude::kId, 1000), mavlink::kResultDenied);
-  EXPECT_EQ(ask(12345, 20000), mavlink::kResultDenied);
+  EXPECT_EQ(request(mavlink::Attitude::kId, 20000), mavlink::kResultAccepted);
+  EXPECT_EQ(request(mavlink::SimState::kId, 10000), mavlink::kResultAccepted);
+  EXPECT_EQ(request(mavlink::Attitude::kId, 1000), mavlink::kResultDenied);
+  EXPECT_EQ(request(12345, 20000), mavlink::kResultDenied);
   autopilot.Run(2);
   EXPECT_NEAR(autopilot.Sent<mavlink::Attitude>().size(), 100, 2);
   EXPECT_NEAR(autopilot.Sent<mavlink::SimState>().size(), 200, 3);
@@ -265,7 +265,7 @@ TEST(AutopilotModelTest, Px4SendsItsOnboardStreams) {
   EXPECT_NEAR(autopilot.Sent<mavlink::Attitude>().size(), 200, 3);
   EXPECT_NEAR(autopilot.Sent<mavlink::LocalPositionNed>().size(), 60, 2);
   EXPECT_NEAR(autopilot.Sent<mavlink::Timesync>().size(), 20, 1);
-  autopilot.Tell(Command(mavlink::kCommandSetMessageInterval, {mavlink::SimState::kId, 20000}));
+  autopilot.Send(Command(mavlink::kCommandSetMessageInterval, {mavlink::SimState::kId, 20000}));
   EXPECT_EQ(autopilot.Sent<mavlink::CommandAck>().back().result, mavlink::kResultFailed);
 }
 
@@ -294,7 +294,7 @@ TEST(AutopilotModelTest, AnswersTimesyncByItsOwnClock) {
   options.uptime_s = 30;
   TestAutopilot autopilot(AutopilotFirmware::kArduPilot, options, TestVehicle("standing", 0));
   autopilot.Run(100);
-  autopilot.Tell(mavlink::Timesync{.tc1 = 0, .ts1 = 123456789});
+  autopilot.Send(mavlink::Timesync{.tc1 = 0, .ts1 = 123456789});
   const auto answer = autopilot.Sent<mavlink::Timesync>().back();
   EXPECT_EQ(answer.ts1, 123456789);
   EXPECT_NEAR(1e-9 * static_cast<double>(answer.tc1), 130.005, 1e-6);
@@ -317,7 +317,7 @@ TEST(AutopilotModelTest, SendsPx4IntegersAsBits) {
     const bool is_px4 = firmware == AutopilotFirmware::kPx4;
     TestAutopilot autopilot(firmware, {}, TestVehicle("standing", 0));
     const auto name = CharsOf<16>(is_px4 ? "LTEST_SENS_ROT" : "PLND_ENABLED");
-    autopilot.Tell(mavlink::ParamRequestRead{
+    autopilot.Send(mavlink::ParamRequestRead{
         .target_system = 1, .target_component = 1, .param_id = name, .param_index = -1});
     ASSERT_EQ(autopilot.Sent<mavlink::ParamValue>().size(), 1);
     const float value = autopilot.Sent<mavlink::ParamValue>()[0].param_value;
@@ -327,7 +327,7 @@ TEST(AutopilotModelTest, SendsPx4IntegersAsBits) {
     set.param_id = name;
     set.param_type = mavlink::kParamInt32;
     set.param_value = is_px4 ? std::bit_cast<float>(5) : 5.0f;
-    autopilot.Tell(set);
+    autopilot.Send(set);
     EXPECT_EQ(autopilot.model.parameters()[is_px4 ? "LTEST_SENS_ROT" : "PLND_ENABLED"], 5);
   }
 }
@@ -337,7 +337,7 @@ TEST(AutopilotModelTest, FollowsCommands) {
   options.pilot.start_altitude_m = 0;
   TestAutopilot autopilot(AutopilotFirmware::kArduPilot, options, TestVehicle("circle", 2));
   const auto command = [&](std::uint16_t number, float p1, float p2 = 0, float p7 = 0) {
-    autopilot.Tell(Command(number, {p1, p2, 0, 0, 0, 0, p7}));
+    autopilot.Send(Command(number, {p1, p2, 0, 0, 0, 0, p7}));
     return autopilot.Sent<mavlink::CommandAck>().back().result;
   };
   constexpr std::uint16_t kTakeOff = 22;
@@ -359,7 +359,7 @@ TEST(AutopilotModelTest, FollowsCommands) {
 TEST(AutopilotModelTest, StopsMotorsInFlightByForcedDisarm) {
   TestAutopilot autopilot(AutopilotFirmware::kPx4, {}, TestVehicle("standing", 0));
   autopilot.Run(1);
-  autopilot.Tell(Command(mavlink::kCommandArmDisarm, {0, 21196}));
+  autopilot.Send(Command(mavlink::kCommandArmDisarm, {0, 21196}));
   autopilot.Run(3);
   EXPECT_FALSE(autopilot.model.is_armed());
   EXPECT_LT(autopilot.model.truth().world_from_body.translation.z(), 1);

@@ -8,7 +8,7 @@
 namespace kestrel {
 
 // PX4 sends texts only where a ground station listens; others get events, which nobody here needs.
-void AutopilotModel::Say(Severity severity, const std::string& text) const {
+void AutopilotModel::SendText(Severity severity, const std::string& text) const {
   if (is_px4() && !has_gcs_) return;
   mavlink::Statustext message;
   message.severity = static_cast<std::uint8_t>(severity);

@@ -45,11 +45,11 @@ GuidanceOptions GuidanceTo(AutopilotFirmware firmware, const char* touchdown_hea
 class GuidedLanding : public TestAutopilot {
  public:
   GuidedLanding(AutopilotFirmware firmware, const AutopilotModelOptions& options, const Deck& deck,
-                std::uint64_t seed, bool says_carried, const char* touchdown_heading = "any")
+                std::uint64_t seed, bool sends_carried, const char* touchdown_heading = "any")
       : TestAutopilot(firmware, options, TestVehicle(deck.path, deck.speed_mps), seed),
         kind_(firmware == AutopilotFirmware::kPx4 ? AutopilotKind::kPx4
                                                   : AutopilotKind::kArduPilot),
-        says_carried_(says_carried && firmware == AutopilotFirmware::kArduPilot),
+        sends_carried_(sends_carried && firmware == AutopilotFirmware::kArduPilot),
         guidance_(GuidanceTo(firmware, touchdown_heading)) {
     for (const std::uint32_t id :
          {mavlink::Attitude::kId, mavlink::AttitudeQuaternion::kId, mavlink::LocalPositionNed::kId,
@@ -77,10 +77,10 @@ class GuidedLanding : public TestAutopilot {
               static_cast<float>(CustomModeOf(kind_, FlightMode::kLand)));
     }
     if (!output.set_point) return;
-    if (output.set_point->is_carried && says_carried_) {
-      Tell(CarriedMessage(*output.set_point, 1, 1, 0));
+    if (output.set_point->is_carried && sends_carried_) {
+      Send(CarriedMessage(*output.set_point, 1, 1, 0));
     } else {
-      Tell(SetPointMessage(*output.set_point, kind_, 1, 1, 0));
+      Send(SetPointMessage(*output.set_point, kind_, 1, 1, 0));
     }
   }
 
@@ -115,11 +115,11 @@ class GuidedLanding : public TestAutopilot {
     message.command = command;
     message.param1 = p1;
     message.param2 = p2;
-    Tell(message);
+    Send(message);
   }
 
   AutopilotKind kind_;
-  bool says_carried_;
+  bool sends_carried_;
   LandingGuidance guidance_;
   UavState uav_;
   bool is_landed_ = false;
@@ -127,7 +127,7 @@ class GuidedLanding : public TestAutopilot {
 
 struct Circumstances {
   double rest_climb_mps = 0;
-  bool says_carried = true;  // false: in contact it sends the deck's velocity
+  bool sends_carried = true;  // false: in contact it sends the deck's velocity
 };
 
 struct Disarmed {
@@ -143,7 +143,7 @@ Disarmed Fly(AutopilotFirmware firmware, const Deck& deck,
   for (int seed = 1; seed <= 20; ++seed) {
     AutopilotModelOptions options = ModelFor(firmware, 1 + 0.9 * seed);
     options.estimate.rest_climb_mps = circumstances.rest_climb_mps;
-    GuidedLanding landing(firmware, options, deck, seed, circumstances.says_carried);
+    GuidedLanding landing(firmware, options, deck, seed, circumstances.sends_carried);
     const bool is_down = landing.Land(90);
     disarmed.go_arounds += landing.go_arounds();
     const SitlResult& result = landing.model.result();
@@ -173,7 +173,7 @@ TEST_P(GuidedLandingTest, DisarmsOnEveryDeckByItself) {
 // ArduPilot leans against the deck by velocities until its detector refuses.
 TEST(ArduPilotGuidedLandingTest, VelocitiesAgainstDrivingDeckKeepArduPilotArmed) {
   const Deck deck{"figure8", 4.2};
-  EXPECT_LT(Fly(AutopilotFirmware::kArduPilot, deck, {.says_carried = false}).flights, 10);
+  EXPECT_LT(Fly(AutopilotFirmware::kArduPilot, deck, {.sends_carried = false}).flights, 10);
 }
 
 TEST_P(GuidedLandingTest, StaysDownWhenEstimateClimbsAtRest) {

@@ -39,7 +39,7 @@ class GuidedAutopilot : public TestAutopilot {
   }
   // Sends set-points of this velocity, 50 times per second.
   void Guide(double seconds, const Vector3d& velocity) {
-    Run(seconds, [&] { Tell(Message(velocity)); });
+    Run(seconds, [&] { Send(Message(velocity)); });
   }
   // Follows the pattern's centre and its acceleration with 'gain', 'height_m' above it.
   void Pursue(double seconds, double height_m, double gain, double sink_mps = 0) {
@@ -53,7 +53,7 @@ class GuidedAutopilot : public TestAutopilot {
       if (sink_mps > 0) set_point.velocity.z() = -sink_mps;
       set_point.acceleration =
           (world.VelocityAt(now + step) - world.VelocityAt(now - step)) / (2 * kStep_s);
-      Tell(SetPointMessage(set_point, kind_, 1, 1, 0));
+      Send(SetPointMessage(set_point, kind_, 1, 1, 0));
     });
   }
   // Returns the RMS of the horizontal distance from the pattern during a while of Pursue.
@@ -79,7 +79,7 @@ class GuidedAutopilot : public TestAutopilot {
     message.param1 = p1;
     message.param2 = p2;
     message.param3 = p3;
-    Tell(message);
+    Send(message);
     return Sent<mavlink::CommandAck>().back().result;
   }
   void EnterHold() {
@@ -87,7 +87,7 @@ class GuidedAutopilot : public TestAutopilot {
     message.target_system = 1;
     message.base_mode = mavlink::kModeFlagCustom;
     message.custom_mode = CustomModeOf(kind_, FlightMode::kHold);
-    Tell(message);
+    Send(message);
   }
 
  private:
@@ -115,7 +115,7 @@ TEST_P(GuidedTest, TurnsToYaw) {
     auto message = autopilot.Message({0, 0, 0});
     message.type_mask = 0x807;
     message.yaw = 2;
-    autopilot.Tell(message);
+    autopilot.Send(message);
   });
   const Vector3d nose = autopilot.model.truth().world_from_body.rotation * Vector3d::UnitX();
   EXPECT_NEAR(std::atan2(nose.x(), nose.y()), 2, 0.02) << "clockwise from north";
@@ -224,7 +224,7 @@ TEST(ArduPilotGuidedTest, StopsOnUnsupportedSetPoints) {
     autopilot.Run(5, [&] {
       auto message = autopilot.Message({2, 0, 0});
       change(&message);
-      autopilot.Tell(message);
+      autopilot.Send(message);
     });
     return autopilot.Velocity().norm();
   };
@@ -262,17 +262,17 @@ TEST(ArduPilotGuidedTest, DoesNotLiftOffByVelocities) {
 
 TEST(Px4OffboardTest, RequiresStreamOfSetPointsFirst) {
   GuidedAutopilot autopilot(AutopilotFirmware::kPx4, Guided("", -1));
-  const auto ask = [&] { return autopilot.Command(mavlink::kCommandDoSetMode, 1, 6); };
-  EXPECT_EQ(ask(), mavlink::kResultTemporarilyRejected);
+  const auto request = [&] { return autopilot.Command(mavlink::kCommandDoSetMode, 1, 6); };
+  EXPECT_EQ(request(), mavlink::kResultTemporarilyRejected);
   autopilot.Guide(0.4, {0, 0, 0});
-  EXPECT_EQ(ask(), mavlink::kResultTemporarilyRejected);
+  EXPECT_EQ(request(), mavlink::kResultTemporarilyRejected);
   for (int i = 0; i < 4; ++i) {
     autopilot.Run(0.6);
-    autopilot.Tell(autopilot.Message({0, 0, 0}));
+    autopilot.Send(autopilot.Message({0, 0, 0}));
   }
-  EXPECT_EQ(ask(), mavlink::kResultTemporarilyRejected) << "slower than 2 Hz";
+  EXPECT_EQ(request(), mavlink::kResultTemporarilyRejected) << "slower than 2 Hz";
   autopilot.Guide(0.8, {0, 0, 0});
-  EXPECT_EQ(ask(), mavlink::kResultAccepted);
+  EXPECT_EQ(request(), mavlink::kResultAccepted);
   EXPECT_TRUE(autopilot.is_guided());
 }
 
@@ -286,11 +286,11 @@ TEST(Px4OffboardTest, PilotRetriesUntilAccepted) {
 
 TEST(Px4OffboardTest, DropsOtherFrames) {
   GuidedAutopilot autopilot(AutopilotFirmware::kPx4, Guided());
-  autopilot.Tell(mavlink::Heartbeat{.type = mavlink::kTypeGcs});
+  autopilot.Send(mavlink::Heartbeat{.type = mavlink::kTypeGcs});
   autopilot.Run(4, [&] {
     auto message = autopilot.Message({0, 0, 0});
     message.coordinate_frame = mavlink::kFrameLocalOffsetNed;
-    autopilot.Tell(message);
+    autopilot.Send(message);
   });
   EXPECT_FALSE(autopilot.is_guided());
   EXPECT_GT(autopilot.CountText("SET_POSITION_TARGET_LOCAL_NED coordinate frame"), 100);
@@ -331,7 +331,7 @@ TEST(Px4OffboardTest, StopsAtSetPointPlace) {
     last = {.velocity = {4.2, 0, 0}};
     if (autopilot.Position().z() > 6) last.velocity.z() = -0.5;
     safety.SetPlace(autopilot.Position(), autopilot.Velocity(), 0, &last);
-    autopilot.Tell(SetPointMessage(last, AutopilotKind::kPx4, 1, 1, 0));
+    autopilot.Send(SetPointMessage(last, AutopilotKind::kPx4, 1, 1, 0));
   });
   EXPECT_NEAR(autopilot.Velocity().x(), 4.2, 0.2);
   const Vector3d where = autopilot.Position();

@@ -116,7 +116,7 @@ class TrackedFlight {
     input.is_guided = IsGuidedMode(kind_, autopilot_.model.custom_mode());
     input.is_armed = autopilot_.model.is_armed();
     const GuidanceOutput output = guidance_.Update(input);
-    if (output.set_point) autopilot_.Tell(SetPointMessage(*output.set_point, kind_, 1, 1, 0));
+    if (output.set_point) autopilot_.Send(SetPointMessage(*output.set_point, kind_, 1, 1, 0));
   }
 
   TestAutopilot autopilot_;

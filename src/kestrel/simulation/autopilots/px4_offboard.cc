@@ -43,17 +43,18 @@ void Px4Offboard::Handle(const mavlink::SetPositionTargetLocalNed& message,
   const auto order = FlightOrderOf(message, state);
   if (!order) return;
   if (!stream_begin_ || SilentFor(state) > kSlowest_s) stream_begin_ = state.time;
-  told_ = state.time;
+  reported_ = state.time;
   wanted_ = order->set_point;
   turn_rate_ = order->turn_rate;
 }
 
 double Px4Offboard::SilentFor(const FlightState& state) const {
-  return stream_begin_ ? ToSeconds(state.time - told_) : std::numeric_limits<double>::infinity();
+  return stream_begin_ ? ToSeconds(state.time - reported_)
+                       : std::numeric_limits<double>::infinity();
 }
 
 bool Px4Offboard::IsAvailable(const FlightState& state) const {
-  return SilentFor(state) < kSlowest_s && ToSeconds(told_ - *stream_begin_) >= kStream_s;
+  return SilentFor(state) < kSlowest_s && ToSeconds(reported_ - *stream_begin_) >= kStream_s;
 }
 
 void Px4Offboard::Start(const FlightState& state) {

@@ -42,7 +42,7 @@ class Px4Offboard : public GuidedRules {
   std::optional<double> turn_rate_;  // ENU, rad/s
   HeadingControl heading_;
   std::optional<Time> stream_begin_;  // beginning of the present stream
-  Time told_{};                       // time of the last one
+  Time reported_{};                   // time of the last one
   Eigen::Vector3d integral_{0, 0, 0};
   Eigen::Vector3d last_velocity_{0, 0, 0};
   Eigen::Vector3d change_{0, 0, 0};  // derivative of the velocity, m/s^2

@@ -52,7 +52,7 @@ std::vector<std::string> Split(std::string_view text) {
 
 CameraCalibration CalibrationFor(const RecordingChoice& choice, const CameraCalibration& own) {
   if (choice.camera.empty()) return own;
-  CameraCalibration calibration = ReadCalibration(choice.camera, "", choice.bag.tell);
+  CameraCalibration calibration = ReadCalibration(choice.camera, "", choice.bag.notify);
   CheckImageSize(calibration.intrinsics, own.intrinsics.width_px, own.intrinsics.height_px,
                  choice.sources.front());
   if (calibration.gimbal) {

@@ -51,7 +51,7 @@ class TestAutopilot {
         model(firmware, options, &world, kTestStart, seed,
               [this](const AutopilotMessage& message) { sent.push_back(message); }) {}
 
-  void Tell(const CompanionMessage& message) {
+  void Send(const CompanionMessage& message) {
     constexpr std::uint8_t kOnboardComputer = 191;
     model.Handle(message, 1, kOnboardComputer, now);
   }

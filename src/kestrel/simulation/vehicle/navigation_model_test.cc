@@ -47,10 +47,10 @@ TEST(NavigationModelTest, WorldMayBeShiftedAndTurned) {
   options.origin_y_m = -1;
   options.world_yaw_deg = 90;
   const RigidTransform truth{Quaterniond::Identity(), {2, 1, 5}};
-  const RigidTransform told =
+  const RigidTransform reported =
       NavigationSensor(options, {}, Random(1)).Report(0, truth).world_from_body;
-  EXPECT_LT((told.translation - Vector3d(3 - 1, -1 + 2, 5)).norm(), 1e-9);
-  EXPECT_NEAR(HeadingOf(told.rotation), std::numbers::pi / 2, 1e-9);
+  EXPECT_LT((reported.translation - Vector3d(3 - 1, -1 + 2, 5)).norm(), 1e-9);
+  EXPECT_NEAR(HeadingOf(reported.rotation), std::numbers::pi / 2, 1e-9);
 }
 
 TEST(NavigationModelTest, NoiseHasRequestedSpread) {

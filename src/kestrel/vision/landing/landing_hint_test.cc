@@ -62,7 +62,7 @@ TEST_F(LandingHintTest, HintSelectsOneOfTwoPatterns) {
 
 // However wrong the hint is, a pattern in plain view is found and located.
 TEST_F(LandingHintTest, WrongHintDoesNotHidePattern) {
-  struct Told {
+  struct Reported {
     const char* what;
     TargetHint hint;
   };
@@ -93,7 +93,7 @@ TEST_F(LandingHintTest, WrongHintDoesNotHidePattern) {
     TargetHint all_wrong = center({-0.5 * distance, 0.1, 2 * distance});
     all_wrong.up_in_camera = -normal;
     all_wrong.altitude_m = distance + 500;
-    const Told wrong[] = {
+    const Reported wrong[] = {
         {"altitude + 10 m", altitude(distance + 10)},
         {"altitude + 500 m", altitude(distance + 500)},
         {"altitude x 3", altitude(3 * distance)},
@@ -113,14 +113,15 @@ TEST_F(LandingHintTest, WrongHintDoesNotHidePattern) {
     const cv::Mat image = Draw(SpokedPrint(pattern_, 4), truth);
     Eigen::Vector2d center_px;
     camera_.Project(at, &center_px);
-    for (const Told& told : wrong) {
-      const TargetReport report = Detect(image, told.hint);
-      ASSERT_TRUE(report.detection) << told.what << " at " << distance << " m: " << report.reason;
+    for (const Reported& reported : wrong) {
+      const TargetReport report = Detect(image, reported.hint);
+      ASSERT_TRUE(report.detection)
+          << reported.what << " at " << distance << " m: " << report.reason;
       EXPECT_LT((report.detection->center_px - center_px).norm(), 0.2)
-          << told.what << " at " << distance << " m";
+          << reported.what << " at " << distance << " m";
       // A wrong 'up' may choose the mirror pose, which agrees better with it.
       EXPECT_LT((report.detection->camera_from_target.translation - at).norm(), 0.1 * distance)
-          << told.what << " at " << distance << " m";
+          << reported.what << " at " << distance << " m";
     }
   }
 }
@@ -195,9 +196,9 @@ TEST_F(LandingHintTest, BoundedSearchOfEmptyImageTakesStepsInTurn) {
   options.max_search_ms = 1e-6;
   const LandingPatternDetector bounded(camera_, options);
   const cv::Mat image = Draw(SpokedPrint(pattern_, 3), pose_);
-  for (const bool is_told : {false, true}) {
+  for (const bool is_given : {false, true}) {
     TargetHint hint;
-    if (is_told) hint.center_in_camera = pose_.translation;
+    if (is_given) hint.center_in_camera = pose_.translation;
     std::set<int> steps;
     for (int frame = 0; frame < 2 * static_cast<int>(kSearchSteps); ++frame) {
       const TargetReport report = bounded.Detect(image, hint, workspace_);

@@ -34,7 +34,7 @@ std::vector<MappedObject> Watch(const Path& path, const SharedError& shared, int
                                 Random* random) {
   const ObjectMotion motion = ObjectMapOptions().motion();
   MotionFilter filter;
-  std::vector<MappedObject> said(count);
+  std::vector<MappedObject> reported(count);
   for (int i = 0; i < count; ++i) {
     const double time_s = kPeriod_s * i;
     ObjectMeasurement seen =
@@ -46,9 +46,9 @@ std::vector<MappedObject> Watch(const Path& path, const SharedError& shared, int
       filter.Predict(kPeriod_s, motion);
       filter.Fuse(seen, motion);
     }
-    filter.Publish(&said[i]);
+    filter.Publish(&reported[i]);
   }
-  return said;
+  return reported;
 }
 
 Vector3d Stand(double /*time_s*/) { return {1, -2, 0}; }
@@ -88,18 +88,19 @@ Path Lanes(Random* random) {
 }
 
 // Number of the first sighting after which the disc is reported as moving; 0: never.
-int FirstSaid(const std::vector<MappedObject>& said) {
-  const auto first = std::find_if(said.begin(), said.end(), [](auto& one) { return one.moves; });
-  return first == said.end() ? 0 : 1 + static_cast<int>(first - said.begin());
+int FirstReported(const std::vector<MappedObject>& reported) {
+  const auto first =
+      std::find_if(reported.begin(), reported.end(), [](auto& one) { return one.moves; });
+  return first == reported.end() ? 0 : 1 + static_cast<int>(first - reported.begin());
 }
 
 TEST(MotionFilter, StandingObjectNeverMoves) {
   for (int seed = 1; seed <= kSeeds; ++seed) {
     Random random(seed);
-    const auto said = Watch(Stand, {.error = Drift(&random)}, 2000, &random);
-    EXPECT_EQ(FirstSaid(said), 0) << "seed " << seed;
-    EXPECT_EQ(said.back().velocity().norm(), 0);
-    EXPECT_LT((said.back().position() - Stand(0)).norm(), 0.15);
+    const auto reported = Watch(Stand, {.error = Drift(&random)}, 2000, &random);
+    EXPECT_EQ(FirstReported(reported), 0) << "seed " << seed;
+    EXPECT_EQ(reported.back().velocity().norm(), 0);
+    EXPECT_LT((reported.back().position() - Stand(0)).norm(), 0.15);
   }
 }
 
@@ -110,7 +111,7 @@ TEST(MotionFilter, WrongClockDoesNotMoveStandingObject) {
     const Path velocity = Lanes(&random);
     const SharedError shared{
         [&](double time_s) { return Vector3d(drift(time_s) + 0.02 * velocity(time_s)); }, velocity};
-    EXPECT_EQ(FirstSaid(Watch(Stand, shared, 2000, &random)), 0) << "seed " << seed;
+    EXPECT_EQ(FirstReported(Watch(Stand, shared, 2000, &random)), 0) << "seed " << seed;
   }
 }
 
@@ -119,7 +120,7 @@ TEST(MotionFilter, SingleOutlierDoesNotMoveStandingObject) {
   const Path jump = [](double time_s) {
     return Vector3d(std::abs(time_s - 5) < 0.01 ? 0.5 : 0, 0, 0);
   };
-  EXPECT_EQ(FirstSaid(Watch(Stand, {.error = jump}, 100, &random)), 0);
+  EXPECT_EQ(FirstReported(Watch(Stand, {.error = jump}, 100, &random)), 0);
 }
 
 TEST(MotionFilter, DetectsMovingObjectAndItsVelocity) {
@@ -131,11 +132,11 @@ TEST(MotionFilter, DetectsMovingObjectAndItsVelocity) {
     for (int seed = 1; seed <= kSeeds; ++seed) {
       Random random(seed);
       const Path path = Drive(c.speed_mps, &random);
-      const auto said = Watch(path, {.error = Drift(&random)}, 100, &random);
-      const int first = FirstSaid(said);
+      const auto reported = Watch(path, {.error = Drift(&random)}, 100, &random);
+      const int first = FirstReported(reported);
       EXPECT_TRUE(first > 0 && first <= c.sightings) << c.speed_mps << " m/s: " << first;
-      EXPECT_TRUE(said.back().moves);
-      EXPECT_LT((said.back().velocity() - path(1)).norm(), 0.15) << c.speed_mps << " m/s";
+      EXPECT_TRUE(reported.back().moves);
+      EXPECT_LT((reported.back().velocity() - path(1)).norm(), 0.15) << c.speed_mps << " m/s";
     }
   }
 }
@@ -146,8 +147,8 @@ TEST(MotionFilter, EstimatesVelocityAfterTenSightings) {
     for (int seed = 1; seed <= kSeeds; ++seed) {
       Random random(seed);
       const Path path = Drive(speed_mps, &random);
-      const auto said = Watch(path, {.error = Drift(&random)}, 10, &random);
-      squares += (said.back().velocity() - path(1)).squaredNorm();
+      const auto reported = Watch(path, {.error = Drift(&random)}, 10, &random);
+      squares += (reported.back().velocity() - path(1)).squaredNorm();
     }
     EXPECT_LT(std::sqrt(squares / kSeeds), 0.15) << speed_mps << " m/s";
   }
@@ -159,10 +160,10 @@ TEST(MotionFilter, StoppedObjectStandsWhereItStopped) {
     Random random(seed);
     const Path whole = Drive(0.6, &random);
     const Path path = [&](double time_s) { return whole(std::min(time_s, kStop_s)); };
-    const auto said = Watch(path, {}, 250, &random);
-    EXPECT_TRUE(said[200].moves);
-    EXPECT_FALSE(said.back().moves) << "seed " << seed;
-    EXPECT_LT((said.back().position() - whole(kStop_s)).norm(), 0.15);
+    const auto reported = Watch(path, {}, 250, &random);
+    EXPECT_TRUE(reported[200].moves);
+    EXPECT_FALSE(reported.back().moves) << "seed " << seed;
+    EXPECT_LT((reported.back().position() - whole(kStop_s)).norm(), 0.15);
   }
 }
 
@@ -172,7 +173,7 @@ TEST(MotionFilter, DetectsObjectThatStartsMoving) {
     Random random(seed);
     const Path whole = Drive(0.6, &random);
     const Path path = [&](double time_s) { return whole(std::max(0.0, time_s - 100)); };
-    const int first = FirstSaid(Watch(path, {.error = Drift(&random)}, kStands + 20, &random));
+    const int first = FirstReported(Watch(path, {.error = Drift(&random)}, kStands + 20, &random));
     EXPECT_GT(first, kStands) << "seed " << seed;
   }
 }

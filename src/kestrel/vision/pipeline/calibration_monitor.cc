@@ -87,7 +87,7 @@ void CalibrationMonitor::AddEvidence(const TargetDetection& detection) {
 // deviation.
 void CalibrationMonitor::Weigh() {
   constexpr double kKnownBySide = 2;  // numbers that a side determines; it leaves the others open
-  constexpr double kAsked = 4;
+  constexpr double kEstimated = 4;
   const Eigen::Vector4d prior = PriorInformation();
   for (int round = 0; round < kRounds; ++round) {
     Eigen::Matrix4d information = prior.asDiagonal();
@@ -104,7 +104,7 @@ void CalibrationMonitor::Weigh() {
     const Eigen::LDLT<Eigen::Matrix4d> decomposition(information);
     error_ = decomposition.solve(pull);
     const double variance = decomposition.solve(Eigen::Vector4d::UnitX())(0);
-    const double scatter = surprise / std::max(1.0, kKnownBySide * weights - kAsked);
+    const double scatter = surprise / std::max(1.0, kKnownBySide * weights - kEstimated);
     log_focal_sigma_ = std::hypot(kSharedSigma, kOfSquare * error_(0) * error_(0),
                                   std::sqrt(variance * std::max(1.0, scatter)));
   }
@@ -140,7 +140,7 @@ std::string LensWarning(const CalibrationMonitor& monitor, double focal_px) {
   if (const auto count = monitor.Misfits()) {
     return fmt::format(
         "in {} of {} frames the pattern is seen beside where pose and calibration have it "
-        "(misfit_px): lens or print are not what they are said to be; {}",
+        "(misfit_px): lens or print are not what they are configured to be; {}",
         count->misfits, count->detections, kAdvice);
   }
   return "";

@@ -9,19 +9,19 @@
 namespace kestrel {
 namespace {
 
-constexpr GroundHeight kTold{0, 0.05};
+constexpr GroundHeight kGiven{0, 0.05};
 
 using Sightings = std::vector<GroundHeight>;
 
 void UpdateTimes(int times, const Sightings& seen, GroundHeightEstimator* ground) {
-  for (int i = 0; i < times; ++i) ground->Update(kTold, seen);
+  for (int i = 0; i < times; ++i) ground->Update(kGiven, seen);
 }
 
 TEST(GroundHeightEstimator, KeepsGivenHeightThatAgreesWithSightings) {
   GroundHeightEstimator ground;
   UpdateTimes(20, {{0.1, 0.1}, {-0.2, 0.1}}, &ground);
   EXPECT_FALSE(ground.Contradiction());
-  EXPECT_EQ(ground.Estimate(kTold).height_m, kTold.height_m);
+  EXPECT_EQ(ground.Estimate(kGiven).height_m, kGiven.height_m);
 }
 
 TEST(GroundHeightEstimator, ConsistentSightingsContradictGivenHeight) {
@@ -34,25 +34,25 @@ TEST(GroundHeightEstimator, ConsistentSightingsContradictGivenHeight) {
   ASSERT_TRUE(ground.Contradiction());
   EXPECT_NEAR(ground.Contradiction()->height_m, 10, 1e-9);
   EXPECT_NEAR(ground.Contradiction()->sigma_m, 0.11, 0.01) << "no surer than one, and what is told";
-  EXPECT_NEAR(ground.Estimate(kTold).height_m, 10, 1e-9);
+  EXPECT_NEAR(ground.Estimate(kGiven).height_m, 10, 1e-9);
 }
 
 TEST(GroundHeightEstimator, WeightsHeightByVariance) {
   GroundHeightEstimator ground;
   UpdateTimes(5, {{10, 0.1}, {10.4, 0.2}}, &ground);
-  EXPECT_NEAR(ground.Estimate(kTold).height_m, 10.08, 1e-9);
+  EXPECT_NEAR(ground.Estimate(kGiven).height_m, 10.08, 1e-9);
 }
 
 TEST(GroundHeightEstimator, FramesWithoutSightingChangeNothing) {
   GroundHeightEstimator ground;
   UpdateTimes(5, {{10, 0.1}}, &ground);
   UpdateTimes(100, {}, &ground);
-  EXPECT_NEAR(ground.Estimate(kTold).height_m, 10, 1e-9);
+  EXPECT_NEAR(ground.Estimate(kGiven).height_m, 10, 1e-9);
 }
 
 TEST(GroundHeightEstimator, InconsistentSightingsDoNotContradict) {
   GroundHeightEstimator ground;
-  for (int i = 0; i < 30; ++i) ground.Update(kTold, Sightings{{1.0 + i, 0.1}});
+  for (int i = 0; i < 30; ++i) ground.Update(kGiven, Sightings{{1.0 + i, 0.1}});
   EXPECT_FALSE(ground.Contradiction());
 }
 
@@ -69,14 +69,14 @@ TEST(GroundHeightEstimator, ContradictionEndsWithItsSightings) {
   ASSERT_TRUE(ground.Contradiction());
   UpdateTimes(30, {{0, 0.1}}, &ground);
   EXPECT_FALSE(ground.Contradiction());
-  EXPECT_EQ(ground.Estimate(kTold).height_m, kTold.height_m);
+  EXPECT_EQ(ground.Estimate(kGiven).height_m, kGiven.height_m);
 }
 
 TEST(GroundHeightEstimator, IndependentFramesContradictTogether) {
   GroundHeightEstimator ground;
   for (int i = 0; i < 5; ++i) {
     ground.ForgetSightings();
-    ground.Update(kTold, Sightings{{10.0 + i, 0.1}});
+    ground.Update(kGiven, Sightings{{10.0 + i, 0.1}});
   }
   ASSERT_TRUE(ground.Contradiction());
   EXPECT_NEAR(ground.Contradiction()->height_m, 14, 1e-9) << "by the last one alone";
@@ -93,7 +93,7 @@ TEST(GroundHeightEstimator, IgnoresNonFiniteSightings) {
   GroundHeightEstimator ground;
   const double infinity = std::numeric_limits<double>::infinity();
   UpdateTimes(5, {{10, 0.1}, {infinity, 0.1}, {10, infinity}}, &ground);
-  EXPECT_NEAR(ground.Estimate(kTold).height_m, 10, 1e-9);
+  EXPECT_NEAR(ground.Estimate(kGiven).height_m, 10, 1e-9);
 }
 
 }  // namespace

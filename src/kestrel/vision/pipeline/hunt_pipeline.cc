@@ -61,7 +61,7 @@ class HuntPipeline::Impl {
   std::optional<GivenHeights> FindGivenHeights() const;
 
   void Detect(const cv::Mat& image);
-  void UpdateGround(const GivenHeights& told);
+  void UpdateGround(const GivenHeights& reported);
   void LocateInWorld();
   void UpdateMap();
   void RememberForTracking();
@@ -126,18 +126,19 @@ std::optional<HuntPipeline::Impl::GivenHeights> HuntPipeline::Impl::FindGivenHei
 
 void HuntPipeline::Impl::Detect(const cv::Mat& image) {
   ObjectHint hint;
-  std::optional<GivenHeights> told = FindGivenHeights();
+  std::optional<GivenHeights> reported = FindGivenHeights();
   if (const auto& world_from_camera = observation_.world_from_camera) {
     hint.up_in_camera = world_from_camera->rotation.conjugate() * Eigen::Vector3d::UnitZ();
     hint.up_sigma_rad = Radians(options_.attitude_sigma_deg);
-    if (!options_.is_ground_flat) told.reset();
-  } else if (told) {
+    if (!options_.is_ground_flat) reported.reset();
+  } else if (reported) {
     hint.up_in_camera = -Eigen::Vector3d::UnitZ();
     hint.up_sigma_rad = Radians(kTilt_deg);
   }
-  if (told) {
-    const GroundHeight ground = options_.still ? told->ground : ground_.Estimate(told->ground);
-    hint.camera_height_m = told->camera_m - ground.height_m;
+  if (reported) {
+    const GroundHeight ground =
+        options_.still ? reported->ground : ground_.Estimate(reported->ground);
+    hint.camera_height_m = reported->camera_m - ground.height_m;
     hint.height_sigma_m = ground.sigma_m;
   }
   hint.track = track_;
@@ -151,14 +152,14 @@ void HuntPipeline::Impl::Detect(const cv::Mat& image) {
     detector_.Detect(image, hint, workspace_, &report);
   }
   observation_.detect_time = std::chrono::steady_clock::now() - start;
-  if (told) UpdateGround(*told);
+  if (reported) UpdateGround(*reported);
 }
 
 // Objects that agree on another height of the ground overrule the given height.
-void HuntPipeline::Impl::UpdateGround(const GivenHeights& told) {
+void HuntPipeline::Impl::UpdateGround(const GivenHeights& reported) {
   ObjectReport& report = observation_.report;
   const auto ground_by = [&](const HeightBySize& height, double share) {
-    return GroundHeight{told.camera_m - height.camera_height_m,
+    return GroundHeight{reported.camera_m - height.camera_height_m,
                         std::hypot(height.sigma_m, share * height.camera_height_m)};
   };
   ground_sightings_.clear();
@@ -170,7 +171,7 @@ void HuntPipeline::Impl::UpdateGround(const GivenHeights& told) {
   }
   // For independent frames and for a flight with only a given altitude.
   if (options_.still || !observation_.world_from_camera) ground_.ForgetSightings();
-  ground_.Update(told.ground, ground_sightings_);
+  ground_.Update(reported.ground, ground_sightings_);
   const double tolerance = options_.detector.ground_tolerance / 3;
   std::erase_if(report.elsewhere, [&](const ObjectDetection& detection) {
     if (!ground_.Supports(ground_by(*detection.height, tolerance))) return false;

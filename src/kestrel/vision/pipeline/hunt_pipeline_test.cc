@@ -88,17 +88,17 @@ TEST(HuntPipeline, DiscardsWrongSizeBesideRightOnes) {
 }
 
 TEST(HuntPipeline, WrongAltitudeDoesNotHideObjects) {
-  for (const double told_m : {1.5, 6.0, 14.0}) {
+  for (const double given_m : {1.5, 6.0, 14.0}) {
     HuntPipeline pipeline(Calibration(), DefaultObjectModel(), {});
-    pipeline.SetAltitude(told_m);
+    pipeline.SetAltitude(given_m);
     const cv::Mat image = DrawDiscs({{320, 240}, {420, 140}});
     for (int i = 0; i < 10; ++i) {
       EXPECT_EQ(pipeline.ground_contradiction().has_value(), i >= 5);
       const HuntObservation& seen = pipeline.Process(image, At(i));
-      ASSERT_THAT(seen.report.detections, SizeIs(2)) << told_m << " m told, frame " << i;
+      ASSERT_THAT(seen.report.detections, SizeIs(2)) << given_m << " m told, frame " << i;
       EXPECT_NEAR(seen.report.detections[0].location->position.z(), 3.988, 0.1);
     }
-    EXPECT_NEAR(pipeline.ground_contradiction()->height_m, told_m - kHeight_m, 0.1);
+    EXPECT_NEAR(pipeline.ground_contradiction()->height_m, given_m - kHeight_m, 0.1);
   }
 }
 
@@ -145,7 +145,7 @@ TEST(HuntPipeline, AppliesClockOffsetToPoses) {
 
 // True when a yellow disc at the origin, over which the UAV flies to and fro, was ever reported as
 // moving although only the clock offset is wrong, by 60 ms.
-bool IsSaidToMove(const HuntPipelineOptions& options) {
+bool IsReportedToMove(const HuntPipelineOptions& options) {
   constexpr double kTop_m = 0.14;
   constexpr double kClockError_s = 0.06;
   const auto east = [](double time_s) { return 1.5 * std::sin(2 * time_s); };
@@ -153,23 +153,23 @@ bool IsSaidToMove(const HuntPipelineOptions& options) {
   for (int i = 0; i < 900; ++i) {
     pipeline.AddPose({At(0.01 * i + kClockError_s), Over(east(0.01 * i), 0)});
   }
-  bool is_said = false;
+  bool is_reported = false;
   for (int i = 5; i < 80; ++i) {
     const double u_px = 319.5 - east(0.1 * i) / (kHeight_m - kTop_m) * 500;
     ObjectScene scene(kHeight_m, /*tilt=*/0);
     scene.DrawDisc(scene.PointUnder({u_px, 239.5}, kTop_m), 0.1, kYellowPaint);
     pipeline.Process(scene.Image(), At(0.1 * i));
     EXPECT_THAT(pipeline.map().objects(), SizeIs(1));
-    is_said = is_said || pipeline.map().objects().front().moves;
+    is_reported = is_reported || pipeline.map().objects().front().moves;
   }
-  return is_said;
+  return is_reported;
 }
 
 TEST(HuntPipeline, WrongClockDoesNotMoveStandingObject) {
   HuntPipelineOptions options;
-  EXPECT_FALSE(IsSaidToMove(options));
+  EXPECT_FALSE(IsReportedToMove(options));
   options.map.clock_sigma_s = 0;
-  EXPECT_TRUE(IsSaidToMove(options)) << "else it proves nothing";
+  EXPECT_TRUE(IsReportedToMove(options)) << "else it proves nothing";
 }
 
 TEST(HuntPipeline, TracksGivenCountAndSearchesWhenOneIsLost) {

@@ -10,7 +10,7 @@
 #include "kestrel/core/base/options.h"
 #include "kestrel/vision/pipeline/calibration_monitor.h"
 #include "kestrel/vision/pipeline/camera_poses.h"
-#include "kestrel/vision/pipeline/told_contradictions.h"
+#include "kestrel/vision/pipeline/input_contradictions.h"
 #include "kestrel/vision/pipeline/world_location.h"
 
 namespace kestrel {
@@ -55,7 +55,7 @@ class LandingPipeline::Impl {
   void ChangeOptions(const LandingPipelineOptions& options);
   LandingObservation Process(const cv::Mat& image, Time time);
 
-  const ToldContradictions& contradictions() const { return contradictions_; }
+  const InputContradictions& contradictions() const { return contradictions_; }
   const CalibrationMonitor& calibration_monitor() const { return calibration_monitor_; }
   const TargetTracker& tracker() const { return tracker_; }
   const TargetDetector& detector() const { return *detector_; }
@@ -112,7 +112,7 @@ class LandingPipeline::Impl {
   std::optional<Heading> heading_;
   int next_step_ = 0;  // step at which the search of the last frame ran out of time
   double max_search_ms_ = 0;
-  ToldContradictions contradictions_;
+  InputContradictions contradictions_;
   CalibrationMonitor calibration_monitor_;
 };
 
@@ -182,11 +182,11 @@ LandingObservation LandingPipeline::Impl::Process(const cv::Mat& image, Time tim
 }
 
 void LandingPipeline::Impl::Detect(const cv::Mat& image, LandingObservation* observation) {
-  const GivenView told = GivenViewOf(*observation);
+  const GivenView reported = GivenViewOf(*observation);
   TargetHint hint;
   const double excess_m = AltitudeExcess();
-  if (told.altitude_m > excess_m) hint.altitude_m = *told.altitude_m - excess_m;
-  hint.up_in_camera = told.up_in_camera;
+  if (reported.altitude_m > excess_m) hint.altitude_m = *reported.altitude_m - excess_m;
+  hint.up_in_camera = reported.up_in_camera;
   if (!options_.still) {
     AddTrack(*observation, &hint);
     AddLastSighting(*observation, &hint);
@@ -199,7 +199,7 @@ void LandingPipeline::Impl::Detect(const cv::Mat& image, LandingObservation* obs
   next_step_ = observation->report.diagnostics.next_step;
   auto& detection = observation->report.detection;
   if (!detection) return;
-  contradictions_.Add(told, *detection);
+  contradictions_.Add(reported, *detection);
   calibration_monitor_.Add(*detection);
   if (!options_.still) AddErrorOfFocalLength(&*detection);
 }
@@ -223,12 +223,12 @@ void LandingPipeline::Impl::AddErrorOfFocalLength(TargetDetection* detection) co
 GivenView LandingPipeline::Impl::GivenViewOf(const LandingObservation& observation) const {
   const auto& world_from_camera = observation.world_from_camera;
   if (!world_from_camera) return {altitude_m_, {}};
-  GivenView told;
+  GivenView reported;
   if (options_.altitude_hint) {
-    told.altitude_m = world_from_camera->translation.z() - options_.target_height_m;
+    reported.altitude_m = world_from_camera->translation.z() - options_.target_height_m;
   }
-  told.up_in_camera = world_from_camera->rotation.conjugate() * Eigen::Vector3d::UnitZ();
-  return told;
+  reported.up_in_camera = world_from_camera->rotation.conjugate() * Eigen::Vector3d::UnitZ();
+  return reported;
 }
 
 void LandingPipeline::Impl::AddTrack(const LandingObservation& observation,
@@ -368,7 +368,7 @@ void LandingPipeline::ChangeOptions(const LandingPipelineOptions& options) {
 LandingObservation LandingPipeline::Process(const cv::Mat& image, Time time) {
   return impl_->Process(image, time);
 }
-const ToldContradictions& LandingPipeline::contradictions() const {
+const InputContradictions& LandingPipeline::contradictions() const {
   return impl_->contradictions();
 }
 const CalibrationMonitor& LandingPipeline::calibration_monitor() const {

@@ -25,7 +25,7 @@
 namespace kestrel {
 
 class CalibrationMonitor;
-class ToldContradictions;
+class InputContradictions;
 
 struct LandingPipelineOptions {
   // Growth of the hint's uncertainty with the age of the last detection, where there are no poses.
@@ -154,7 +154,7 @@ class LandingPipeline {
   LandingObservation Process(const cv::Mat& image, Time time);
 
   // Contradictions between the detections and the given height and attitude.
-  const ToldContradictions& contradictions() const;
+  const InputContradictions& contradictions() const;
 
   // Evidence of the detections about the calibration.
   const CalibrationMonitor& calibration_monitor() const;

@@ -15,8 +15,8 @@
 #include "kestrel/core/base/options.h"
 #include "kestrel/core/geometry/test_rotation.h"
 #include "kestrel/vision/pipeline/calibration_monitor.h"
+#include "kestrel/vision/pipeline/input_contradictions.h"
 #include "kestrel/vision/pipeline/test_pattern.h"
-#include "kestrel/vision/pipeline/told_contradictions.h"
 #include "kestrel/vision/tags/test_tag_images.h"
 
 namespace kestrel {
@@ -257,9 +257,9 @@ TEST_F(LandingPipelineTest, WrongNavigationAltitudeIsReportedAndHidesNothing) {
     for (int i = 0; i < 12; ++i) {
       const Time time = kTime + i * DurationFromSeconds(0.1);
       world_from_body_.translation.x() = 10 + 0.05 * i;
-      RigidTransform told = world_from_body_;
-      told.translation.z() += excess_m;
-      pipeline.AddPose({time, told});
+      RigidTransform reported = world_from_body_;
+      reported.translation.z() += excess_m;
+      pipeline.AddPose({time, reported});
       EXPECT_TRUE(pipeline.Process(Draw(), time).center_in_world) << excess_m << ", frame " << i;
     }
     EXPECT_FALSE(pipeline.contradictions().Attitude());
@@ -302,12 +302,12 @@ TEST_F(LandingPipelineTest, LocatesByAltitudeForAnyWorldOrigin) {
   options_.position_by_altitude = true;
   LandingPipeline pipeline(calibration_, options_);
   const cv::Mat image = Draw();
-  RigidTransform told = world_from_body_;
-  told.translation.z() += 100;
+  RigidTransform reported = world_from_body_;
+  reported.translation.z() += 100;
   LandingObservation observation;
   for (int i = 0; i < 12; ++i) {
     const Time time = kTime + i * DurationFromSeconds(0.1);
-    pipeline.AddPose({time, told});
+    pipeline.AddPose({time, reported});
     observation = pipeline.Process(image, time);
   }
   ASSERT_TRUE(observation.center_in_world);
@@ -377,10 +377,10 @@ TEST_F(LandingPipelineTest, ReportsOtherLensWithinThirtyFrames) {
     }
     EXPECT_NE(LensWarning(other_center.calibration_monitor(), kFocal_px), "") << seed;
     for (const LandingPipeline& pipeline : wrong) {
-      const double told_px = pipeline.detector().camera().intrinsics().fx_px;
+      const double given_px = pipeline.detector().camera().intrinsics().fx_px;
       const auto focal = pipeline.calibration_monitor().Contradiction();
-      ASSERT_TRUE(focal) << seed << " " << told_px;
-      EXPECT_NEAR(focal->factor * told_px, kFocal_px, 3 * focal->sigma * told_px) << seed;
+      ASSERT_TRUE(focal) << seed << " " << given_px;
+      EXPECT_NEAR(focal->factor * given_px, kFocal_px, 3 * focal->sigma * given_px) << seed;
       EXPECT_LT(focal->sigma, 0.07) << seed;
     }
   }

@@ -16,7 +16,7 @@ constexpr Duration kCalibrationInterval = std::chrono::milliseconds(250);
 
 CalibrationPage::CalibrationPage(Tools tools, std::size_t frames, ConsoleFeed* feed)
     : tools_(std::move(tools)), frames_(frames), feed_(feed) {
-  Tell();
+  Notify();
 }
 
 void CalibrationPage::Obey(const ConsoleCommand& command) {
@@ -25,7 +25,7 @@ void CalibrationPage::Obey(const ConsoleCommand& command) {
   if (command.kind != ConsoleCommandKind::kCalibrateCancel || !run_.is_running()) return;
   run_.RequestEnd();
   report_.is_ending = true;
-  Tell();
+  Notify();
 }
 
 void CalibrationPage::Start(const std::vector<std::string>& words) {
@@ -34,7 +34,7 @@ void CalibrationPage::Start(const std::vector<std::string>& words) {
   const std::size_t number = report_.number + 1;
   report_ = {};
   report_.number = number;
-  report_.asked = words;
+  report_.requested = words;
   report_.of = frames_;
   try {
     request_ = ParseCalibrationRequest(words);
@@ -45,12 +45,12 @@ void CalibrationPage::Start(const std::vector<std::string>& words) {
   run_.Start("calibration", [this, request = request_](const Run::GoOn& go_on) {
     return tools_.calibrate(request, go_on);
   });
-  Tell();
+  Notify();
 }
 
 void CalibrationPage::Follow() {
   if (auto outcome = run_.TakeOutcome()) return End(*std::move(outcome));
-  if (run_.is_running() && Now() - told_ > kCalibrationInterval) Tell();
+  if (run_.is_running() && Now() - reported_ > kCalibrationInterval) Notify();
 }
 
 void CalibrationPage::End(Run::Outcome outcome) {
@@ -58,11 +58,11 @@ void CalibrationPage::End(Run::Outcome outcome) {
   if (!outcome.error.empty()) return Refuse(outcome.error);
   if (!outcome.result) {
     report_.state = CalibrationState::kCancelled;
-    return Tell();
+    return Notify();
   }
   ConsoleCalibration& found = outcome.result->report;
   found.number = report_.number;
-  found.asked = report_.asked;
+  found.requested = report_.requested;
   found.done = found.of = frames_;
   report_ = std::move(found);
   if (report_.error.empty()) {
@@ -71,13 +71,13 @@ void CalibrationPage::End(Run::Outcome outcome) {
   } else {
     report_.state = CalibrationState::kRefused;
   }
-  Tell();
+  Notify();
 }
 
 void CalibrationPage::Refuse(const std::string& error) {
   report_.state = CalibrationState::kRefused;
   report_.error = error;
-  Tell();
+  Notify();
 }
 
 void CalibrationPage::Save() {
@@ -88,7 +88,7 @@ void CalibrationPage::Save() {
   } catch (const InputError& error) {
     report_.save_error = error.what();
   }
-  Tell();
+  Notify();
 }
 
 ExportAnswer CalibrationPage::File(std::size_t number) const {
@@ -97,8 +97,8 @@ ExportAnswer CalibrationPage::File(std::size_t number) const {
           request_.Name() + ".yaml"};
 }
 
-void CalibrationPage::Tell() {
-  told_ = Now();
+void CalibrationPage::Notify() {
+  reported_ = Now();
   report_.can_save = tools_.save != nullptr && report_.no_use.empty();
   if (report_.state == CalibrationState::kRunning) report_.done = run_.done();
   feed_->Add(report_);

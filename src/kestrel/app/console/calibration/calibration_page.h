@@ -50,12 +50,12 @@ class CalibrationPage {
   void End(Run::Outcome outcome);
   void Save();
   void Refuse(const std::string& error);
-  void Tell();
+  void Notify();
 
   Tools tools_;
   std::size_t frames_;
   ConsoleFeed* feed_;
-  Time told_{};
+  Time reported_{};
   ConsoleCalibration report_;
   CalibrationRequest request_;
   std::optional<CalibrationResult> result_;  // result of calibration report_.number

@@ -45,10 +45,10 @@ CameraConsole::CameraConsole(const std::optional<ConsoleOptions>& page, Camera c
       feed_(DescriptionOf(camera_.name)),
       lens_({camera_.name, folder, detector}, &feed_),
       source_(camera_.source),
-      told_{.state = "opening", .reason = "waits for the first picture"},
+      reported_{.state = "opening", .reason = "waits for the first picture"},
       measured_(Now()) {
   if (page) server_.emplace(ServeConsole(*page, &feed_));
-  feed_.Add(told_);
+  feed_.Add(reported_);
 }
 
 void CameraConsole::Play(const std::function<bool()>& is_stopped) {
@@ -68,14 +68,14 @@ void CameraConsole::Play(const std::function<bool()>& is_stopped) {
 void CameraConsole::Obey(const ConsoleCommand& command) {
   try {
     if (command.kind == ConsoleCommandKind::kRecord) {
-      Say(EventLevel::kInfo, camera_.record(command.value != 0));
+      Report(EventLevel::kInfo, camera_.record(command.value != 0));
     } else if (command.kind == ConsoleCommandKind::kSnapshot) {
-      Say(EventLevel::kInfo, Snapshot());
+      Report(EventLevel::kInfo, Snapshot());
     } else {
       lens_.Obey(command);
     }
   } catch (const InputError& error) {
-    Say(EventLevel::kError, error.what());
+    Report(EventLevel::kError, error.what());
   }
 }
 
@@ -144,7 +144,7 @@ void CameraConsole::ReportAge() {
 void CameraConsole::SetFault(const std::string& fault) {
   if (fault == fault_) return;
   fault_ = fault;
-  if (!fault.empty()) camera_.tell("trying again: " + fault);
+  if (!fault.empty()) camera_.notify("trying again: " + fault);
 }
 
 void CameraConsole::ReportState() {
@@ -152,8 +152,8 @@ void CameraConsole::ReportState() {
   const ViewStatus status{.state = fault_.empty() ? "live" : "no picture",
                           .reason = fault_.empty() ? "" : "trying again: " + fault_,
                           .is_recording = camera_.is_recording()};
-  if (status == told_) return;
-  told_ = status;
+  if (status == reported_) return;
+  reported_ = status;
   feed_.Add(status);
 }
 

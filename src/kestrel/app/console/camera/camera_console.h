@@ -35,7 +35,7 @@ class CameraConsole {
     std::function<std::string(bool is_on)> record;
     std::function<bool()> is_recording;
     // Called with each new fault of the camera.
-    std::function<void(const std::string& fault)> tell;
+    std::function<void(const std::string& fault)> notify;
   };
 
   // Starts the server; without 'page' there is none. Throws InputError as WebServer does.
@@ -51,7 +51,7 @@ class CameraConsole {
   void Play(const std::function<bool()>& is_stopped);
 
   // Shows an event. Any thread.
-  void Say(EventLevel level, const std::string& text) {
+  void Report(EventLevel level, const std::string& text) {
     feed_.Add(SessionEvent{Now(), level, text});
   }
 
@@ -72,9 +72,9 @@ class CameraConsole {
   LensPage lens_;
   LiveSource* source_;  // null: to be opened
   Time next_attempt_{};
-  std::string fault_;   // fault of the camera; empty: none
-  ViewStatus told_;     // the last status that the page got
-  ConsoleFrame frame_;  // the newest
+  std::string fault_;    // fault of the camera; empty: none
+  ViewStatus reported_;  // the last status that the page got
+  ConsoleFrame frame_;   // the newest
   Time measured_{}, aged_{};
   int frames_ = 0;  // since then
   double best_sharpness_ = 0;

@@ -65,7 +65,7 @@ class CameraConsoleTest : public ::testing::Test {
       return is_on ? "recording" : "recorded";
     };
     camera.is_recording = [this] { return is_recording_; };
-    camera.tell = [](const std::string&) {};
+    camera.notify = [](const std::string&) {};
     console_.emplace(AnyPort(), camera, folder_.path(), LandingPatternDetectorOptions());
     thread_ = std::thread([this] { console_->Play([this] { return is_stopped_.load(); }); });
   }

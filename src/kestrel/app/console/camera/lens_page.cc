@@ -55,7 +55,7 @@ std::string ShellWord(const std::string& word) {
 
 LensPage::LensPage(Options options, ConsoleFeed* feed) : options_(std::move(options)), feed_(feed) {
   state_.folder = std::filesystem::absolute(options_.folder).lexically_normal().string();
-  Tell();
+  Notify();
 }
 
 void LensPage::Obey(const ConsoleCommand& command) {
@@ -83,7 +83,7 @@ void LensPage::Begin(const std::vector<std::string>& words) {
   } catch (const InputError& error) {
     state_.error = error.what();
   }
-  Tell();
+  Notify();
 }
 
 void LensPage::Stop() {
@@ -92,7 +92,7 @@ void LensPage::Stop() {
   shapes_.clear();
   if (!state_.is_running) return;
   state_.is_running = false;
-  Tell();
+  Notify();
 }
 
 void LensPage::Look(const cv::Mat& gray, Time captured) {
@@ -127,7 +127,7 @@ void LensPage::TakeSight(std::optional<LensView> view) {
     camera_ = guesses[guess_];
   }
   if (guide_->Look(std::move(view), searched_, camera_)) Estimate();
-  Tell();
+  Notify();
 }
 
 void LensPage::Estimate() {
@@ -157,7 +157,7 @@ void LensPage::TakeEstimate(BackgroundRun<LensCalibration>::Outcome outcome) {
                      sigma_px <= kGoodFocalSigma * camera_.fx_px;
   }
   Estimate();
-  Tell();
+  Notify();
 }
 
 // 'words': the file's name, and "replace" where an existing one may be replaced.
@@ -184,10 +184,10 @@ void LensPage::Save(const std::vector<std::string>& words) {
   } catch (const std::filesystem::filesystem_error& error) {
     state_.save_error = error.what();
   }
-  Tell();
+  Notify();
 }
 
-void LensPage::Tell() {
+void LensPage::Notify() {
   if (guide_ && state_.is_running) {
     const LensVariety& variety = guide_->variety();
     state_.advice = guide_->Advice();

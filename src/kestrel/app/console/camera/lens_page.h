@@ -47,7 +47,7 @@ class LensPage {
   void TakeSight(std::optional<LensView> view);
   void Estimate();
   void TakeEstimate(BackgroundRun<LensCalibration>::Outcome outcome);
-  void Tell();
+  void Notify();
 
   Options options_;
   ConsoleFeed* feed_;

@@ -36,7 +36,7 @@ ColorPage::~ColorPage() {
 void ColorPage::Serve() {
   SetUpThisThread("colors", {});
   if (session_.is_live()) BeNice(kFlightsPageNiceness);
-  Tell();
+  Notify();
   while (!is_stopped_) {
     const auto job = feed_->TakeColorJob(kJobPatience);
     if (!job) continue;
@@ -44,12 +44,12 @@ void ColorPage::Serve() {
       pending->answer(session_.Answer(pending->request));
     } else {
       session_.Obey(std::get<ColorRequest>(*job));
-      Tell();
+      Notify();
     }
   }
 }
 
-void ColorPage::Tell() {
+void ColorPage::Notify() {
   const ConsoleColors& state = session_.state();
   feed_->Add(state);
   const ColorEditor& editor = session_.editor();

@@ -36,7 +36,7 @@ class ColorPage {
 
   void Serve();
   void Score();
-  void Tell();
+  void Notify();
 
   ConsoleFeed* feed_;
   ColorSession session_;  // used by the thread of Serve only

@@ -60,7 +60,7 @@ class ColorPageTest : public testing::Test {
     return options;
   }
   // Sends a message and returns the state of the page after it.
-  static nlohmann::json Ask(TestSocket* socket, const std::string& message) {
+  static nlohmann::json Request(TestSocket* socket, const std::string& message) {
     socket->Send(message);
     return socket->Next("colors").value_or(nlohmann::json());
   }
@@ -97,16 +97,16 @@ TEST_F(ColorPageTest, MarksTeachesShowsAndSavesColour) {
   nlohmann::json state = socket.Next("colors").value_or(nlohmann::json());
   EXPECT_EQ(state["names"][3], "green");
   EXPECT_EQ(state["strokes"], 0);
-  EXPECT_EQ(Ask(&socket, R"({"colors": "choose", "color": "green"})")["color"], "green");
-  state = Ask(&socket, kMarkPurple);
+  EXPECT_EQ(Request(&socket, R"({"colors": "choose", "color": "green"})")["color"], "green");
+  state = Request(&socket, kMarkPurple);
   EXPECT_EQ(state["strokes"], 1);
   EXPECT_EQ(state["marked"], nlohmann::json::array({0}));
-  EXPECT_EQ(Ask(&socket, kMarkGround)["strokes"], 2);
+  EXPECT_EQ(Request(&socket, kMarkGround)["strokes"], 2);
   auto [labels, marks] = Labels(0);
   EXPECT_EQ(labels(30, 50), 0) << "not taught";
   EXPECT_EQ(marks(30, 50), 4) << "green is the fourth";
   EXPECT_EQ(marks(5, 5), 255) << "marked as none of the colours";
-  state = Ask(&socket, R"({"colors": "teach", "color": "green"})");
+  state = Request(&socket, R"({"colors": "teach", "color": "green"})");
   EXPECT_FALSE(state["refused"]) << state["answer"];
   EXPECT_THAT(state["difference"].dump(), HasSubstr("name: green"));
   EXPECT_EQ(Labels(0)[0](30, 50), 4);
@@ -119,7 +119,7 @@ TEST_F(ColorPageTest, MarksTeachesShowsAndSavesColour) {
   EXPECT_EQ(scores["wanted"], 900);
   EXPECT_EQ(scores["recall"], 1);
   EXPECT_EQ(scores["false_share"], 0);
-  state = Ask(&socket, R"({"colors": "save"})");
+  state = Request(&socket, R"({"colors": "save"})");
   EXPECT_TRUE(state["difference"].empty());
   const ObjectModel saved = ReadObjectModel(folder_ + "/objects.yaml");
   EXPECT_EQ(saved.colors.Classify(HsvFromBgr(kPurple[0], kPurple[1], kPurple[2])), 3U);
@@ -129,15 +129,16 @@ TEST_F(ColorPageTest, RestoresDraftWithoutUndoneStrokes) {
   {
     TestSocket socket(server_.port());
     ASSERT_TRUE(socket.Next("colors"));
-    Ask(&socket, kMarkPurple);
-    Ask(&socket, kMarkGround);
-    EXPECT_TRUE(Ask(&socket, R"({"colors": "undo"})")["can_redo"]);
+    Request(&socket, kMarkPurple);
+    Request(&socket, kMarkGround);
+    EXPECT_TRUE(Request(&socket, R"({"colors": "undo"})")["can_redo"]);
   }
   TestSocket second(server_.port());
   EXPECT_EQ(second.Next("colors").value_or(nlohmann::json())["strokes"], 1) << "another browser";
   page_.reset();
   page_ = std::make_unique<ColorPage>(Source(), &feed_);
-  EXPECT_EQ(Ask(&second, R"({"colors": "redo"})")["strokes"], 1) << "another run of the program";
+  EXPECT_EQ(Request(&second, R"({"colors": "redo"})")["strokes"], 1)
+      << "another run of the program";
   // Another recording in the same folder has another draft.
   page_.reset();
   ColorSource other = Source();
@@ -150,16 +151,18 @@ TEST_F(ColorPageTest, RestoresDraftWithoutUndoneStrokes) {
 TEST_F(ColorPageTest, RefusedRequestIsReportedAndChangesNothing) {
   TestSocket socket(server_.port());
   ASSERT_TRUE(socket.Next("colors"));
-  nlohmann::json state = Ask(&socket, R"({"colors": "teach", "color": "green"})");
+  nlohmann::json state = Request(&socket, R"({"colors": "teach", "color": "green"})");
   EXPECT_TRUE(state["refused"]);
   EXPECT_THAT(state["answer"].get<std::string>(), HasSubstr("expected at least 10"));
-  state = Ask(&socket, R"({"colors": "choose", "color": "pink"})");
+  state = Request(&socket, R"({"colors": "choose", "color": "pink"})");
   EXPECT_THAT(state["answer"].get<std::string>(), HasSubstr("'pink' is none"));
-  state = Ask(&socket, R"({"colors": "mark", "frame": 3, "color": "", "tool": "grow", "size": 8,)"
+  state =
+      Request(&socket, R"({"colors": "mark", "frame": 3, "color": "", "tool": "grow", "size": 8,)"
                        R"( "points": [1, 1]})");
   EXPECT_THAT(state["answer"].get<std::string>(), HasSubstr("frame 3 is marked, expected 0 to 2"));
   missing_ = 2;
-  state = Ask(&socket, R"({"colors": "mark", "frame": 2, "color": "", "tool": "grow", "size": 8,)"
+  state =
+      Request(&socket, R"({"colors": "mark", "frame": 2, "color": "", "tool": "grow", "size": 8,)"
                        R"( "points": [1, 1]})");
   EXPECT_EQ(state["answer"], "frame2.png: no such file");
   EXPECT_EQ(state["strokes"], 0);
@@ -171,14 +174,14 @@ TEST_F(ColorPageTest, RefusedRequestIsReportedAndChangesNothing) {
 TEST_F(ColorPageTest, KeepsVersionsWhenRevertedAndSavedAgain) {
   TestSocket socket(server_.port());
   ASSERT_TRUE(socket.Next("colors"));
-  Ask(&socket, R"({"colors": "save"})");
-  Ask(&socket, kMarkPurple);
-  Ask(&socket, R"({"colors": "teach", "color": "green"})");
-  nlohmann::json state = Ask(&socket, R"({"colors": "revert"})");
+  Request(&socket, R"({"colors": "save"})");
+  Request(&socket, kMarkPurple);
+  Request(&socket, R"({"colors": "teach", "color": "green"})");
+  nlohmann::json state = Request(&socket, R"({"colors": "revert"})");
   EXPECT_TRUE(state["difference"].empty());
   EXPECT_EQ(Labels(0)[0](30, 50), 0);
-  Ask(&socket, R"({"colors": "teach", "color": "green"})");
-  state = Ask(&socket, R"({"colors": "save"})");
+  Request(&socket, R"({"colors": "teach", "color": "green"})");
+  state = Request(&socket, R"({"colors": "save"})");
   EXPECT_EQ(state["versions"].size(), 1U);
   EXPECT_EQ(ReadFile(folder_ + "/objects.yaml.1"), PrintObjectModel(DefaultObjectModel()));
 }
@@ -196,7 +199,7 @@ TEST_F(ColorPageTest, SendsPicturesOfFrameInColour) {
 TEST_F(ColorPageTest, KeepsNoFrameOfRecording) {
   TestSocket socket(server_.port());
   EXPECT_EQ((*socket.Next("colors"))["most_kept"], 0);
-  const nlohmann::json state = Ask(&socket, R"({"colors": "keep"})");
+  const nlohmann::json state = Request(&socket, R"({"colors": "keep"})");
   EXPECT_TRUE(state["refused"]);
   EXPECT_EQ(state["frames"], kPictures);
 }
@@ -218,16 +221,16 @@ TEST_F(ColorPageTest, KeepsAndMarksFramesOfCamera) {
   EXPECT_EQ(state["frames"], 0);
   EXPECT_EQ(state["most_kept"], 32);
   EXPECT_THAT(state["warnings"].dump(), HasSubstr("the white balance is automatic"));
-  EXPECT_EQ(Ask(&socket, kMarkPurple)["answer"], "there is no frame to be marked");
-  state = Ask(&socket, R"({"colors": "keep"})");
+  EXPECT_EQ(Request(&socket, kMarkPurple)["answer"], "there is no frame to be marked");
+  state = Request(&socket, R"({"colors": "keep"})");
   EXPECT_EQ(state["frames"], 1);
   EXPECT_EQ(state["answer"], "frame 1 is kept");
-  EXPECT_EQ(Ask(&socket, R"({"colors": "keep"})")["frames"], 2);
-  state = Ask(&socket, R"({"colors": "keep"})");
+  EXPECT_EQ(Request(&socket, R"({"colors": "keep"})")["frames"], 2);
+  state = Request(&socket, R"({"colors": "keep"})");
   EXPECT_TRUE(state["refused"]);
   EXPECT_EQ(state["frames"], 2);
-  EXPECT_EQ(Ask(&socket, kMarkPurple)["strokes"], 1);
-  EXPECT_FALSE(Ask(&socket, R"({"colors": "teach", "color": "green"})")["refused"]);
+  EXPECT_EQ(Request(&socket, kMarkPurple)["strokes"], 1);
+  EXPECT_FALSE(Request(&socket, R"({"colors": "teach", "color": "green"})")["refused"]);
   EXPECT_EQ(Labels(1)[0](30, 50), 4) << "seen in a frame that was not marked";
   page_.reset();  // before the variables that its functions use
 }

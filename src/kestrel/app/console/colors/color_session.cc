@@ -65,7 +65,7 @@ ColorSession::ColorSession(ColorSource source)
     editor_.Restore(ParseColorDraft(ReadFile(draft_file_), source_.recording, draft_file_));
     state_.answer = "goes on with the draft in " + draft_file_;
   }
-  Tell();
+  Notify();
 }
 
 void ColorSession::Obey(const ColorRequest& request) {
@@ -78,7 +78,7 @@ void ColorSession::Obey(const ColorRequest& request) {
     state_.is_refused = true;
   }
   if (request.action != ColorAction::kChoose) ++state_.revision;
-  Tell();
+  Notify();
 }
 
 void ColorSession::Do(const ColorRequest& request) {
@@ -140,7 +140,7 @@ void ColorSession::KeepDraft() const {
 }
 
 // Updates all of the state after a request.
-void ColorSession::Tell() {
+void ColorSession::Notify() {
   state_.frames = source_.frame_count;
   std::set<std::size_t> marked;
   for (const ColorStroke& stroke : editor_.draft().strokes()) marked.insert(stroke.frame);

@@ -58,7 +58,7 @@ class ColorSession {
   void Save();
   void LookAtFile();
   void KeepDraft() const;
-  void Tell();
+  void Notify();
   const cv::Mat& Image(std::size_t frame);
 
   ColorSource source_;

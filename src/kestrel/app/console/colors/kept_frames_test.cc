@@ -32,8 +32,8 @@ class KeptFramesTest : public testing::Test {
 
 TEST_F(KeptFramesTest, KeepsFramesLosslesslyInOrder) {
   EXPECT_FALSE(fs::exists(folder_)) << "nothing is kept yet";
-  const std::string said = kept_.Keep(Image(3), TimeFromNanoseconds(77));
-  EXPECT_THAT(said, HasSubstr("frame 1 is kept as "));
+  const std::string reported = kept_.Keep(Image(3), TimeFromNanoseconds(77));
+  EXPECT_THAT(reported, HasSubstr("frame 1 is kept as "));
   EXPECT_TRUE(fs::exists(folder_ / "01_77.png"));
   kept_.Keep(Image(4), TimeFromNanoseconds(12));  // a camera's clock may be set back
   EXPECT_EQ(cv::norm(kept_.Read(0), Image(3), cv::NORM_INF), 0);

@@ -101,15 +101,15 @@ class FlightConsole::Page : public SinkWriter {
 
   void ShowStatus() {
     const ViewStatus status = FlightStatus(report_, vision_);
-    if (status == told_) return;
-    told_ = status;
+    if (status == reported_) return;
+    reported_ = status;
     feed_.Add(status);
   }
 
   void ShowVehicle() {
     const auto vehicle = VehicleOf(report_);
-    if (!vehicle || *vehicle == told_vehicle_) return;
-    told_vehicle_ = *vehicle;
+    if (!vehicle || *vehicle == reported_vehicle_) return;
+    reported_vehicle_ = *vehicle;
     feed_.Add(*vehicle);
   }
 
@@ -135,8 +135,8 @@ class FlightConsole::Page : public SinkWriter {
   SourceWatch sources_;
   FlightReport report_;  // the newest
   ViewStatus vision_;    // status from the newest frame
-  ViewStatus told_;      // the last status that the page got
-  ConsoleVehicle told_vehicle_;
+  ViewStatus reported_;  // the last status that the page got
+  ConsoleVehicle reported_vehicle_;
 };
 
 FlightConsole::FlightConsole(const ConsoleOptions& options, const std::string& title,
@@ -147,9 +147,9 @@ FlightConsole::FlightConsole(const ConsoleOptions& options, const std::string& t
       server_(ServeConsole(options, &feed_, WebAssets(), channels)),
       pictures_({.thread_name = "console frames",
                  .frames = kFrames,
-                 .tell =
+                 .notify =
                      [this](const std::string& error) {
-                       Say(EventLevel::kError, "this page shows no more frames: " + error);
+                       Report(EventLevel::kError, "this page shows no more frames: " + error);
                      }},
                 std::make_unique<Page>(this, view, std::move(examination))) {
   if (colors) TeachColors(*colors, view);
@@ -211,23 +211,23 @@ void FlightConsole::Answer(FlightRequests requests) {
 void FlightConsole::Answer(const FlightRequests& requests, const ConsoleCommand& command) {
   try {
     if (command.kind == ConsoleCommandKind::kRecord) {
-      Say(EventLevel::kInfo, requests.record(command.value != 0));
+      Report(EventLevel::kInfo, requests.record(command.value != 0));
     } else if (command.kind == ConsoleCommandKind::kSnapshot) {
       KeepSnapshot(requests);
     } else if (command.kind == ConsoleCommandKind::kSettings) {
       feed_.Add(requests.settings(command.settings));
     }
   } catch (const InputError& error) {
-    Say(EventLevel::kError, error.what());
+    Report(EventLevel::kError, error.what());
   }
 }
 
 void FlightConsole::KeepSnapshot(const FlightRequests& requests) {
   const Image newest = Newest();
   if (newest.image.empty()) {
-    return Say(EventLevel::kWarning, "no snapshot: there is no image yet");
+    return Report(EventLevel::kWarning, "no snapshot: there is no image yet");
   }
-  Say(EventLevel::kInfo, requests.keep_snapshot(newest.image, newest.captured));
+  Report(EventLevel::kInfo, requests.keep_snapshot(newest.image, newest.captured));
 }
 
 FlightConsole::Image FlightConsole::Newest() {

@@ -86,7 +86,7 @@ class FlightConsole : public ObservationSink {
   Image Newest();
   void Answer(const FlightRequests& requests, const ConsoleCommand& command);
   void KeepSnapshot(const FlightRequests& requests);
-  void Say(EventLevel level, const std::string& text) {
+  void Report(EventLevel level, const std::string& text) {
     feed_.Add(SessionEvent{Now(), level, text});
   }
 

@@ -199,12 +199,12 @@ TEST(HuntConsoleTest, KeepsFramesAndTeachesColours) {
     EXPECT_EQ((*hello)["colors"], true);
     EXPECT_EQ((*hello)["exports"], false);
     EXPECT_EQ((*hello)["views"], nlohmann::json{"segmentation"});
-    const auto ask = [&](const std::string& message) {
+    const auto request = [&](const std::string& message) {
       socket.Send(message);
       return socket.Next("colors").value_or(nlohmann::json());
     };
     ASSERT_TRUE(socket.Next("colors"));
-    EXPECT_THAT(ask(R"({"colors": "keep"})")["answer"].get<std::string>(),
+    EXPECT_THAT(request(R"({"colors": "keep"})")["answer"].get<std::string>(),
                 testing::HasSubstr("there is no image yet"));
     const Frame frame = ColorFrame();
     console.Take(Observation{frame, HuntObservation()});
@@ -212,17 +212,17 @@ TEST(HuntConsoleTest, KeepsFramesAndTeachesColours) {
     const auto image = socket.Next("image");
     ASSERT_TRUE(image);
     EXPECT_EQ((*image)["view"], "segmentation");
-    EXPECT_EQ(ask(R"({"colors": "keep"})")["frames"], 1);
-    const auto state = ask(
+    EXPECT_EQ(request(R"({"colors": "keep"})")["frames"], 1);
+    const auto state = request(
         R"({"colors": "mark", "frame": 0, "color": "green", "tool": "grow", "size": 8, "points": [120, 120]})");
     EXPECT_EQ(state["strokes"], 1) << state["answer"];
-    EXPECT_EQ(ask(R"({"colors": "teach", "color": "green"})")["answer"], "taught green");
+    EXPECT_EQ(request(R"({"colors": "teach", "color": "green"})")["answer"], "taught green");
     TestBrowser browser(PortOf(console));
     EXPECT_EQ(browser.Send(browser.Get("/export/labels-0.bin")).result_int(), 200u);
     TestBrowser other(PortOf(console));
     EXPECT_EQ(other.Send(other.Get("/export/frame-0.png")).result_int(), 404u)
         << "a flight has no other exports";
-    EXPECT_FALSE(ask(R"({"colors": "save"})")["refused"]);
+    EXPECT_FALSE(request(R"({"colors": "save"})")["refused"]);
     const std::string file =
         (folder / "colors" / fmt::format("01_{}.png", ToNanoseconds(frame.time))).string();
     EXPECT_EQ(cv::norm(ReadImage(file, PixelFormat::kBgr), frame.image, cv::NORM_INF), 0);

@@ -65,7 +65,7 @@ Json CalibrationJson(const ConsoleCalibration& calibration) {
   return {{"kind", "calibration"},
           {"state", kStates[static_cast<int>(calibration.state)]},
           {"number", calibration.number},
-          {"asked", calibration.asked},
+          {"asked", calibration.requested},
           {"done", calibration.done},
           {"of", calibration.of},
           {"ending", calibration.is_ending},

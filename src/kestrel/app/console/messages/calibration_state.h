@@ -34,7 +34,7 @@ enum class CalibrationState { kNone, kRunning, kDone, kCancelled, kRefused };
 struct ConsoleCalibration {
   CalibrationState state = CalibrationState::kNone;
   std::size_t number = 0;  // number of the calibration, from 1
-  std::vector<std::string> asked;
+  std::vector<std::string> requested;
   std::size_t done = 0;  // images done
   std::size_t of = 0;
   bool is_ending = false;  // it was cancelled during a step that takes a while

@@ -28,7 +28,7 @@ void ConsoleFeed::Export(PendingExport pending) {
   }
 }
 
-void ConsoleFeed::Ask(const ColorRequest& request) {
+void ConsoleFeed::Request(const ColorRequest& request) {
   if (description_.has_colors) color_jobs_.Push(request);
 }
 

@@ -194,7 +194,7 @@ class ConsoleFeed {
   void Command(const ConsoleCommand& command) { commands_.Push(command); }
   // When the queue is full the oldest request is dropped and never answered.
   void Export(PendingExport pending);
-  void Ask(const ColorRequest& request);
+  void Request(const ColorRequest& request);
 
  private:
   Description description_;

@@ -59,7 +59,7 @@ void ClipMaker::Make(PendingExport pending, Clip clip) {
   name_ = clip.name;
   frames_ = clip.frames;
   run_.Start("clip", [clip = std::move(clip)](const auto& go_on) { return MakeFile(clip, go_on); });
-  Tell(0, frames_);
+  Notify(0, frames_);
 }
 
 void ClipMaker::Follow() {
@@ -67,10 +67,10 @@ void ClipMaker::Follow() {
   if (!pending_.is_wanted()) run_.RequestEnd();
   auto outcome = run_.TakeOutcome();
   if (!outcome) {
-    if (run_.done() >= told_ + kFramesPerReport) Tell(run_.done(), frames_);
+    if (run_.done() >= reported_ + kFramesPerReport) Notify(run_.done(), frames_);
     return;
   }
-  Tell(0, 0);
+  Notify(0, 0);
   if (outcome->result) {
     const File& file = *outcome->result;
     const std::string extension = fs::path(file->path).extension().string();
@@ -82,8 +82,8 @@ void ClipMaker::Follow() {
   pending_ = {};
 }
 
-void ClipMaker::Tell(std::size_t done, std::size_t frames) {
-  told_ = done;
+void ClipMaker::Notify(std::size_t done, std::size_t frames) {
+  reported_ = done;
   feed_->Add(ConsoleClip{done, frames});
 }
 

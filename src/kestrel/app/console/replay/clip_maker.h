@@ -44,13 +44,13 @@ class ClipMaker {
  private:
   using File = std::shared_ptr<const ExportFile>;
 
-  void Tell(std::size_t done, std::size_t frames);
+  void Notify(std::size_t done, std::size_t frames);
 
   ConsoleFeed* feed_;
   PendingExport pending_;
   std::string name_;
   std::size_t frames_ = 0;
-  std::size_t told_ = 0;
+  std::size_t reported_ = 0;
   BackgroundRun<File> run_;
 };
 

@@ -16,7 +16,7 @@ namespace kestrel {
 namespace {
 
 // A request with its answer.
-struct Asked {
+struct Requested {
   std::optional<ExportAnswer> answer;
   bool is_wanted = true;
 };
@@ -42,24 +42,24 @@ class ClipMakerTest : public testing::Test {
     };
     return {open, 1000, 10, "held"};
   }
-  PendingExport Ask(Asked* asked) {
+  PendingExport Request(Requested* requested) {
     return {{ExportRequest::Kind::kClip, 0, 1},
-            [asked](const ExportAnswer& answer) { asked->answer = answer; },
-            [asked] { return asked->is_wanted; }};
+            [requested](const ExportAnswer& answer) { requested->answer = answer; },
+            [requested] { return requested->is_wanted; }};
   }
-  bool Follow(const Asked& asked) {
+  bool Follow(const Requested& requested) {
     return Eventually([&] {
       maker_.Follow();
-      return asked.answer.has_value();
+      return requested.answer.has_value();
     });
   }
   // The last progress that the page got; nothing when it got none.
-  std::optional<ConsoleClip> Told() {
-    std::optional<ConsoleClip> told;
+  std::optional<ConsoleClip> Reported() {
+    std::optional<ConsoleClip> reported;
     while (const auto update = feed_.TakeUpdate()) {
-      if (const auto* clip = std::get_if<ConsoleClip>(&*update)) told = *clip;
+      if (const auto* clip = std::get_if<ConsoleClip>(&*update)) reported = *clip;
     }
-    return told;
+    return reported;
   }
 
   std::atomic<bool> is_held_{true}, is_begun_{false};
@@ -68,28 +68,28 @@ class ClipMakerTest : public testing::Test {
 };
 
 TEST_F(ClipMakerTest, ClipHasFramesAndIsRemovedWithItsLastOwner) {
-  Asked asked;
-  maker_.Make(Ask(&asked), Grays(9));
-  ASSERT_TRUE(Told());
-  ASSERT_TRUE(Follow(asked));
-  ASSERT_TRUE(asked.answer->file) << asked.answer->refusal;
-  EXPECT_EQ(Told()->frames, 0u);
-  const std::string path = asked.answer->file->path;
-  EXPECT_EQ(asked.answer->name, "clip-0" + std::filesystem::path(path).extension().string());
+  Requested requested;
+  maker_.Make(Request(&requested), Grays(9));
+  ASSERT_TRUE(Reported());
+  ASSERT_TRUE(Follow(requested));
+  ASSERT_TRUE(requested.answer->file) << requested.answer->refusal;
+  EXPECT_EQ(Reported()->frames, 0u);
+  const std::string path = requested.answer->file->path;
+  EXPECT_EQ(requested.answer->name, "clip-0" + std::filesystem::path(path).extension().string());
   const auto video = OpenVideoFile(path);
   int frames = 0;
   for (Frame frame; video->Next(&frame); ++frames) {
     EXPECT_NEAR(cv::mean(frame.image)[0], 20.0 * frames, 8) << frames;
   }
   EXPECT_EQ(frames, 9);
-  asked.answer.reset();
+  requested.answer.reset();
   EXPECT_FALSE(std::filesystem::exists(std::filesystem::path(path).parent_path()));
 }
 
 TEST_F(ClipMakerTest, RefusesSecondClipAtATime) {
-  Asked first, second;
-  maker_.Make(Ask(&first), Held());
-  maker_.Make(Ask(&second), Grays(1));
+  Requested first, second;
+  maker_.Make(Request(&first), Held());
+  maker_.Make(Request(&second), Grays(1));
   ASSERT_TRUE(second.answer);
   EXPECT_NE(second.answer->refusal.find("another clip"), std::string::npos);
   is_held_ = false;
@@ -98,8 +98,8 @@ TEST_F(ClipMakerTest, RefusesSecondClipAtATime) {
 }
 
 TEST_F(ClipMakerTest, CancelsClipNobodyWaitsFor) {
-  Asked gone, next;
-  maker_.Make(Ask(&gone), Held());
+  Requested gone, next;
+  maker_.Make(Request(&gone), Held());
   ASSERT_TRUE(Eventually([&] { return is_begun_.load(); }));
   gone.is_wanted = false;
   maker_.Follow();
@@ -108,7 +108,7 @@ TEST_F(ClipMakerTest, CancelsClipNobodyWaitsFor) {
   ASSERT_TRUE(Eventually([&] {
     maker_.Follow();
     next.answer.reset();
-    maker_.Make(Ask(&next), Grays(1));
+    maker_.Make(Request(&next), Grays(1));
     return !next.answer;
   }));
   ASSERT_TRUE(Follow(next));
@@ -117,14 +117,14 @@ TEST_F(ClipMakerTest, CancelsClipNobodyWaitsFor) {
 }
 
 TEST_F(ClipMakerTest, ReportsWhyClipFails) {
-  Asked asked;
+  Requested requested;
   const auto open = []() -> Clip::Picture {
     return [](std::size_t) -> cv::Mat { throw InputError("frame7.png: no such file"); };
   };
-  maker_.Make(Ask(&asked), {open, 5, 10, "clip"});
-  ASSERT_TRUE(Follow(asked));
-  EXPECT_EQ(asked.answer->refusal, "frame7.png: no such file");
-  EXPECT_FALSE(asked.answer->file);
+  maker_.Make(Request(&requested), {open, 5, 10, "clip"});
+  ASSERT_TRUE(Follow(requested));
+  EXPECT_EQ(requested.answer->refusal, "frame7.png: no such file");
+  EXPECT_FALSE(requested.answer->file);
 }
 
 }  // namespace

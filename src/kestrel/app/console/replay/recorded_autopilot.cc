@@ -57,9 +57,9 @@ std::optional<Duration> OffsetOf(Log log, Time begin, Time end) {
   mavlink::ReadTelemetryLog(log, [&](const mavlink::Packet& packet, std::int64_t utc_us) {
     const auto question = packet.As<mavlink::Timesync>();
     if (!question || question->tc1 != 0 || packet.component == kAutopilotComponent) return;
-    const Time asked = TimeFromNanoseconds(question->ts1);
-    if (!IsNear(asked, begin, end)) return;
-    offsets.push_back(asked.time_since_epoch() - std::chrono::microseconds(utc_us));
+    const Time requested = TimeFromNanoseconds(question->ts1);
+    if (!IsNear(requested, begin, end)) return;
+    offsets.push_back(requested.time_since_epoch() - std::chrono::microseconds(utc_us));
   });
   if (offsets.empty()) return std::nullopt;
   const auto middle = offsets.begin() + static_cast<std::ptrdiff_t>(offsets.size() / 2);

@@ -45,42 +45,43 @@ class RecordedAutopilotTest : public testing::Test {
     return static_cast<std::int64_t>(1e6 * (1'700'001'000 + at_s));
   }
   template <class Message>
-  void Say(double at_s, const Message& message) {
+  void Report(double at_s, const Message& message) {
     log_.Add(Utc_us(at_s), message);
   }
   // Kestrel asks for the autopilot's clock, and the other way round.
-  void AskForTime(double at_s) {
+  void RequestTime(double at_s) {
     mavlink::Timesync question;
     question.ts1 = ToNanoseconds(kBegin + DurationFromSeconds(at_s));
     log_.Add(Utc_us(at_s), question, kKestrel);
     question.ts1 = ToNanoseconds(kBegin + 7s);
-    Say(at_s, question);
+    Report(at_s, question);
   }
-  void SayHeartbeat(double at_s, std::uint32_t mode, bool is_armed) {
-    Say(at_s, mavlink::Heartbeat{mavlink::kTypeQuadrotor, mavlink::kAutopilotArduPilot,
-                                 is_armed ? mavlink::kModeFlagArmed : std::uint8_t{0}, mode, 4, 3});
+  void SendHeartbeat(double at_s, std::uint32_t mode, bool is_armed) {
+    Report(at_s,
+           mavlink::Heartbeat{mavlink::kTypeQuadrotor, mavlink::kAutopilotArduPilot,
+                              is_armed ? mavlink::kModeFlagArmed : std::uint8_t{0}, mode, 4, 3});
   }
-  void SayBattery(double at_s, double volts, int percent) {
+  void SendBattery(double at_s, double volts, int percent) {
     mavlink::SysStatus status;
     status.voltage_battery = static_cast<std::uint16_t>(1e3 * volts);
     status.battery_remaining = static_cast<std::int8_t>(percent);
-    Say(at_s, status);
+    Report(at_s, status);
   }
-  void SayText(double at_s, std::uint8_t severity, std::string_view text) {
+  void SendText(double at_s, std::uint8_t severity, std::string_view text) {
     mavlink::Statustext message;
     message.severity = severity;
     std::copy(text.begin(), text.end(), message.text.begin());
-    Say(at_s, message);
+    Report(at_s, message);
   }
 
   // From 1 s on in LOITER, from 6 s on in LAND, with a text between.
   void Fly() {
-    AskForTime(0);
+    RequestTime(0);
     for (int second = 1; second <= 10; ++second) {
-      SayBattery(second - 0.1, 12.5, 80 - second);
-      SayHeartbeat(second, second < 6 ? kLoiter : kLand, second < 9);
-      AskForTime(second + 0.5);
-      if (second == 5) SayText(5.75, mavlink::kSeverityWarning, "PrecLand: Target Lost");
+      SendBattery(second - 0.1, 12.5, 80 - second);
+      SendHeartbeat(second, second < 6 ? kLoiter : kLand, second < 9);
+      RequestTime(second + 0.5);
+      if (second == 5) SendText(5.75, mavlink::kSeverityWarning, "PrecLand: Target Lost");
     }
   }
 
@@ -121,12 +122,12 @@ TEST_F(RecordedAutopilotTest, ListsTextsAndChangesAtTheirTimes) {
 }
 
 TEST_F(RecordedAutopilotTest, ShowsMissingHeartbeats) {
-  AskForTime(0);
-  SayHeartbeat(1, kLoiter, true);
-  SayBattery(1.5, 12.5, 80);
-  for (int second = 2; second < 8; ++second) AskForTime(second);
-  SayHeartbeat(8, kLand, true);
-  AskForTime(9);
+  RequestTime(0);
+  SendHeartbeat(1, kLoiter, true);
+  SendBattery(1.5, 12.5, 80);
+  for (int second = 2; second < 8; ++second) RequestTime(second);
+  SendHeartbeat(8, kLand, true);
+  RequestTime(9);
   const RecordedAutopilot autopilot = Read();
   EXPECT_EQ(FactOf(autopilot.At(kBegin + 2s), "mode"), "LOITER");
   EXPECT_EQ(FactOf(autopilot.At(kBegin + 5s), "mode"), "no heartbeat");
@@ -151,7 +152,7 @@ TEST_F(RecordedAutopilotTest, ShowsReadablePartOfDamagedLog) {
 }
 
 TEST_F(RecordedAutopilotTest, ReportsWhyLogIsNotShown) {
-  SayHeartbeat(1, kLand, true);
+  SendHeartbeat(1, kLand, true);
   const RecordedAutopilot autopilot = Read();
   EXPECT_THAT(autopilot.states, IsEmpty());
   EXPECT_THAT(autopilot.fault, HasSubstr("has no TIMESYNC of Kestrel"));

@@ -14,7 +14,7 @@ namespace kestrel {
 namespace {
 
 // Interval of the reports on a second run's progress.
-constexpr Duration kTellInterval = std::chrono::milliseconds(250);
+constexpr Duration kSendInterval = std::chrono::milliseconds(250);
 
 std::vector<SeriesDescription> ReplaySeries(const ReplaySubject& subject) {
   std::vector<SeriesDescription> series = subject.series;
@@ -89,7 +89,7 @@ void RecordingPlayer::Obey(const ConsoleCommand& command) {
                             [detect = recording_.detect, settings = command.settings](
                                 const SecondRun::GoOn& go_on) { return detect(settings)(go_on); });
     case ConsoleCommandKind::kCancel:
-      if (second_run_.Cancel()) TellSecondRun(SecondRunState::kCancelled);
+      if (second_run_.Cancel()) SendSecondRun(SecondRunState::kCancelled);
       return;
     default:
       return;  // others execute it
@@ -116,28 +116,28 @@ void RecordingPlayer::StartSecondRun(const std::vector<std::string>& settings, S
   is_shown_ = false;
   settings_ = settings;
   second_run_.Start("second run", std::move(job));
-  TellSecondRun(SecondRunState::kRunning);
+  SendSecondRun(SecondRunState::kRunning);
 }
 
 void RecordingPlayer::FollowSecondRun() {
   if (auto outcome = second_run_.TakeOutcome()) return EndSecondRun(*std::move(outcome));
-  if (second_run_.is_running() && Now() - told_ > kTellInterval) {
-    TellSecondRun(SecondRunState::kRunning);
+  if (second_run_.is_running() && Now() - reported_ > kSendInterval) {
+    SendSecondRun(SecondRunState::kRunning);
   }
 }
 
 void RecordingPlayer::EndSecondRun(SecondRun::Outcome outcome) {
-  if (!outcome.result) return TellSecondRun(SecondRunState::kFailed, outcome.error);
+  if (!outcome.result) return SendSecondRun(SecondRunState::kFailed, outcome.error);
   if (outcome.result->frames.size() != first_->frames.size()) {
-    return TellSecondRun(SecondRunState::kFailed, "the recording has changed meanwhile");
+    return SendSecondRun(SecondRunState::kFailed, "the recording has changed meanwhile");
   }
   second_ = std::make_shared<const ReplayResult>(*std::move(outcome.result));
   is_shown_ = false;
-  TellSecondRun(SecondRunState::kDone);
+  SendSecondRun(SecondRunState::kDone);
 }
 
-void RecordingPlayer::TellSecondRun(SecondRunState state, const std::string& error) {
-  told_ = Now();
+void RecordingPlayer::SendSecondRun(SecondRunState state, const std::string& error) {
+  reported_ = Now();
   ConsoleSecondRun run{state, settings_, second_run_.done(), error, {}};
   if (second_) {
     for (const ReplayFrame& frame : second_->frames) run.marks.push_back(frame.mark);
@@ -147,7 +147,7 @@ void RecordingPlayer::TellSecondRun(SecondRunState state, const std::string& err
 
 void RecordingPlayer::ShowFrame() {
   is_shown_ = true;
-  TellFrame();
+  SendFrame();
   const std::size_t index = playhead_.frame();
   picture_.captured = first_->frames[index].time;
   picture_.shapes = ShapesOf(*first_, second_.get(), index);
@@ -164,7 +164,7 @@ void RecordingPlayer::ShowFrame() {
 }
 
 // Sends everything that belongs to the picture.
-void RecordingPlayer::TellFrame() {
+void RecordingPlayer::SendFrame() {
   const std::size_t index = playhead_.frame();
   const ReplayFrame& frame = first_->frames[index];
   feed_->Add(ViewSample{frame.time, ValuesOf(frame)});

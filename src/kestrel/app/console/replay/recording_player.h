@@ -70,9 +70,9 @@ class RecordingPlayer {
  private:
   void FollowSecondRun();
   void EndSecondRun(SecondRun::Outcome outcome);
-  void TellSecondRun(SecondRunState state, const std::string& error = "");
+  void SendSecondRun(SecondRunState state, const std::string& error = "");
   void ShowFrame();
-  void TellFrame();
+  void SendFrame();
   ExportAnswer MakeExport(const ExportRequest& request) const;
   Clip ClipOf(const ExportRequest& request) const;
   void SendTimeline();
@@ -86,7 +86,7 @@ class RecordingPlayer {
   // second_ is null until the second run is done. A clip in the making shares ownership of its run.
   std::shared_ptr<const ReplayResult> first_, second_;
   std::vector<std::string> settings_;  // settings of the second run
-  Time told_{};                        // time of the last report of its progress
+  Time reported_{};                    // time of the last report of its progress
   ConsoleFrame picture_;
   Playhead playhead_;
   Time played_ = Now();  // time of the last call of Follow

@@ -109,7 +109,7 @@ class ReplayConsoleTest : public testing::Test {
     return std::stoi(url.substr(url.rfind(':') + 1));
   }
   // Reads until the page is told this frame with this speed; false when it is not.
-  static bool IsTold(TestSocket* socket, std::size_t frame, double speed) {
+  static bool IsShown(TestSocket* socket, std::size_t frame, double speed) {
     while (const auto playback = socket->Next("playback")) {
       if ((*playback)["frame"] == frame && (*playback)["speed"] == speed) return true;
     }
@@ -129,21 +129,21 @@ TEST_F(ReplayConsoleTest, SeeksStepsAndPlays) {
   ASSERT_TRUE(timeline);
   EXPECT_EQ((*timeline)["times_ms"].size(), kFrames);
   socket.Send(R"({"command": "seek", "value": 0.52})");
-  EXPECT_TRUE(IsTold(&socket, 5, 0));
+  EXPECT_TRUE(IsShown(&socket, 5, 0));
   EXPECT_EQ(read_, 5U);
   socket.Send(R"({"command": "step", "value": -1})");
-  EXPECT_TRUE(IsTold(&socket, 4, 0));
+  EXPECT_TRUE(IsShown(&socket, 4, 0));
   socket.Send(R"({"command": "seek", "value": -1e300})");
-  EXPECT_TRUE(IsTold(&socket, 0, 0));
+  EXPECT_TRUE(IsShown(&socket, 0, 0));
   socket.Send(R"({"command": "step", "value": 1e300})");
-  EXPECT_TRUE(IsTold(&socket, kFrames - 1, 0));
+  EXPECT_TRUE(IsShown(&socket, kFrames - 1, 0));
   // Play at the end starts from the beginning, and holds at the end.
   socket.Send(R"({"command": "play", "value": 0.001})");
-  EXPECT_TRUE(IsTold(&socket, 0, 0.001));
+  EXPECT_TRUE(IsShown(&socket, 0, 0.001));
   socket.Send(R"({"command": "play", "value": 10})");
-  EXPECT_TRUE(IsTold(&socket, kFrames - 1, 0));
+  EXPECT_TRUE(IsShown(&socket, kFrames - 1, 0));
   socket.Send(R"({"command": "play", "value": -20})");
-  EXPECT_TRUE(IsTold(&socket, 0, 0));
+  EXPECT_TRUE(IsShown(&socket, 0, 0));
 }
 
 TEST_F(ReplayConsoleTest, SendsPlotsOfWholeRecordingAtOnce) {
@@ -309,7 +309,7 @@ TEST_F(ReplayConsoleTest, CancelsSecondRunWhilePagePlaysOn) {
     if (running["done"] == 5) break;
   }
   socket.Send(R"({"command": "step", "value": 3})");
-  EXPECT_TRUE(IsTold(&socket, 3, 0));
+  EXPECT_TRUE(IsShown(&socket, 3, 0));
   socket.Send(R"({"command": "cancel"})");
   EXPECT_TRUE(NextSecond(&socket, "cancelled").is_object());
   // A run in progress makes way for the next.
@@ -337,7 +337,7 @@ TEST_F(ReplayConsoleTest, ReportsFrameWithMissingFile) {
   EXPECT_EQ((*event)["text"], "frame7.png: no such file");
   socket.Send(R"({"images": true})");
   socket.Send(R"({"command": "step", "value": 1})");
-  EXPECT_TRUE(IsTold(&socket, 8, 0));
+  EXPECT_TRUE(IsShown(&socket, 8, 0));
 }
 
 }  // namespace

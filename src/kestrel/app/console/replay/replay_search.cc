@@ -23,7 +23,7 @@ std::optional<ReplayResult> DetectAgain(const RecordingChoice& choice,
 
 ReplayConsole::Recording RecordingOf(const RecordingChoice& choice, const ReplaySearch& search) {
   RecordingChoice quiet = choice;  // the run over the recording has told what is left out
-  quiet.bag.tell = {};
+  quiet.bag.notify = {};
   const auto open = [quiet]() -> ReplayConsole::ReadFrame {
     const auto winder = std::make_shared<FrameWinder>([quiet] { return OpenFrames(quiet); });
     return [winder](std::size_t index) { return winder->Read(index); };

@@ -141,7 +141,7 @@ void StudyConsole::FollowFirstRun() {
     }
     return StartReplay(*std::move(outcome->result));
   }
-  if (first_run_.is_running() && Now() - told_ > kProgressInterval) {
+  if (first_run_.is_running() && Now() - reported_ > kProgressInterval) {
     ReportReplay(StudyReplayState::kRunning);
   }
 }
@@ -162,7 +162,7 @@ void StudyConsole::StartReplay(ReplayResult first) {
 }
 
 void StudyConsole::ReportReplay(StudyReplayState state, const std::string& error) {
-  told_ = Now();
+  reported_ = Now();
   replay_.state = state;
   replay_.done = first_run_.done();
   replay_.error = error;

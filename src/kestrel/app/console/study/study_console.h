@@ -65,7 +65,7 @@ class StudyConsole {
   ConsoleStudyReplay replay_;
   std::optional<Time> worst_;  // its frame to begin with
   Run before_, after_;
-  Time told_{};
+  Time reported_{};
   BackgroundRun<ReplayResult> first_run_;
   std::optional<RecordingPlayer> player_;
 };

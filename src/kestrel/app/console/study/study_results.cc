@@ -186,14 +186,14 @@ StudyOutcome StudyResults::OutcomeOf(sqlite3_stmt* unit) const {
     if (outcome.failure.empty()) outcome.failure = "no reason was given";
     return outcome;
   }
-  const auto asked = sqlite3_column_int64(unit, 7), found = sqlite3_column_int64(unit, 8);
-  if (found < 0 || found > std::max<std::int64_t>(asked, 0)) {
-    Fail(fmt::format("the unit {} has found {} of {}", Shown(outcome.key), found, asked));
+  const auto requested = sqlite3_column_int64(unit, 7), found = sqlite3_column_int64(unit, 8);
+  if (found < 0 || found > std::max<std::int64_t>(requested, 0)) {
+    Fail(fmt::format("the unit {} has found {} of {}", Shown(outcome.key), found, requested));
   }
   if (!IsNull(unit, 9)) outcome.false_count = sqlite3_column_int64(unit, 9);
   outcome.found_count = found;
-  if (asked > 0) {
-    const auto count = static_cast<double>(asked);
+  if (requested > 0) {
+    const auto count = static_cast<double>(requested);
     outcome.found = static_cast<double>(found) / count;
     outcome.false_found = static_cast<double>(outcome.false_count.value_or(0)) / count;
   }

@@ -104,10 +104,10 @@ void GstWatch::Poll(Duration timeout) {
 
 void GstWatch::Take(GstMessage* message) {
   if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_EOS) has_ended_ = true;
-  const GstStructure* said = gst_message_get_structure(message);
+  const GstStructure* reported = gst_message_get_structure(message);
   if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ELEMENT &&
-      gst_structure_has_name(said, "missing-plugin")) {
-    const char* missing = gst_structure_get_string(said, "name");
+      gst_structure_has_name(reported, "missing-plugin")) {
+    const char* missing = gst_structure_get_string(reported, "name");
     if (missing != nullptr) missing_ = missing;
   }
   if (GST_MESSAGE_TYPE(message) != GST_MESSAGE_ERROR || !fault_.empty()) return;

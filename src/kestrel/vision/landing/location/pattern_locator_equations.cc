@@ -123,8 +123,8 @@ void PatternLocator::Linearized::Sum(int unknowns) {
   std::array<const float*, kEdgeColumns> pointers;
   int count = 0;
   for (int k = 0; k < kEdgeColumns; ++k) {
-    const bool is_asked = k < unknowns || k == kSpread || k == kOffset;
-    if (!is_asked && unknowns < kUnknowns) continue;
+    const bool isrequested = k < unknowns || k == kSpread || k == kOffset;
+    if (!isrequested && unknowns < kUnknowns) continue;
     which[count] = k;
     pointers[count++] = columns[k].data();
   }

@@ -26,9 +26,9 @@ struct Contradiction {
 
 // Compares the given views of the pattern with its latest detections. Both mirror poses of a
 // detection count: agreement with one of them is no contradiction.
-class ToldContradictions {
+class InputContradictions {
  public:
-  void Add(const GivenView& told, const TargetDetection& seen);
+  void Add(const GivenView& reported, const TargetDetection& seen);
 
   // Returns by how much (m) the given altitude is larger than the seen one. Nothing where they
   // agree, where too little was seen, or where the attitude is wrong, because the altitude depends

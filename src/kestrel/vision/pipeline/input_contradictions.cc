@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/vision/pipeline/told_contradictions.h"
+#include "kestrel/vision/pipeline/input_contradictions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -49,12 +49,12 @@ double AngleSigma(const TargetDetection& seen) {
 
 }  // namespace
 
-void ToldContradictions::Latest::Add(const Difference& difference) {
+void InputContradictions::Latest::Add(const Difference& difference) {
   if (!std::isfinite(difference.value) || !std::isfinite(difference.sigma)) return;
   differences_[added_++ % kCapacity] = difference;
 }
 
-std::optional<Contradiction> ToldContradictions::Latest::Median() const {
+std::optional<Contradiction> InputContradictions::Latest::Median() const {
   if (added_ < kLeastDetections) return std::nullopt;
   const std::size_t count = std::min(added_, kCapacity);
   std::array<double, kCapacity> buffer;
@@ -70,21 +70,21 @@ std::optional<Contradiction> ToldContradictions::Latest::Median() const {
   return Contradiction{value, std::hypot(sigma, scatter / std::sqrt(count)), count};
 }
 
-void ToldContradictions::Add(const GivenView& told, const TargetDetection& seen) {
+void InputContradictions::Add(const GivenView& reported, const TargetDetection& seen) {
   // Without an attitude the pattern is assumed to be level.
   const auto up_by = [&](const RigidTransform& pose) {
-    return told.up_in_camera.value_or(Normal(pose));
+    return reported.up_in_camera.value_or(Normal(pose));
   };
-  const double up_sigma = told.up_in_camera ? kAttitudeSigma : AngleSigma(seen);
-  if (told.up_in_camera) {
+  const double up_sigma = reported.up_in_camera ? kAttitudeSigma : AngleSigma(seen);
+  if (reported.up_in_camera) {
     const auto tilt = [&](const RigidTransform& pose) {
-      return AngleBetween(Normal(pose), *told.up_in_camera);
+      return AngleBetween(Normal(pose), *reported.up_in_camera);
     };
     tilts_.Add({LeastDifference(seen, tilt), std::hypot(AngleSigma(seen), kAttitudeSigma)});
   }
-  if (!told.altitude_m) return;
+  if (!reported.altitude_m) return;
   const auto excess_m = [&](const RigidTransform& pose) {
-    return *told.altitude_m + up_by(pose).dot(pose.translation);
+    return *reported.altitude_m + up_by(pose).dot(pose.translation);
   };
   const RigidTransform& pose = seen.camera_from_target;
   const double aside_m = up_by(pose).cross(pose.translation).norm();
@@ -94,13 +94,13 @@ void ToldContradictions::Add(const GivenView& told, const TargetDetection& seen)
                   std::hypot(shared_m, up_sigma * aside_m, std::sqrt(position_variance))});
 }
 
-std::optional<Contradiction> ToldContradictions::Attitude() const {
+std::optional<Contradiction> InputContradictions::Attitude() const {
   const std::optional<Contradiction> tilt = tilts_.Median();
   if (!tilt || tilt->difference <= kMaxSlope + kTolerance * tilt->sigma) return std::nullopt;
   return tilt;
 }
 
-std::optional<Contradiction> ToldContradictions::Altitude() const {
+std::optional<Contradiction> InputContradictions::Altitude() const {
   if (Attitude()) return std::nullopt;
   const std::optional<Contradiction> excess = altitudes_.Median();
   if (!excess) return std::nullopt;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/vision/pipeline/told_contradictions.h"
+#include "kestrel/vision/pipeline/input_contradictions.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@ namespace kestrel {
 namespace {
 
 // Detections of a level pattern from a camera that looks down, tilted by up to 20 degrees, at 5 m.
-class ToldContradictionsTest : public ::testing::Test {
+class InputContradictionsTest : public ::testing::Test {
  protected:
   struct View {
     TargetDetection seen;
@@ -35,24 +35,24 @@ class ToldContradictionsTest : public ::testing::Test {
   }
 
   // Returns the contradictions after 'views' views with an altitude that is 'excess_m' too large.
-  ToldContradictions Fly(int views, double excess_m, const Eigen::Quaterniond& mount_error) {
-    ToldContradictions contradictions;
+  InputContradictions Fly(int views, double excess_m, const Eigen::Quaterniond& mount_error) {
+    InputContradictions contradictions;
     for (int i = 0; i < views; ++i) {
       const View view = See();
       contradictions.Add({5 + excess_m, mount_error * view.up_in_camera}, view.seen);
     }
     return contradictions;
   }
-  ToldContradictions FlyWithAltitude(int views, double excess_m) {
+  InputContradictions FlyWithAltitude(int views, double excess_m) {
     return Fly(views, excess_m, Eigen::Quaterniond::Identity());
   }
 
   Random random_{7};
 };
 
-TEST_F(ToldContradictionsTest, ReportsAltitudeAboveSeaLevel) {
+TEST_F(InputContradictionsTest, ReportsAltitudeAboveSeaLevel) {
   for (const double excess_m : {10.0, 500.0, -10.0, -3.0}) {
-    const ToldContradictions contradictions = FlyWithAltitude(20, excess_m);
+    const InputContradictions contradictions = FlyWithAltitude(20, excess_m);
     ASSERT_TRUE(contradictions.Altitude()) << excess_m;
     EXPECT_NEAR(contradictions.Altitude()->difference, excess_m, 0.1);
     EXPECT_LT(contradictions.Altitude()->sigma, 0.5);
@@ -61,19 +61,19 @@ TEST_F(ToldContradictionsTest, ReportsAltitudeAboveSeaLevel) {
   }
 }
 
-TEST_F(ToldContradictionsTest, AcceptsAltitudesThatAgreeOrFitVehicle) {
+TEST_F(InputContradictionsTest, AcceptsAltitudesThatAgreeOrFitVehicle) {
   for (const double excess_m : {0.0, 0.5, -0.5, 3.0}) {
     EXPECT_FALSE(FlyWithAltitude(100, excess_m).Altitude()) << excess_m;
   }
 }
 
-TEST_F(ToldContradictionsTest, RequiresTenDetections) {
+TEST_F(InputContradictionsTest, RequiresTenDetections) {
   EXPECT_FALSE(FlyWithAltitude(9, 10).Altitude());
   EXPECT_TRUE(FlyWithAltitude(10, 10).Altitude());
 }
 
-TEST_F(ToldContradictionsTest, ToleratesThirdOfWrongDetections) {
-  ToldContradictions contradictions;
+TEST_F(InputContradictionsTest, ToleratesThirdOfWrongDetections) {
+  InputContradictions contradictions;
   for (int i = 0; i < 60; ++i) {
     const View view = See();
     contradictions.Add({i % 3 == 0 ? 100.0 : 5.0, view.up_in_camera}, view.seen);
@@ -81,8 +81,8 @@ TEST_F(ToldContradictionsTest, ToleratesThirdOfWrongDetections) {
   EXPECT_FALSE(contradictions.Altitude());
 }
 
-TEST_F(ToldContradictionsTest, ReportsDriftAfterLongAgreement) {
-  ToldContradictions contradictions = FlyWithAltitude(1000, 0);
+TEST_F(InputContradictionsTest, ReportsDriftAfterLongAgreement) {
+  InputContradictions contradictions = FlyWithAltitude(1000, 0);
   for (int i = 0; i < 64; ++i) {
     const View view = See();
     contradictions.Add({15, view.up_in_camera}, view.seen);
@@ -91,9 +91,9 @@ TEST_F(ToldContradictionsTest, ReportsDriftAfterLongAgreement) {
   EXPECT_NEAR(contradictions.Altitude()->difference, 10, 0.1);
 }
 
-TEST_F(ToldContradictionsTest, AltitudeWithoutAttitudeIsAbovePattern) {
+TEST_F(InputContradictionsTest, AltitudeWithoutAttitudeIsAbovePattern) {
   for (const double excess_m : {14.0, -2.5, 0.5}) {
-    ToldContradictions contradictions;
+    InputContradictions contradictions;
     for (int i = 0; i < 20; ++i) contradictions.Add({5 + excess_m, {}}, See().seen);
     ASSERT_EQ(contradictions.Altitude().has_value(), excess_m != 0.5) << excess_m;
     if (excess_m == 0.5) continue;
@@ -101,8 +101,8 @@ TEST_F(ToldContradictionsTest, AltitudeWithoutAttitudeIsAbovePattern) {
   }
 }
 
-TEST_F(ToldContradictionsTest, ReportsUpsideDownMountButNotAltitude) {
-  const ToldContradictions contradictions = Fly(20, 10, Rotation(kPi, Eigen::Vector3d::UnitX()));
+TEST_F(InputContradictionsTest, ReportsUpsideDownMountButNotAltitude) {
+  const InputContradictions contradictions = Fly(20, 10, Rotation(kPi, Eigen::Vector3d::UnitX()));
   ASSERT_TRUE(contradictions.Attitude());
   // The mount error turns 'up' over by half a turn, and the camera is tilted by up to 20 degrees:
   // at least 140 degrees.
@@ -110,21 +110,21 @@ TEST_F(ToldContradictionsTest, ReportsUpsideDownMountButNotAltitude) {
   EXPECT_FALSE(contradictions.Altitude());
 }
 
-TEST_F(ToldContradictionsTest, ReportsMountTurnedByFortyDegreesButNotTen) {
+TEST_F(InputContradictionsTest, ReportsMountTurnedByFortyDegreesButNotTen) {
   const Eigen::Vector3d axis = Eigen::Vector3d::UnitY();
-  const ToldContradictions wrong = Fly(20, 0, Rotation(40 * kPi / 180, axis));
+  const InputContradictions wrong = Fly(20, 0, Rotation(40 * kPi / 180, axis));
   ASSERT_TRUE(wrong.Attitude());
   EXPECT_NEAR(wrong.Attitude()->difference, 40 * kPi / 180, 0.05);
   EXPECT_FALSE(Fly(20, 0, Rotation(10 * kPi / 180, axis)).Attitude());
 }
 
-TEST_F(ToldContradictionsTest, MirrorPoseMayAgree) {
-  ToldContradictions contradictions;
+TEST_F(InputContradictionsTest, MirrorPoseMayAgree) {
+  InputContradictions contradictions;
   for (int i = 0; i < 20; ++i) {
     View view = See();
     view.seen.diagnostics.mirror_camera_from_target = view.seen.camera_from_target;
-    RigidTransform& told_first = view.seen.camera_from_target;
-    told_first.rotation = Rotation(0.9, Eigen::Vector3d::UnitX()) * told_first.rotation;
+    RigidTransform& given_first = view.seen.camera_from_target;
+    given_first.rotation = Rotation(0.9, Eigen::Vector3d::UnitX()) * given_first.rotation;
     contradictions.Add({5, view.up_in_camera}, view.seen);
   }
   EXPECT_FALSE(contradictions.Attitude());
