@@ -11,7 +11,7 @@ PROJECT = Path(__file__).resolve().parent.parent
 DIST = os.environ.get("DIST", "trixie")
 ROOT = PROJECT / f"build/package_root/{DIST}-arm64"
 SOURCE = "/build/kestrel"
-BUILD = f"{SOURCE}/obj-aarch64-linux-gnu"
+BUILD = f"{SOURCE}/build/release"
 EMULATOR = "qemu-aarch64-static"
 NEEDED = ["libgtest-dev:arm64", "libgmock-dev:arm64", "libbenchmark-dev:arm64"]
 MOUNT = """set -e
@@ -22,7 +22,7 @@ mount --rbind /dev "$root/dev"
 mount --bind "$cache" "$root/ccache"
 [ ! -d "$shared" ] || mount --bind -o ro "$shared" "$root/build/shared"
 exec env --ignore-environment HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive CCACHE_DIR=/ccache \\
-  CCACHE_SLOPPINESS=locale,time_macros chroot "$root" "$@"
+  CCACHE_BASEDIR=/build/kestrel CCACHE_SLOPPINESS=locale chroot "$root" "$@"
 """
 
 
