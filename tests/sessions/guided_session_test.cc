@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Sessions that guide: what they say of a pad that the camera does not see from the search
-// altitude, and how often they ask for the autopilot's mode.
+// altitude, and how often they request the autopilot's mode.
 #include <chrono>
 #include <cstdint>
 #include <map>
@@ -51,7 +51,8 @@ TEST(GuidedSession, LimitsSearchToSightRange) {
   EXPECT_THAT(EventsWithTagOf(0.2), HasSubstr("limits.floor_m 3 is above that"));
 }
 
-// An autopilot that does nothing but live and note the intervals of messages that it is asked for.
+// An autopilot that does nothing but live and note the intervals of messages that are requested of
+// it.
 class RequestedAutopilot {
  public:
   RequestedAutopilot()
@@ -87,7 +88,7 @@ class RequestedAutopilot {
   std::jthread thread_;
 };
 
-// Returns the interval of heartbeats that a session asks for; 0: it asks for none.
+// Returns the interval of heartbeats that a session requests; 0: it requests none.
 float HeartbeatInterval(bool guides) {
   RequestedAutopilot autopilot;
   DrawnCamera camera(60, PatternImage, 3);

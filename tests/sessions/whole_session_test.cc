@@ -216,7 +216,7 @@ TEST(WholeSession, AppliesChangedOptionsFromNextFrame) {
   EXPECT_EQ(witness.seen().found, changed->found);
 }
 
-// A UAV that hunts and tells its team.
+// A UAV that hunts and shares its map with its team.
 class TeamUav {
  public:
   TeamUav(const std::string& name, int domain)

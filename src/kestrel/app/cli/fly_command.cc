@@ -286,7 +286,7 @@ class Flight {
     team_->WriteMap(/*origin=*/{}, OutputFolder(source.output, source.force));
   }
 
-  // Everything that waits is written; then all that is known is said.
+  // Everything that waits is written; then the summary is printed.
   void Finish() {
     if (team_) LeaveTeam();
     sinks_.Finish();
@@ -306,7 +306,7 @@ class Flight {
   FlightConsole* console_ = nullptr;  // of the sinks; null: none
   std::optional<TeamLink> team_;
   MapCopies* maps_ = nullptr;  // of the sinks; null: no team
-  Time seen_{};                // the newest frame that the team was told of
+  Time seen_{};                // the newest frame that the team has received
   FlyAutopilot autopilot_;
   std::optional<LiveSession> session_;
   std::optional<FlightKeeper> keeper_;

@@ -74,7 +74,7 @@ class LiveSession {
   LiveSession(const LiveSession&) = delete;
   LiveSession& operator=(const LiveSession&) = delete;
 
-  // Flies until it has landed, the source ends or 'is_stopped', which is asked ten times a second
+  // Flies until it has landed, the source ends or 'is_stopped', which is called ten times a second
   // by this thread, says so. Then all tables and the recording are written. Once only.
   FlightEnd Run(const std::function<bool()>& is_stopped);
 

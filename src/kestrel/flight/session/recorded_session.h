@@ -35,8 +35,8 @@ class RecordedSession {
     if (auto tables = vision_->MakeTables(output)) sinks_.Add(std::move(tables));
   }
 
-  // Runs to the end of the source, and finishes the sinks. 'go_on' is asked before each frame, with
-  // the number of frames that are done; false stops the session. Returns whether the end was
+  // Runs to the end of the source, and finishes the sinks. 'go_on' is called before each frame,
+  // with the number of frames that are done; false stops the session. Returns whether the end was
   // reached. Throws InputError when the source, the vision or a sink does, or when a frame does not
   // have the calibration's size; the sinks are then not finished. Once only.
   bool Run(const std::function<bool(std::size_t done)>& go_on);

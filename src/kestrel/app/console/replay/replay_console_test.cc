@@ -73,7 +73,7 @@ class ReplayConsoleTest : public testing::Test {
             {{changed, EventLevel::kInfo, "mode LAND, armed"}},
             ""};
   }
-  // A run that finds the pattern in the first half of the frames, unless it is told to wait or
+  // A run that finds the pattern in the first half of the frames, unless it has to wait or
   // fail.
   std::optional<ReplayResult> DetectAgain(const LandingPipelineOptions& options,
                                           const SecondRun::GoOn& go_on) {

@@ -9,7 +9,7 @@
 namespace kestrel {
 namespace {
 
-// Runs over the recording once more. Returns nothing when it was told to end.
+// Runs over the recording once more. Returns nothing when it was stopped.
 std::optional<ReplayResult> DetectAgain(const RecordingChoice& choice,
                                         const ReplaySearch::StartRun& start,
                                         const SecondRun::GoOn& go_on) {
