@@ -103,11 +103,11 @@ KestrelOptions FlyArguments::ReadOptions() {
     throw CLI::RequiredError("SOURCE, or fly.source in --config FILE,");
   }
   source.sources = {options.fly.source};
-  if (rate_hz) options.fly.flight.rate_hz = *rate_hz;
+  if (rate_hz) options.fly.rate_hz = *rate_hz;
   if (!signing_key.empty()) options.fly.link.signing_key = signing_key;
-  if (link_delay != "auto") options.fly.flight.link_delay_s = ParseLinkDelay(link_delay);
+  if (link_delay != "auto") options.fly.link_delay_s = ParseLinkDelay(link_delay);
   if (guide && autopilot.empty()) throw InputError("--guide: expected --autopilot URL");
-  if (no_guard) options.fly.flight.guard.enabled = false;
+  if (no_guard) options.fly.guard.enabled = false;
   if (console && !console->empty()) {
     options.console = WithAddress(options.console, *console, "--console");
     RequireValid(options.console);

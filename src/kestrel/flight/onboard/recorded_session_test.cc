@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/flight/session/recorded_session.h"
-
 #include <string>
 #include <vector>
 
@@ -9,6 +7,7 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/test_folder.h"
+#include "kestrel/flight/onboard/session.h"
 #include "kestrel/flight/session/observation_sinks.h"
 
 namespace kestrel {
@@ -88,12 +87,12 @@ class RecordedSessionTest : public ::testing::Test {
   OpenedSource opened_;
   ThreeFrames* source_;
   LoggedVision* vision_ = new LoggedVision();
-  RecordedSession session_{opened_, std::unique_ptr<Vision>(vision_)};
-  FrameNames* sink_ = session_.sinks().Add(std::make_unique<FrameNames>());
+  std::unique_ptr<Session> session_ = MakeSession(opened_, std::unique_ptr<Vision>(vision_));
+  FrameNames* sink_ = session_->sinks().Add(std::make_unique<FrameNames>());
 };
 
 TEST_F(RecordedSessionTest, FrameFollowsPosesItNeeds) {
-  EXPECT_TRUE(session_.Run([](std::size_t) { return true; }));
+  EXPECT_EQ(session_->Run().outcome, FlightOutcome::kSourceEnded);
   EXPECT_THAT(vision_->log, ElementsAre("pose 5", "pose 15", "frame 1", "pose 25", "frame 2",
                                         "frame 3", "finish"));
   EXPECT_THAT(sink_->names, ElementsAre("frame 1", "frame 2", "frame 3"));
@@ -109,21 +108,22 @@ TEST(RecordedSessionOnGimbalTest, FrameFollowsReportsItNeeds) {
   opened.calibration.intrinsics.height_px = kHeight_px;
   auto vision = std::make_unique<LoggedVision>();
   const auto& log = vision->log;
-  RecordedSession session(opened, std::move(vision));
-  session.Run([](std::size_t) { return true; });
+  const auto session = MakeSession(opened, std::move(vision));
+  session->Run();
   EXPECT_THAT(log, ElementsAre("pose 5", "pose 15", "gimbal 8", "gimbal 16", "frame 1", "pose 25",
                                "gimbal 24", "gimbal 32", "frame 2", "frame 3", "finish"));
 }
 
 TEST_F(RecordedSessionTest, StopsBeforeNextFrame) {
-  EXPECT_FALSE(session_.Run([](std::size_t done) { return done < 2; }));
+  const FlightEnd end = session_->Run([this] { return sink_->names.size() == 2; });
+  EXPECT_EQ(end.outcome, FlightOutcome::kStopped);
   EXPECT_THAT(sink_->names, ElementsAre("frame 1", "frame 2"));
   EXPECT_NE(vision_->log.back(), "finish");
 }
 
 TEST_F(RecordedSessionTest, ReportsFrameOfAnotherSize) {
   source_->width_px = kWidth_px + 1;
-  const std::string error = InputErrorOf([&] { session_.Run([](std::size_t) { return true; }); });
+  const std::string error = InputErrorOf([&] { session_->Run(); });
   EXPECT_THAT(error, HasSubstr("frame 1"));
   EXPECT_TRUE(sink_->names.empty());
 }
@@ -132,9 +132,8 @@ TEST_F(RecordedSessionTest, FailingSinkEndsSession) {
   struct FullDisk : ObservationSink {
     void Take(const Observation&) override { throw InputError("the disk is full"); }
   };
-  session_.sinks().Add(std::make_unique<FullDisk>());
-  EXPECT_EQ(InputErrorOf([&] { session_.Run([](std::size_t) { return true; }); }),
-            "the disk is full");
+  session_->sinks().Add(std::make_unique<FullDisk>());
+  EXPECT_EQ(InputErrorOf([&] { session_->Run(); }), "the disk is full");
   EXPECT_THAT(sink_->names, ElementsAre("frame 1"));
 }
 
