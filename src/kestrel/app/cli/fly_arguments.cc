@@ -2,6 +2,7 @@
 #include "kestrel/app/cli/fly_arguments.h"
 
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -81,8 +82,8 @@ void FlyArguments::AddTo(CLI::App* command) {
       ->add_flag("--no-guard", no_guard,
                  "No guard: if Kestrel dies in flight, only the autopilot's own time-out acts")
       ->needs(guide_flag);
-  CLI::Option* hunt_flag = command->add_flag(
-      "--hunt{hunt}", task, "Search for coloured objects instead of the landing pattern");
+  task.AddTo(command, [](std::string_view) { return true; });
+  CLI::Option* hunt_flag = command->get_option("--hunt");
   command->add_option("--model", model, "Objects and their colours (YAML), with --hunt")
       ->type_name("FILE")
       ->needs(hunt_flag);

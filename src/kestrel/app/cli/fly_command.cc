@@ -84,7 +84,7 @@ class FlightLog : public ObservationSink {
 };
 
 std::shared_ptr<const Task> TaskOf(const FlyArguments& arguments, const KestrelOptions& options) {
-  return MakeTask(arguments.task, options, {.model = ReadModel(arguments.model)});
+  return MakeTask(arguments.task.name, options, {.model = ReadModel(arguments.model)});
 }
 
 // A flight: its sinks and its team around a session.
