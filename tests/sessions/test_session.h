@@ -70,7 +70,7 @@ class DrawnCamera : public LiveSource {
 
   std::optional<Event> Next(Duration /*timeout*/) override {
     if (std::exchange(is_pose_given_, !is_pose_given_)) {
-      std::this_thread::sleep_for(kFramePeriod);
+      std::this_thread::sleep_for(kFramePeriod);  // the camera's pace
       const int index = static_cast<int>(captured_++);
       return Frame{std::to_string(index), Now(), draw_(index)};
     }
