@@ -19,7 +19,7 @@ using ::testing::HasSubstr;
 constexpr int kWidth_px = 8;
 constexpr int kHeight_px = 6;
 
-Time At(double seconds) { return Time(DurationFromSeconds(seconds)); }
+Time AtSecond(double seconds) { return Time(DurationFromSeconds(seconds)); }
 
 // Frames at 1, 2, 3 s; poses at 0.5, 1.5, 2.5 s.
 class ThreeFrames : public FrameSource {
@@ -27,7 +27,7 @@ class ThreeFrames : public FrameSource {
   bool ReadNext(Frame* frame) override {
     if (next_ == 3) return false;
     ++next_;
-    *frame = {"frame " + std::to_string(next_), At(next_),
+    *frame = {"frame " + std::to_string(next_), AtSecond(next_),
               cv::Mat::zeros(kHeight_px, width_px, CV_8UC1)};
     return true;
   }
@@ -35,7 +35,7 @@ class ThreeFrames : public FrameSource {
   double rate_hz() const override { return 1; }
   std::vector<PoseSample> poses() const override {
     std::vector<PoseSample> poses(3);
-    for (int i = 0; i < 3; ++i) poses[i].time = At(0.5 + i);
+    for (int i = 0; i < 3; ++i) poses[i].time = AtSecond(0.5 + i);
     return poses;
   }
 
@@ -63,15 +63,19 @@ class LoggedVision : public Vision {
     return {frame, LandingObservation()};
   }
   void Finish() override { log.emplace_back("finish"); }
+  std::string Warning() const override { return log.back() == warned_at ? "mind the gap" : ""; }
   std::string Found() const override { return ""; }
 
   std::vector<std::string> log;
+  std::string warned_at = "no frame";
 };
 
 class FrameNames : public ObservationSink {
  public:
   void Take(const Observation& observation) override { names.push_back(observation.frame.name); }
+  void Take(const SessionEvent& event) override { events.push_back(event); }
   std::vector<std::string> names;
+  std::vector<SessionEvent> events;
 };
 
 class RecordedSessionTest : public ::testing::Test {
@@ -101,7 +105,7 @@ TEST_F(RecordedSessionTest, FrameFollowsPosesItNeeds) {
 TEST(RecordedSessionOnGimbalTest, FrameFollowsReportsItNeeds) {
   auto source = std::make_unique<ThreeFrames>();
   for (const double seconds : {0.8, 1.6, 2.4, 3.2})
-    source->reports.push_back({At(seconds), Eigen::Quaterniond::Identity()});
+    source->reports.push_back({AtSecond(seconds), Eigen::Quaterniond::Identity()});
   OpenedSource opened;
   opened.source = std::move(source);
   opened.calibration.intrinsics.width_px = kWidth_px;
@@ -119,6 +123,15 @@ TEST_F(RecordedSessionTest, StopsBeforeNextFrame) {
   EXPECT_EQ(end.outcome, FlightOutcome::kStopped);
   EXPECT_THAT(sink_->names, ElementsAre("frame 1", "frame 2"));
   EXPECT_NE(vision_->log.back(), "finish");
+}
+
+TEST_F(RecordedSessionTest, SinksGetWarningOfVision) {
+  vision_->warned_at = "frame 2";
+  session_->Run();
+  ASSERT_EQ(sink_->events.size(), 1u);
+  EXPECT_EQ(sink_->events[0].time, AtSecond(2));
+  EXPECT_EQ(sink_->events[0].level, EventLevel::kWarning);
+  EXPECT_EQ(sink_->events[0].text, "mind the gap");
 }
 
 TEST_F(RecordedSessionTest, ReportsFrameOfAnotherSize) {
