@@ -250,8 +250,9 @@ class Session {
     const FlyAutopilot autopilot =
         MakeFlyAutopilot(choices_.autopilot, flight_.fly, choices_.guides, &source);
     FirstError sink_error;
-    const auto session = MakeSession(
-        source.live, *task_, WithChoices(SessionWith(autopilot, flight_.fly, choices_.guides)));
+    const auto session =
+        MakeSession(source.live, *task_,
+                    WithChoices(SessionOptionsFor(autopilot, flight_.fly, choices_.guides)));
     session->sinks().Add(std::make_unique<AsynchronousSink>(
         AsynchronousSinkOptions{.thread_name = "python"},
         std::make_unique<CallingWriter>(SinkFor(source.live.calibration), &sink_error)));

@@ -234,7 +234,7 @@ class Flight {
   }
 
   SessionOptions Options() const {
-    SessionOptions options = SessionWith(autopilot_, options_.fly, arguments_.guide);
+    SessionOptions options = SessionOptionsFor(autopilot_, options_.fly, arguments_.guide);
     if (arguments_.profile != "auto") options.profile = ParseLinkProfile(arguments_.profile);
     options.output = arguments_.source.output;
     options.record = arguments_.record;

@@ -51,7 +51,8 @@ FlyAutopilot MakeFlyAutopilot(const std::string& name, const FlyOptions& options
   return {fmt::format("udpin://{}:{}", kLoopback, port), std::move(uav)};
 }
 
-SessionOptions SessionWith(const FlyAutopilot& autopilot, const FlyOptions& options, bool guides) {
+SessionOptions SessionOptionsFor(const FlyAutopilot& autopilot, const FlyOptions& options,
+                                 bool guides) {
   SessionOptions session{.flight = options, .autopilot = autopilot.url, .guides = guides};
   // A simulated autopilot ends with this process.
   if (autopilot.simulated) session.flight.guard.enabled = false;

@@ -25,6 +25,7 @@ FlyAutopilot MakeFlyAutopilot(const std::string& name, const FlyOptions& options
                               FlySource* source);
 
 // The options of a session with this autopilot.
-SessionOptions SessionWith(const FlyAutopilot& autopilot, const FlyOptions& options, bool guides);
+SessionOptions SessionOptionsFor(const FlyAutopilot& autopilot, const FlyOptions& options,
+                                 bool guides);
 
 }  // namespace kestrel
