@@ -68,7 +68,7 @@ StudyConsole::Run OpenForReplay(const ConsoleArguments& given, const std::string
   arguments.source.options = {};
   ReadWords(of_run.arguments, &arguments);
   arguments.source.sources = {path};
-  arguments.task = variant.task;
+  arguments.task.name = variant.task;
   arguments.RequireEnd();
   StudyConsole::Run run;
   run.search =

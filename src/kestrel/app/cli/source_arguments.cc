@@ -2,6 +2,7 @@
 #include "kestrel/app/cli/source_arguments.h"
 
 #include <filesystem>
+#include <iostream>
 #include <limits>
 #include <system_error>
 #include <vector>
@@ -132,12 +133,12 @@ OpenedSource SourceArguments::OpenOrAssume(PixelFormat format) const {
   return OpenRecording(choice);
 }
 
-OutputOptions SourceArguments::Output(const OpenedSource& opened) const {
-  return {.folder = output,
-          .force = force,
+SessionOptions SourceArguments::Session() const {
+  return {.altitude_m = altitude_m,
+          .output = output,
+          .replace = force,
           .annotate = annotate,
-          .rate_hz = opened.source->rate_hz(),
-          .only_in_image = opened.is_lens_unknown};
+          .table = &std::cout};
 }
 
 }  // namespace kestrel

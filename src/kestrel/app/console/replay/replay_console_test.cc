@@ -80,7 +80,7 @@ class ReplayConsoleTest : public testing::Test {
     if (options.hint_age_s == 7) throw InputError("frame3.png: no such file");
     while (options.hint_age_s == 8) {
       if (!go_on(5)) return std::nullopt;
-      std::this_thread::sleep_for(1ms);
+      std::this_thread::sleep_for(1ms);  // a run's time for a frame
     }
     ReplayResult result{Frames(), "second\n", {}};
     for (std::size_t i = 0; i < kFrames / 2; ++i) {
