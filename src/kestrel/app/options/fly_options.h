@@ -24,7 +24,7 @@ struct FlyOptions : FlightOptions {
     visit.Group("sim_autopilot", self.sim_autopilot);
     visit("sim_seed", self.sim_seed, "seed of the simulated world and autopilot");
     visit("keep_folder", self.keep_folder,
-          "folder for the recordings and snapshots that the console's page asks for");
+          "folder for the recordings and snapshots that the console's page requests");
   }
 };
 
