@@ -165,7 +165,9 @@ void LandingVision::Change(const TaskOptions& options, std::optional<double> alt
 }
 
 std::unique_ptr<ObservationSink> LandingVision::MakeTables(const OutputOptions& output) const {
-  return std::make_unique<LandingFiles>(output, &pipeline_, has_world(), predict_s_);
+  // In flight they are written by another thread, which must not read the tracker.
+  const std::vector<double> horizons_s = is_live_ ? std::vector<double>() : predict_s_;
+  return std::make_unique<LandingFiles>(output, &pipeline_, has_world(), horizons_s);
 }
 
 std::string LandingVision::Warning() const {

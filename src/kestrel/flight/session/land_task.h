@@ -13,7 +13,7 @@
 
 namespace kestrel {
 
-// Looks for the pad to land on.
+// Looks for the pad to land on. 'predict_s': horizons of predictions, in a recording's tables.
 class LandTask : public Task {
  public:
   explicit LandTask(LandingPipelineOptions options, std::vector<double> predict_s = {})

@@ -68,7 +68,7 @@ struct TaskOptions {
 
 // The choices of a session, beside the options.
 struct TaskChoice {
-  std::vector<double> predict_s = {};  // horizons of the predictions that are written
+  std::vector<double> predict_s = {};  // horizons of predictions, which a recording's tables have
   ObjectModel model = DefaultObjectModel();
   std::optional<ColorGrid> grid = {};  // nothing: the model's own
   std::vector<double> origin = {};     // as HuntTask's
