@@ -28,18 +28,11 @@ class RecordedSession : public Session {
  public:
   RecordedSession(const OpenedSource& opened, std::unique_ptr<Vision> vision,
                   const SessionOptions& options)
-      : Session(std::move(vision), SinkErrors::kThrow), opened_(opened) {
-    if (options.output.empty() && options.table == nullptr) return;
-    tables_ = this->vision().MakeTables({.folder = options.output,
-                                         .force = options.replace,
-                                         .annotate = options.annotate,
-                                         .rate_hz = opened.source->rate_hz(),
-                                         .only_in_image = opened.is_lens_unknown,
-                                         .stream = options.table});
-  }
+      : Session(std::move(vision), SinkErrors::kThrow), opened_(opened), options_(options) {}
 
   using Session::Run;
   FlightEnd Run(const std::function<bool()>& is_stopped) override {
+    OpenTables();
     const bool has_ended = RunToEnd(is_stopped);
     if (has_ended) mutable_vision().Finish();
     // Another sink may wait long for its end, as that of a team does.
@@ -51,6 +44,8 @@ class RecordedSession : public Session {
   std::string Summary() const override;
 
  private:
+  // After all other sinks: one that throws has left no folder behind.
+  void OpenTables();
   bool RunToEnd(const std::function<bool()>& is_stopped);
   void See(const Frame& frame);
 
@@ -61,12 +56,23 @@ class RecordedSession : public Session {
   }
 
   const OpenedSource& opened_;
+  const SessionOptions options_;
   std::unique_ptr<ObservationSink> tables_;  // null: none are written
   std::vector<double> times_ms_;             // time of the detection, for each frame
   std::size_t broken_ = 0;                   // frames whose image cannot be read
   std::string first_fault_;
   bool was_warned_ = false;
 };
+
+void RecordedSession::OpenTables() {
+  if (options_.output.empty() && options_.table == nullptr) return;
+  tables_ = vision().MakeTables({.folder = options_.output,
+                                 .force = options_.replace,
+                                 .annotate = options_.annotate,
+                                 .rate_hz = opened_.source->rate_hz(),
+                                 .only_in_image = opened_.is_lens_unknown,
+                                 .stream = options_.table});
+}
 
 // Returns whether the end was reached.
 bool RecordedSession::RunToEnd(const std::function<bool()>& is_stopped) {
