@@ -102,7 +102,7 @@ class LiveSession : public Session {
 
 // Returns a session over a recording, which outlives it: passes all poses and frames in order of
 // time to the vision, by the caller's thread, as fast as they go. Throws InputError when
-// calibration or options are not valid, or the tables cannot be written.
+// calibration or options are not valid; Run does when the tables cannot be written.
 std::unique_ptr<Session> MakeSession(const OpenedSource& recording, const Task& task,
                                      const SessionOptions& options = {});
 // The same with a vision of one's own.
