@@ -47,8 +47,7 @@ TEST_F(CalibrateLensCommandTest, CalibratesLensFromChessboardViews) {
   const std::string camera = folder_ / "camera.yaml";
   Succeed("calibrate lens " + views + " --board " + board + " --output " + camera);
   EXPECT_NEAR(ReadCalibration(camera).intrinsics.fx_px, 330, 2);
-  ExpectInputError("calibrate lens " + views + " --board chessboard:8x5",
-                   "chessboard:8x5");
+  ExpectInputError("calibrate lens " + views + " --board chessboard:8x5", "chessboard:8x5");
 }
 
 TEST_F(CalibrateLensCommandTest, CalibratesFisheyeFromImagesAlone) {
