@@ -374,7 +374,7 @@ double InkComparison::Doubt(const cv::Mat& image, const PatternView& view,
     if (gray[i] < 0) continue;
     correlation.Add(std::clamp(darkness.value[i], 0.0f, 1.0f), i < ink_end_);
   }
-  all[PrintDoubt::kUnlike] = LogLacking(correlation.value());
+  all[PrintDoubt::kUnlike] = LogShare(1 - correlation.value());
   return seen;
 }
 
