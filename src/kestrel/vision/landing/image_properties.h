@@ -23,7 +23,6 @@ struct GrayContrast {
   static constexpr double kLeast = 2;      // contrast of a print
   static constexpr double kLeastEdge = 2;  // contrast of an edge, per pixel
   static constexpr double kLeastRing = 5;  // contrast of a ring that is worth a look at its inside
-  static constexpr double kLeastInside = 6;  // brightest minus darkest place inside the ring
 };
 
 }  // namespace kestrel

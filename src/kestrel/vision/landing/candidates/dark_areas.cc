@@ -112,7 +112,7 @@ std::size_t OutlineInView(const BorderTracer& tracer, const Border& border,
 double RingContrast(const cv::Mat& image, const Ellipse& outer_edge,
                     const LandingPattern& pattern) {
   constexpr int kDirections = OutlineSampler::kDirections;
-  constexpr float kLeast = 3;  // gray values
+  constexpr float kLeast = GrayContrast::kLeast;
   constexpr float kLeastOfMedian = 0.2f;
   constexpr double kOutside = 0.7;  // from the ring to the white beside it, ring widths
   const double radius = pattern.outer_radius_m();

@@ -164,10 +164,17 @@ class ArcCutter {
   RingArcsWorkspace& workspace_;
 };
 
-double ShareNearCone(const Cone& cone, std::span<const Eigen::Vector3d> rays, double tolerance) {
-  std::size_t near = 0;
-  for (const Eigen::Vector3d& ray : rays) near += cone.AngleTo(ray) <= tolerance;
-  return static_cast<double>(near) / static_cast<double>(rays.size());
+// True when at least 'share' of the rays lie near a cone. Stops when too many lie beside it: most
+// pairs of arcs are not of one ring.
+bool AreNearCone(const Cone& cone, std::span<const Eigen::Vector3d> rays, double tolerance,
+                 double share) {
+  const auto count = static_cast<double>(rays.size());
+  double near_at_most = count;
+  for (const Eigen::Vector3d& ray : rays) {
+    if (cone.AngleTo(ray) <= tolerance) continue;
+    if (--near_at_most < share * count) return false;
+  }
+  return true;
 }
 
 class ArcGrouper {
@@ -196,7 +203,7 @@ class ArcGrouper {
     for (int round = 0; round < 2; ++round) {
       Collect(*best, arc.edge);
       const std::optional<Cone> grown = FitCone(workspace_.selected);
-      if (!grown || ShareOfSelected(*grown) < kLeastShareGrown) break;
+      if (!grown || !SelectedAreNear(*grown, kLeastShareGrown)) break;
       best = grown;
     }
     Collect(*best, arc.edge);
@@ -229,17 +236,17 @@ class ArcGrouper {
       workspace_.selected.insert(workspace_.selected.end(), rays.begin(), rays.end());
     }
     std::optional<Cone> cone = FitCone(workspace_.selected);
-    if (cone && ShareOfSelected(*cone) < kLeastShareOfPair) cone.reset();
+    if (cone && !SelectedAreNear(*cone, kLeastShareOfPair)) cone.reset();
     return cone;
   }
 
-  double ShareOfSelected(const Cone& cone) const {
-    return ShareNearCone(cone, workspace_.selected, tolerance_);
+  bool SelectedAreNear(const Cone& cone, double share) const {
+    return AreNearCone(cone, workspace_.selected, tolerance_, share);
   }
 
   bool LiesOn(const RingArc& arc, const Cone& cone, RingEdge edge) const {
     return arc.edge == edge &&
-           ShareNearCone(cone, RaysOf(arc), kNearby * tolerance_) > kLeastShareOfArc;
+           AreNearCone(cone, RaysOf(arc), kNearby * tolerance_, kLeastShareOfArc);
   }
 
   // Selects the rays near 'cone' of all arcs that lie on it.

@@ -27,16 +27,14 @@ constexpr int kMaxHullExtent = 62;  // px, of borders that need not be convex
 constexpr std::array<double, 2> kAreaScales{1.0, 1.12};
 // A print with a dark border shows less white than the board's size.
 constexpr std::array<double, 3> kBoardScales{1.0, 1.08, 1.17};
-// Search reach for the edges of the ring around an outline, as a share of its diameter. Where dirt
-// around the ring prevents the fit of a circle, the outline is less certain.
-constexpr double kSure = 0.02;
+// Reach around an outline that no circle fits, because of dirt around the ring; around the ring of
+// a board, and around one of arcs.
 constexpr double kUnsure = 0.1;
 constexpr double kOfBoard = 0.06;
 constexpr double kOfArcs = 0.025;
-constexpr double kLeastRingReachPx = 2;
 
 double ReachPx(const Eigen::Vector2d& diameters_px, const ImageRegion& region, double unsure) {
-  return std::max(kLeastRingReachPx, 0.8 * region.scale() + unsure * diameters_px.x());
+  return std::max(RingReach::kLeastPx, 0.8 * region.scale() + unsure * diameters_px.x());
 }
 
 }  // namespace
@@ -164,12 +162,12 @@ void RingFinder::AddOutline(const Outline& outline, const BorderTracer& tracer,
     for (const double scale : kBoardScales) {
       RingFit scaled = *ring;
       for (CirclePose& pose : scaled.poses) pose.center /= scale;
-      Add(scaled, diameters_px, small, std::max(kLeastRingReachPx, kOfBoard * diameters_px.x()),
+      Add(scaled, diameters_px, small, std::max(RingReach::kLeastPx, kOfBoard * diameters_px.x()),
           kOneScale);
     }
   } else {
-    Add(*ring, diameters_px, small, ReachPx(diameters_px, region, by_border ? kSure : kUnsure),
-        kOneScale);
+    Add(*ring, diameters_px, small,
+        ReachPx(diameters_px, region, by_border ? RingReach::kSure : kUnsure), kOneScale);
   }
 }
 
@@ -239,8 +237,8 @@ std::span<const RingCandidate> RingFinder::FindInCutAreas(SearchedImage* image, 
     log_.Reach(LandingStage::kRing, "no border lies on the image of a circle");
     if (!StandsOut(*image, ring->poses[0])) continue;
     const Eigen::Vector2d diameters_px = RingDiametersPx(models_.camera, radius_m, ring->poses[0]);
-    Add(*ring, diameters_px, IsSmallRing(diameters_px), ReachPx(diameters_px, region, kSure),
-        kAreaScales);
+    Add(*ring, diameters_px, IsSmallRing(diameters_px),
+        ReachPx(diameters_px, region, RingReach::kSure), kAreaScales);
   }
   return buffers_.candidates;
 }
@@ -268,7 +266,7 @@ std::span<const RingCandidate> RingFinder::FindInArcs(SearchedImage* image, std:
     const bool small = IsSmallRing(diameters_px);
     if (small && !StandsOut(*image, ring.poses[0])) continue;
     Add(ring, diameters_px, small,
-        std::max(kLeastRingReachPx, region.scale() + kOfArcs * diameters_px.x()), kOneScale);
+        std::max(RingReach::kLeastPx, region.scale() + kOfArcs * diameters_px.x()), kOneScale);
   }
   return buffers_.candidates;
 }

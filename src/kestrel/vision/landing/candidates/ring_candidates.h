@@ -19,6 +19,12 @@
 
 namespace kestrel {
 
+// Search reach for the edges of a ring.
+struct RingReach {
+  static constexpr double kSure = 0.02;  // share of its diameter, where a circle fits
+  static constexpr double kLeastPx = 2;
+};
+
 // Scales of a ring that is as large as it seems.
 inline constexpr std::array<double, 1> kOneScale{1.0};
 

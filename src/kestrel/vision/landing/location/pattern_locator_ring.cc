@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "kestrel/vision/landing/location/pattern_locator_equations.h"
+#include "kestrel/vision/landing/print_places.h"
 
 namespace kestrel {
 namespace {
 
-constexpr double kWholeRing = 0.75;  // least share of the places with an edge, for a whole ring
 constexpr double kRingSettledPx = 0.2;
 constexpr double kMaxRingScatterPx = 1.5;  // standard deviation, after two iterations
 constexpr double kGathering = 0.6;  // edges still gather when a step scales their scatter by less
@@ -23,7 +23,8 @@ std::optional<RingLocation> PatternLocator::LocateRing(
   double scale = std::max(1.0, 0.5 * reach_px);
   double reach = reach_px;
   const std::span<const PrintOutline::Place> places = outline_.ring();
-  const auto whole = static_cast<std::size_t>(kWholeRing * places.size() / EdgeFit::kCoarseStride);
+  const auto whole =
+      static_cast<std::size_t>(PrintPlaces::kWhole * places.size() / EdgeFit::kCoarseStride);
   bool is_whole = false;
   PrintEdges found;
   EdgeColumns edges;

@@ -7,27 +7,25 @@
 namespace kestrel {
 namespace {
 
-constexpr double kLeastLacking = 1e-3;  // least value of (1 - correlation)
-constexpr double kLeastSigma = 1e-4;
+constexpr double kLeastShare = 1e-4;  // less than any that a weight tells apart
 
 }  // namespace
 
-double LogLacking(double correlation) { return std::log(std::max(kLeastLacking, 1 - correlation)); }
+double LogShare(double share) { return std::log(std::max(kLeastShare, share)); }
 
 void DoubtGrayValues(const SmallPatternFitter::Fit& fit, PrintDoubts* doubts) {
   const PartShares::Means means = fit.shares.MeansInView();
   (*doubts)[PrintDoubt::kFaintArm] = 1 - means.worst_arm;
   (*doubts)[PrintDoubt::kBrokenRing] = 1 - means.ring;
   (*doubts)[PrintDoubt::kFrameCorners] = fit.frame_corners;
-  (*doubts)[PrintDoubt::kOtherFigure] = LogLacking(fit.cross_correlation);
+  (*doubts)[PrintDoubt::kOtherFigure] = LogShare(1 - fit.cross_correlation);
   (*doubts)[PrintDoubt::kInside] = fit.inside_residual - fit.ring_residual;
 }
 
 void DoubtView(const Eigen::Vector2d& diameters_px, double relative_sigma, PrintDoubts* doubts) {
-  (*doubts)[PrintDoubt::kUncertain] = std::log(std::max(kLeastSigma, relative_sigma));
+  (*doubts)[PrintDoubt::kUncertain] = LogShare(relative_sigma);
   (*doubts)[PrintDoubt::kSmall] = -std::log(std::max(1.0, diameters_px.y()));
-  (*doubts)[PrintDoubt::kFlat] =
-      -std::log(std::max(0.01, diameters_px.y() / std::max(1.0, diameters_px.x())));
+  (*doubts)[PrintDoubt::kFlat] = -LogShare(diameters_px.y() / std::max(1.0, diameters_px.x()));
 }
 
 }  // namespace kestrel

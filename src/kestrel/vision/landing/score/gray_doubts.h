@@ -8,8 +8,8 @@
 
 namespace kestrel {
 
-// Returns the natural logarithm of (1 - correlation), bounded from below.
-double LogLacking(double correlation);
+// Returns the natural logarithm of a share of something, bounded from below.
+double LogShare(double share);
 
 // Sets the doubts of a print that was fitted as a whole, by its gray values.
 void DoubtGrayValues(const SmallPatternFitter::Fit& fit, PrintDoubts* doubts);

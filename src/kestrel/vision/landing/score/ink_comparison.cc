@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -29,6 +30,10 @@ constexpr double kSpokeStart = 1.5;  // start of a line between the arms, arm wi
 constexpr double kLineHalf = 0.22;   // half the width of such a line, arm widths
 constexpr double kInSector = 0.9239;  // cosine of half a sector
 constexpr double kBoardReach = 0.55;  // share of the white margin around the ring
+// Places of another ring around it, shares of that margin: the first, and from one to the next.
+constexpr double kFirstAround = 0.24, kStepAround = 0.12;
+// And of another ring inside, shares of the inner radius.
+constexpr double kFirstInside = 0.3, kStepInside = 0.09;
 // Quantiles of the gray values around a direction: ink, white in its shadows, white in the light.
 constexpr double kInk = 0.5, kDarkerWhite = 0.25, kLitWhite = 0.8;
 // Darkness runs from 0 (white) to 1 (ink). A ramp is 0 up to 'from' and 1 beyond 'to'. kIsInk: dark
@@ -40,6 +45,9 @@ struct Ramp {
   }
 };
 constexpr Ramp kIsInk{0.2f, 0.6f}, kIsDark{0.35f, 0.85f}, kIsInkOnly{0.7f, 0.95f};
+// Of the darkness of another ring's stroke, of which noise makes some.
+constexpr Ramp kIsStroke{0.3f, 0.8f};
+constexpr Ramp kInAnyLight{-1, 1};     // from white in a highlight to ink
 constexpr float kBeyondWhite = 0.15f;  // above lit white, share of the contrast
 constexpr float kVeiled = 0.2f;        // above the darkest ink, share of the contrast
 constexpr float kLeastContrast = GrayContrast::kLeast;
@@ -163,6 +171,8 @@ void InkComparison::AddPlace(double x_m, double y_m) {
 void InkComparison::AddPlaces() {
   AddInk();
   AddWhite();
+  print_end_ = x_m_.size();
+  AddAround();
   for (int quadrant = 0; quadrant < kArms; ++quadrant) AddLines(quadrant);
 }
 
@@ -205,7 +215,7 @@ InkComparison::Range InkComparison::AddGrid(const Holds& holds) {
     for (int column = 0; column < kSide; ++column) {
       const double x = (2.0 * column + 1 - kSide) / kSide * extent_m_;
       const double y = (2.0 * row + 1 - kSide) / kSide * extent_m_;
-      if (x_m_.size() < kMaxPlaces && holds(x, y)) AddPlace(x, y);
+      if (x_m_.size() < kMaxPrintPlaces && holds(x, y)) AddPlace(x, y);
     }
   }
   return {begin, x_m_.size()};
@@ -241,7 +251,20 @@ void InkComparison::AddWhite() {
   }
 }
 
-// Collects, from the places between two arms, those on lines along which another spoke may lie.
+// Adds rows of places from the ring outwards, one in each direction.
+void InkComparison::AddAround() {
+  const double margin = 0.5 * pattern_.board_size_m - pattern_.outer_radius_m();
+  for (int i = 0; i < kAroundRows; ++i) {
+    const double angle = (i + 0.5) * 2 * std::numbers::pi / kAroundRows;
+    for (int k = 0; k < kPerRow; ++k) {
+      const double radius = pattern_.outer_radius_m() + (kFirstAround + k * kStepAround) * margin;
+      AddPlace(radius * std::cos(angle), radius * std::sin(angle));
+    }
+  }
+}
+
+// Collects, from the places between two arms, those on lines along which another spoke may lie, and
+// on arcs of another ring.
 void InkComparison::AddLines(int quadrant) {
   const double arm = pattern_.arm_width_m;
   for (int i = 0; i < kLines; ++i) {
@@ -254,11 +277,19 @@ void InkComparison::AddLines(int quadrant) {
       }
     }
   }
+  for (int i = 0; i < kArcs; ++i) {
+    const double radius = (kFirstInside + i * kStepInside) * pattern_.inner_radius_m();
+    for (std::size_t place = quadrant_[quadrant].begin; place < quadrant_[quadrant].end; ++place) {
+      if (std::abs(std::hypot(x_m_[place], y_m_[place]) - radius) < kLineHalf * arm) {
+        arc_[quadrant][i].push_back(static_cast<std::uint16_t>(place));
+      }
+    }
+  }
 }
 
 InkComparison::Levels InkComparison::MeasureLevels(const Grays& gray) const {
   std::array<Histogram, kSectors> ink{}, white{};
-  for (std::size_t i = 0; i < x_m_.size(); ++i) {
+  for (std::size_t i = 0; i < print_end_; ++i) {
     if (gray[i] < 0) continue;
     Histogram& histogram = (i < ink_end_ ? ink : white)[sector_[i]];
     ++histogram[static_cast<std::size_t>(std::lround(gray[i]))];
@@ -370,11 +401,11 @@ double InkComparison::Doubt(const cv::Mat& image, const PatternView& view,
   DoubtRing(darkness, doubts);
   DoubtBoard(darkness, doubts);
   InkCorrelation correlation;
-  for (std::size_t i = 0; i < x_m_.size(); ++i) {
+  for (std::size_t i = 0; i < print_end_; ++i) {
     if (gray[i] < 0) continue;
     correlation.Add(std::clamp(darkness.value[i], 0.0f, 1.0f), i < ink_end_);
   }
-  all[PrintDoubt::kUnlike] = LogLacking(correlation.value());
+  all[PrintDoubt::kUnlike] = LogShare(1 - correlation.value());
   return seen;
 }
 
@@ -420,9 +451,52 @@ void InkComparison::DoubtBoard(const Darkness& darkness, PrintDoubts* doubts) co
     (s % 2 == 0 ? corners : sides) += board[s];
     ++(s % 2 == 0 ? corner_count : side_count);
   }
-  (*doubts)[PrintDoubt::kDarkBoard] = KnownValues(board).Median();
+  const auto other_ring = static_cast<float>(std::max(RingAround(darkness), RingInside(darkness)));
+  (*doubts)[PrintDoubt::kDarkBoard] =
+      std::max<double>(KnownValues(board).Median(), kIsStroke(other_ring));
   (*doubts)[PrintDoubt::kDarkCorners] =
       corners / std::max(1, corner_count) - sides / std::max(1, side_count);
+}
+
+// Returns how dark a stroke around the ring is, with white beyond it, in at least half of the
+// directions. Ground beyond a small board has no white behind it.
+double InkComparison::RingAround(const Darkness& darkness) const {
+  double worst = 0;
+  for (int k = 0; k + 1 < kPerRow; ++k) {
+    std::array<float, kAroundRows> strokes;
+    std::size_t seen = 0;
+    for (std::size_t row = print_end_; row < x_m_.size(); row += kPerRow) {
+      const bool* const is_seen = &darkness.is_seen[row];
+      if (!std::all_of(is_seen, is_seen + kPerRow, std::identity())) continue;
+      const float* const value = &darkness.value[row];
+      const float beyond = *std::min_element(value + k + 1, value + kPerRow);
+      strokes[seen++] = kIsDark(value[k]) - kIsDark(beyond);
+    }
+    if (static_cast<double>(seen) < kEnoughSeen * kAroundRows) return 0;
+    worst = std::max<double>(worst, MedianInPlace(std::span(strokes).first(seen)));
+  }
+  return worst;
+}
+
+// Returns how dark an arc between the arms is, with white on both of its sides: the mean over the
+// quadrants but the darkest.
+double InkComparison::RingInside(const Darkness& darkness) const {
+  std::array<std::array<double, kArms>, kArcs> strokes;
+  for (int k = 0; k < kArms; ++k) {
+    std::array<double, kArcs> dark;
+    for (int i = 0; i < kArcs; ++i) dark[i] = darkness.Mean(arc_[k][i], kInAnyLight);
+    for (int i = 1; i + 1 < kArcs; ++i) {
+      const double within = *std::min_element(dark.begin(), dark.begin() + i);
+      const double beyond = *std::min_element(dark.begin() + i + 1, dark.end());
+      strokes[i][k] =
+          within < 0 || beyond < 0 ? -1 : std::max(0.0, 2 * (dark[i] - std::max(within, beyond)));
+    }
+  }
+  double worst = 0;
+  for (int i = 1; i + 1 < kArcs; ++i) {
+    worst = std::max(worst, KnownValues(strokes[i]).MeanButTop());
+  }
+  return worst;
 }
 
 }  // namespace kestrel

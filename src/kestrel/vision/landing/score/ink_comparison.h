@@ -32,10 +32,13 @@ class InkComparison {
  private:
   static constexpr int kArms = LandingPattern::kArms;
   static constexpr int kSectors = 2 * kArms;  // every second one lies around an arm
-  static constexpr int kLines = 5;            // between two arms: lines on which a spoke may lie
+  // Between two arms: lines on which a spoke may lie, and arcs of another ring.
+  static constexpr int kLines = 5, kArcs = 7;
   // Places on an arm, and on the ring in a sector; across their strokes.
   static constexpr int kAlongArm = 11, kAroundSector = 12, kAcross = 2;
-  static constexpr std::size_t kMaxPlaces = 1024;
+  static constexpr int kAroundRows = 32, kPerRow = 6;  // places of another ring around
+  static constexpr std::size_t kMaxPrintPlaces = 1024;
+  static constexpr std::size_t kMaxPlaces = kMaxPrintPlaces + kAroundRows * kPerRow;
 
   // A run of consecutive places.
   struct Range {
@@ -48,6 +51,7 @@ class InkComparison {
   void AddPlaces();
   void AddInk();
   void AddWhite();
+  void AddAround();
   void AddLines(int quadrant);
   void AddPlace(double x_m, double y_m);
   template <typename Holds>
@@ -63,6 +67,9 @@ class InkComparison {
   void DoubtCross(const Darkness& darkness, PrintDoubts* doubts) const;
   void DoubtRing(const Darkness& darkness, PrintDoubts* doubts) const;
   void DoubtBoard(const Darkness& darkness, PrintDoubts* doubts) const;
+  // Another ring around the print, or inside of its own: 0 none, 1 as dark as ink.
+  double RingAround(const Darkness& darkness) const;
+  double RingInside(const Darkness& darkness) const;
 
   LandingPattern pattern_;
   double extent_m_;
@@ -71,10 +78,12 @@ class InkComparison {
   std::array<Range, kArms> arm_;      // from the middle of the print outwards
   std::array<Range, kSectors> ring_;  // counter-clockwise
   std::size_t ink_end_ = 0;           // the places before this index are on arms and ring
+  std::size_t print_end_ = 0;         // and those from this one on are places of another ring
   // White between two arms: 'hub_' near the middle of the print, 'quadrant_' all of it.
   std::array<Range, kArms> hub_, quadrant_;
   std::array<Range, kSectors> board_;                                       // white around the ring
   std::array<std::array<std::vector<std::uint16_t>, kLines>, kArms> line_;  // indices of places
+  std::array<std::array<std::vector<std::uint16_t>, kArcs>, kArms> arc_;    // the same
 };
 
 }  // namespace kestrel

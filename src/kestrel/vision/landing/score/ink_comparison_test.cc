@@ -143,6 +143,30 @@ TEST_F(InkComparisonTest, OtherSignsRaiseDoubts) {
   EXPECT_GT(Compare(SpokedPrint(pattern_, 5)).Worst(), 0.5);
 }
 
+// Ground beyond a board that is smaller than described is no ring: it has no white behind it.
+TEST_F(InkComparisonTest, OtherRingRaisesDoubt) {
+  for (const double outer_m : {0.26, 0.28, 0.3}) {
+    const Print doubled = [=, this](double x, double y) {
+      const double radius_m = std::hypot(x, y);
+      return print_(x, y) || (radius_m < outer_m && radius_m > outer_m - 0.06);
+    };
+    EXPECT_GT(Compare(doubled)[PrintDoubt::kDarkBoard], 0.4) << outer_m;
+  }
+  for (const double outer_m : {0.62, 0.65, 0.68}) {
+    for (const double width_m : {0.05, 0.1}) {
+      const Print doubled = [=, this](double x, double y) {
+        const double radius_m = std::hypot(x, y);
+        return print_(x, y) || (radius_m < outer_m && radius_m > outer_m - width_m);
+      };
+      EXPECT_GT(Compare(doubled)[PrintDoubt::kDarkBoard], 0.4) << outer_m << " " << width_m;
+    }
+    const Print small_board = [=, this](double x, double y) {
+      return print_(x, y) || std::hypot(x, y) > outer_m + 0.02;
+    };
+    EXPECT_LT(Compare(small_board)[PrintDoubt::kDarkBoard], 0.1) << outer_m;
+  }
+}
+
 TEST_F(InkComparisonTest, FlatImageIsUnlikePrint) {
   const Compared compared = Compare(cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)));
   EXPECT_EQ(compared[PrintDoubt::kInklessArm], 1);

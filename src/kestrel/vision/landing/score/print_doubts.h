@@ -23,9 +23,11 @@ enum class PrintDoubt {
   kDarkHub,        // places near the middle too dark for white, second worst of four quadrants
   kOtherSpoke,     // places as dark as ink on a line between the arms, the worst quadrant
   kOtherSpokes,    // the same, the second worst quadrant
-  kDarkBoard,      // places around the ring too dark for white, median of the directions
-  kDarkCorners,    // the same: mean beyond the ends of the arms minus mean between them
-  kUnlike,         // logarithm of (1 - correlation with the print)
+  // Places around the ring too dark for white, median of the directions; or a stroke of another
+  // ring, around or inside.
+  kDarkBoard,
+  kDarkCorners,  // the same: mean beyond the ends of the arms minus mean between them
+  kUnlike,       // logarithm of (1 - correlation with the print)
   // Edges.
   kArmEdges,       // share of the arms' edges that are not in their place
   kWorstArmEdges,  // the same, of the worst arm

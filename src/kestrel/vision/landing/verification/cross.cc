@@ -13,7 +13,6 @@ constexpr int kRingDirections = 96;               // around the ring
 constexpr int kPerQuarter = kRingDirections / 4;  // over a right angle
 constexpr int kBeside = kPerQuarter * 28 / 90;  // from the middle of an arm to the white beside it
 constexpr std::array<double, 5> kRadii{0.34, 0.46, 0.58, 0.7, 0.82};  // inner radii of the ring
-constexpr int kMinSeen = 2;  // contrasts seen; with fewer a direction is not judged
 
 using DirectionTable = std::array<Eigen::Vector2f, kRingDirections>;
 const DirectionTable& Directions() {
@@ -56,7 +55,7 @@ std::optional<ArmDirection> FindArms(const cv::Mat& image, const PatternView& vi
   }
   std::array<float, kPerQuarter> depth{};
   for (int i = 0; i < kPerQuarter; ++i) {
-    if (seen[i] >= kMinSeen) depth[i] = sum[i] / static_cast<float>(seen[i]);
+    if (seen[i] > 0) depth[i] = sum[i] / static_cast<float>(seen[i]);
   }
   const auto best = std::max_element(depth.begin(), depth.end());
   if (*best <= 0) return std::nullopt;

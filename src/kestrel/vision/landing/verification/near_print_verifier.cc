@@ -25,9 +25,7 @@ constexpr double kSameSign = 0.12;
 constexpr std::array<double, 2> kRefinedReaches{1.5, 2.5};
 constexpr int kRefinements = 4;
 constexpr double kPredictedReach = 0.12;  // share of the diameter, for a predicted ring
-constexpr double kSureReach = 0.02;       // the same, for a ring whose edges are in place
 constexpr double kCrossReach = 0.03;      // the same, for a ring that follows from the cross
-constexpr double kLeastReachPx = 2;
 constexpr double kMinStep = 0.12;  // least step of an edge, share of the print's contrast per pixel
 // Shifts of a print's middle, as seen by its edges, that count as noise: below this many standard
 // deviations of that middle the pose's projection is kept, above it the middle moves towards the
@@ -56,11 +54,6 @@ double MeanDiameter(const PrintFinding& finding) { return std::sqrt(finding.diam
 RigidTransform Turned(const RigidTransform& pose, double angle) {
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()));
   return {pose.rotation * turn, pose.translation};
-}
-
-double LogShare(double length_px, double of_px) {
-  constexpr double kLeast = 1e-4;
-  return std::log(std::max(kLeast, length_px / of_px));
 }
 
 }  // namespace
@@ -123,7 +116,7 @@ void NearPrintVerifier::TestPredicted(const CirclePose& predicted,
   search_.image.Prepare(ViewLevel(diameters_px.x()));
   const std::optional<Hypothesis> print = FindCross(pose, diameters_px.x());
   if (!print) return;
-  const double reach_px = std::max(kLeastReachPx, kSureReach * diameters_px.x());
+  const double reach_px = std::max(RingReach::kLeastPx, RingReach::kSure * diameters_px.x());
   TestPrint(*print, diameters_px, reach_px, {&ring, 1}, {});
 }
 
@@ -136,7 +129,7 @@ void NearPrintVerifier::TestCross(const RigidTransform& pose, const ImageRegion&
   if (!view.valid()) return;
   const auto arms = FindArms(search_.image.At(region.level), view, search_.models.options.pattern);
   if (!arms || arms->contrast < GrayContrast::kLeastRing) return;
-  const double reach_px = std::max(kLeastReachPx, region.scale() + kCrossReach * diameter_px);
+  const double reach_px = std::max(RingReach::kLeastPx, region.scale() + kCrossReach * diameter_px);
   const CirclePose ring{pose.translation, pose.rotation * Eigen::Vector3d::UnitZ()};
   TestPrint({Turned(pose, arms->angle), arms->contrast}, Eigen::Vector2d::Constant(diameter_px),
             reach_px, {&ring, 1}, {});
@@ -232,7 +225,7 @@ bool NearPrintVerifier::Locate(const PrintAlignment& alignment, const RigidTrans
   finding.seen = {alignment.warp.pose(), alignment.warp.displacement(), alignment.warp.radius_m()};
   finding.seen_rms_px = alignment.edge_rms_px;
   finding.center_px = CenterPx(*location, alignment);
-  finding.doubts[PrintDoubt::kMisfit] = LogShare(location->edge_rms_px, MeanDiameter(finding));
+  finding.doubts[PrintDoubt::kMisfit] = LogShare(location->edge_rms_px / MeanDiameter(finding));
   DoubtView(finding.diameters_px, finding.relative_sigma(), &finding.doubts);
   finding.log_odds = PrintLogOdds(finding.kind, finding.doubts);
   finding.reported = search_.prior.LogOddsOfDistance(location->camera_from_target.translation);
@@ -255,7 +248,7 @@ void NearPrintVerifier::DoubtEdges(const PrintAlignment& alignment, PrintFinding
   const bool shows_arms = *std::max_element(edge_shares.arm.begin(), edge_shares.arm.end()) >= 0;
   finding->doubts[PrintDoubt::kArmEdges] = shows_arms ? 1 - edges.arms : 0;
   finding->doubts[PrintDoubt::kWorstArmEdges] = shows_arms ? 1 - edges.worst_arm : 0;
-  finding->doubts[PrintDoubt::kScatter] = LogShare(alignment.edge_rms_px, MeanDiameter(*finding));
+  finding->doubts[PrintDoubt::kScatter] = LogShare(alignment.edge_rms_px / MeanDiameter(*finding));
 }
 
 }  // namespace kestrel
