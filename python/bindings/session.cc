@@ -47,7 +47,7 @@ struct SeenFrame {
 
 // Pad and objects of a session, for drawing its results.
 struct Views {
-  std::shared_ptr<PadView> pad;
+  std::vector<std::shared_ptr<PadView>> pads;  // of each camera
   std::shared_ptr<ObjectModel> model;
 
   SeenFrame Seen(const Observation& observation) const {
@@ -55,7 +55,8 @@ struct Views {
     if (const auto* hunt = std::get_if<HuntObservation>(&observation.seen)) {
       frame.seen = SeenHunt{*hunt, model};
     } else {
-      frame.seen = SeenLanding{std::get<LandingObservation>(observation.seen), pad};
+      frame.seen = SeenLanding{std::get<LandingObservation>(observation.seen),
+                               pads[observation.frame.camera]};
     }
     return frame;
   }
@@ -225,7 +226,9 @@ class Session {
       opened.source->set_format(task_->format());
       return opened;
     }
-    return OpenWithWarnings(ChoiceOf(choices_.source, choices_.camera, task_->format()));
+    RecordingChoice choice = ChoiceOf(choices_.source, choices_.camera, task_->format());
+    choice.all_cameras = task_->takes_several_cameras();
+    return OpenWithWarnings(choice);
   }
 
   std::string RunRecorded() {
@@ -235,8 +238,8 @@ class Session {
     if (!choices_.output.empty()) {
       session.AddTables({choices_.output, choices_.replace, "", opened.source->rate_hz()});
     }
-    session.sinks().Add(
-        std::make_unique<CallingSink>(&choices_.sinks, ViewsOf(opened.calibration)));
+    session.sinks().Add(std::make_unique<CallingSink>(&choices_.sinks,
+                                                      ViewsOf(opened.calibration, opened.further)));
     session.Run([&](std::size_t /*done*/) {
       CheckSignals();
       return !is_stopped_;
@@ -258,11 +261,18 @@ class Session {
     return parts;
   }
 
-  Views ViewsOf(const CameraCalibration& calibration) const {
+  Views ViewsOf(const CameraCalibration& calibration,
+                const std::vector<CameraCalibration>& further = {}) const {
     const LandingPipelineOptions& landing = options_.landing;
-    return {std::make_shared<PadView>(PadView{CameraModel(calibration.intrinsics),
-                                              ShapeOfTarget(landing.target, landing.detector)}),
-            choices_.model};
+    const TargetShape shape = ShapeOfTarget(landing.target, landing.detector);
+    Views views{{}, choices_.model};
+    views.pads.push_back(
+        std::make_shared<PadView>(PadView{CameraModel(calibration.intrinsics), shape}));
+    for (const CameraCalibration& camera : further) {
+      views.pads.push_back(
+          std::make_shared<PadView>(PadView{CameraModel(camera.intrinsics), shape}));
+    }
+    return views;
   }
 
   std::string RunLive() {
@@ -324,7 +334,7 @@ void BindSeenFrame(py::module_& module) {
           [](const SeenFrame& self) {
             const auto* hunt = std::get_if<SeenHunt>(&self.seen);
             return hunt ? ObjectCsvRows(self.frame.name, *hunt, *hunt->model)
-                        : LandingCsvRow(self.frame.name, std::get<SeenLanding>(self.seen));
+                        : LandingCsvRow(self.frame, std::get<SeenLanding>(self.seen), false);
           },
           "Its lines of that table.");
 }

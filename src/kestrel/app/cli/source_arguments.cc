@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <limits>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -126,17 +127,23 @@ RecordingChoice SourceArguments::Recording(PixelFormat format) const {
   return choice;
 }
 
-OpenedSource SourceArguments::OpenOrAssume(PixelFormat format) const {
+OpenedSource SourceArguments::OpenOrAssume(PixelFormat format, bool all_cameras) const {
   RecordingChoice choice = Recording(format);
+  choice.all_cameras = all_cameras;
   choice.may_assume_lens = mcap.empty() && !dds.is_given() && !altitude_m;
   return OpenRecording(choice);
 }
 
 OutputOptions SourceArguments::Output(const OpenedSource& opened) const {
+  std::vector<double> further_rates_hz;
+  for (std::size_t i = 1; i <= opened.further.size(); ++i) {
+    further_rates_hz.push_back(opened.source->camera_rate_hz(i));
+  }
   return {.folder = output,
           .force = force,
           .annotate = annotate,
           .rate_hz = opened.source->rate_hz(),
+          .further_rates_hz = std::move(further_rates_hz),
           .only_in_image = opened.is_lens_unknown};
 }
 

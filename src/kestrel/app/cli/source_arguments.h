@@ -42,7 +42,7 @@ struct SourceArguments {
 
   // Opens the recording. Without a calibration, and without an output that needs one, a lens is
   // assumed.
-  OpenedSource OpenOrAssume(PixelFormat format) const;
+  OpenedSource OpenOrAssume(PixelFormat format, bool all_cameras = false) const;
 
   OutputOptions Output(const OpenedSource& opened) const;
 };

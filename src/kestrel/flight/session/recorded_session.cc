@@ -28,6 +28,7 @@ std::string TimesInWords(std::vector<double> ms) {
 RecordedSession::RecordedSession(const OpenedSource& opened, const Task& task,
                                  std::optional<double> altitude_m)
     : RecordedSession(opened, task.MakeVision({.calibration = opened.calibration,
+                                               .further = opened.further,
                                                .altitude_m = altitude_m,
                                                .has_world = opened.has_world(),
                                                .is_lens_unknown = opened.is_lens_unknown})) {}
@@ -41,7 +42,7 @@ bool RecordedSession::Run(const std::function<bool(std::size_t done)>& go_on) {
 
 bool RecordedSession::RunToEnd(const std::function<bool(std::size_t done)>& go_on) {
   opened_.source->set_on_broken([this](const BrokenImage& broken) {
-    sinks_.Take(BrokenFrame{broken.name, broken.time, broken.what()});
+    sinks_.Take(BrokenFrame{broken.name, broken.time, broken.what(), broken.camera});
     if (broken_++ == 0) first_fault_ = broken.what();
   });
   RecordingEvents events(opened_.source.get(), opened_.source->poses(), vision_->pose_lead());
