@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
@@ -89,31 +90,14 @@ class GuardedLanding : public Guarded<LandingPipeline> {
   PadViews views_;  // of each camera
 };
 
-std::vector<CameraCalibration> CamerasOf(const py::object& calibration) {
-  if (py::isinstance<CameraCalibration>(calibration)) {
-    return {calibration.cast<CameraCalibration>()};
-  }
-  auto cameras = calibration.cast<std::vector<CameraCalibration>>();
-  if (cameras.empty())
-    throw InputError("calibration is an empty list, expected one for each camera");
-  return cameras;
+using OneOrSeveral = std::variant<CameraCalibration, std::vector<CameraCalibration>>;
+
+std::vector<CameraCalibration> CamerasOf(const OneOrSeveral& calibration) {
+  if (const auto* one = std::get_if<CameraCalibration>(&calibration)) return {*one};
+  const auto& cameras = std::get<std::vector<CameraCalibration>>(calibration);
+  if (!cameras.empty()) return cameras;
+  throw InputError("calibration is an empty list, expected one for each camera");
 }
-
-class GuardedHunt : public Guarded<HuntPipeline> {
- public:
-  GuardedHunt(HuntPipeline pipeline, std::shared_ptr<ObjectModel> model)
-      : Guarded(std::move(pipeline)), model_(std::move(model)) {}
-
-  SeenHunt Process(const py::handle& image, Time time) {
-    const cv::Mat pixels = ColorImage(image, pipeline().detector().camera().intrinsics());
-    return With([&](HuntPipeline& pipeline) {
-      return SeenHunt{pipeline.Process(pixels, time), model_};
-    });
-  }
-
- private:
-  std::shared_ptr<ObjectModel> model_;
-};
 
 void BindLandingObservation(py::module_& module) {
   using Seen = SeenLanding;
@@ -192,7 +176,7 @@ void BindLandingPipeline(py::module_& module) {
       module, "LandingPipeline",
       "The whole vision of a landing: images and poses in; the pad, its place in the world and its "
       "track out.")
-      .def(py::init([](const py::object& calibration, const py::object& options,
+      .def(py::init([](const OneOrSeveral& calibration, const py::object& options,
                        const std::shared_ptr<Detector>& detector, const py::kwargs& keywords) {
              const auto values = OptionsOf<LandingPipelineOptions>(
                  options, keywords, [](const auto& file) { return file.landing; });
@@ -229,11 +213,11 @@ void BindLandingPipeline(py::module_& module) {
           },
           py::arg("altitude_m"), kSetAltitude)
       .def("process", &GuardedLanding::Process, py::arg("image"), py::arg("time_ns"),
-           py::arg("camera") = 0,
+           py::arg("camera_index") = 0,
            "Processes a frame.\n\nimage: uint8 of shape (rows, columns), gray, of the camera's "
-           "size; not copied.\ntime_ns: middle of the exposure, int, ns.\ncamera: index of its "
-           "camera.\nReturns a LandingObservation. Lets other threads run.")
-      .def("camera_fault", &GuardedLanding::FaultOf, py::arg("camera"),
+           "size; not copied.\ntime_ns: middle of the exposure, int, ns.\ncamera_index: of "
+           "several cameras.\nReturns a LandingObservation. Lets other threads run.")
+      .def("camera_fault", &GuardedLanding::FaultOf, py::arg("camera_index"),
            "Returns in words why one of several cameras does not contribute to the track; None "
            "where it does.")
       .def(

@@ -22,6 +22,8 @@ class SeveralCameras : public FrameSource {
   };
   // 'cameras': at least one.
   explicit SeveralCameras(std::vector<Camera> cameras);
+  SeveralCameras(const SeveralCameras&) = delete;  // the sources refer to it
+  SeveralCameras& operator=(const SeveralCameras&) = delete;
 
   std::optional<std::size_t> frame_count() const override;
   double rate_hz() const override { return first().rate_hz(); }

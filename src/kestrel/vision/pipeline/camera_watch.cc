@@ -40,16 +40,16 @@ bool CameraWatch::IsUsed(std::size_t camera) const {
   return own.state.health == CameraHealth::kGood && own.repeated.in_a_row() == 0;
 }
 
-void CameraWatch::AddSighting(std::size_t camera, Time time, MeasurementFate fate, double offset_m,
+void CameraWatch::AddSighting(std::size_t camera, Time time, SightingPlace place, double offset_m,
                               const std::function<bool(std::size_t)>& has_wrong_tilt) {
   Watched& own = cameras_[camera];
-  if (fate == MeasurementFate::kStarted) {
+  if (place == SightingPlace::kStart) {
     moved_by_ = own.outside > 0 ? std::optional(camera) : std::nullopt;
     own.outside = 0;
     confirmed_ = camera;
   }
-  if (fate == MeasurementFate::kAccepted) Confirm(camera);
-  if (fate != MeasurementFate::kFarFromTrack) return;
+  if (place == SightingPlace::kInside) Confirm(camera);
+  if (place != SightingPlace::kOutside) return;
   if (own.outside == 0) own.confirmed_by_others = 0;
   own.offsets_m[static_cast<std::size_t>(own.outside++ % kSightings)] = offset_m;
   if (own.outside < kSightings || own.confirmed_by_others < kConfirmations) return;

@@ -12,14 +12,20 @@
 #include "kestrel/core/base/time.h"
 #include "kestrel/vision/pipeline/camera_state.h"
 #include "kestrel/vision/pipeline/repeated_image.h"
-#include "kestrel/vision/tracking/target_tracker.h"
 
 namespace kestrel {
 
+// Where a camera saw the target.
+enum class SightingPlace {
+  kStart,    // there was no track; it begins here
+  kInside,   // where the track is, as far as mounts and clocks can be wrong
+  kOutside,  // elsewhere
+};
+
 // Decides which of several cameras with one track can be used. A camera contradicts when several of
-// its sightings in a row lie outside of the gate of the track while those of another camera lie
-// inside. Of the two, the one is left out that has moved the track before, or whose views alone
-// contradict the UAV's attitude, or else the one that is outside.
+// its sightings in a row are outside of the track while those of another camera are inside. Of the
+// two, the one is left out that has moved the track before, or whose views alone contradict the
+// UAV's attitude, or else the one that is outside.
 class CameraWatch {
  public:
   explicit CameraWatch(std::size_t cameras) : cameras_(cameras) {}
@@ -27,9 +33,9 @@ class CameraWatch {
   // Takes a frame; all times are on one clock. Does not allocate.
   void AddFrame(std::size_t camera, const cv::Mat& image, Time time);
 
-  // Takes the fate in the track of what the newest frame of 'camera' showed. 'offset_m': distance
-  // from the track. 'has_wrong_tilt': whether the views of a camera contradict the attitude.
-  void AddSighting(std::size_t camera, Time time, MeasurementFate fate, double offset_m,
+  // Takes the place where the newest frame of 'camera' showed the target. 'offset_m': distance from
+  // the track. 'has_wrong_tilt': whether the views of a camera contradict the attitude.
+  void AddSighting(std::size_t camera, Time time, SightingPlace place, double offset_m,
                    const std::function<bool(std::size_t camera)>& has_wrong_tilt);
 
   // True when the newest frame of the camera can be used.
@@ -43,8 +49,8 @@ class CameraWatch {
     CameraState state;
     std::optional<Time> newest;
     RepeatedImage repeated;
-    int outside = 0;              // sightings in a row outside of the gate
-    int confirmed_by_others = 0;  // sightings of others inside of it since the first of those
+    int outside = 0;              // sightings in a row outside
+    int confirmed_by_others = 0;  // sightings of others inside since the first of those
     std::array<double, kSightings> offsets_m{};
   };
 
@@ -56,7 +62,7 @@ class CameraWatch {
 
   std::vector<Watched> cameras_;
   std::optional<Time> begin_;
-  std::size_t confirmed_ = 0;            // camera of the newest sighting inside of the gate
+  std::size_t confirmed_ = 0;            // camera of the newest sighting inside
   std::optional<std::size_t> moved_by_;  // camera that moved the track; nothing once another agreed
 };
 

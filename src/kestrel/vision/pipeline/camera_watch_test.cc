@@ -16,11 +16,11 @@ class CameraWatchTest : public ::testing::Test {
  protected:
   static constexpr std::size_t kFirst = 0, kSecond = 1;
 
-  // A frame that differs from the ones before, and what became of the target in it.
-  void See(std::size_t camera, MeasurementFate fate, double offset_m = 0) {
+  // A frame that differs from the ones before, and where it shows the target.
+  void See(std::size_t camera, SightingPlace place, double offset_m = 0) {
     watch_.AddFrame(camera, cv::Mat(8, 8, CV_8UC1, cv::Scalar(++frames_ % 256)), time_);
     if (!watch_.IsUsed(camera)) return;
-    watch_.AddSighting(camera, time_, fate, offset_m,
+    watch_.AddSighting(camera, time_, place, offset_m,
                        [this](std::size_t each) { return each == tilted_; });
   }
   void Step() { time_ += std::chrono::milliseconds(100); }
@@ -33,11 +33,11 @@ class CameraWatchTest : public ::testing::Test {
 };
 
 TEST_F(CameraWatchTest, SilentCameraIsLeftOutUntilItSendsAgain) {
-  for (int i = 0; i < 12; ++i, Step()) See(kFirst, MeasurementFate::kAccepted);
+  for (int i = 0; i < 12; ++i, Step()) See(kFirst, SightingPlace::kInside);
   EXPECT_EQ(HealthOf(kSecond), CameraHealth::kSilent);
   EXPECT_EQ(InWords(watch_.state(kSecond)), "sends no images: left out until it does");
   EXPECT_FALSE(watch_.IsUsed(kSecond));
-  See(kSecond, MeasurementFate::kAccepted);
+  See(kSecond, SightingPlace::kInside);
   EXPECT_TRUE(watch_.IsUsed(kSecond));
   EXPECT_EQ(InWords(watch_.state(kSecond)), "is used again");
   EXPECT_TRUE(watch_.IsUsed(kFirst));
@@ -48,23 +48,23 @@ TEST_F(CameraWatchTest, FrozenCameraIsLeftOutFromItsFirstRepetition) {
   for (int i = 0; i < 6; ++i, Step()) {
     watch_.AddFrame(kSecond, image, time_);
     EXPECT_EQ(watch_.IsUsed(kSecond), i == 0) << i;
-    See(kFirst, MeasurementFate::kAccepted);
+    See(kFirst, SightingPlace::kInside);
   }
   EXPECT_EQ(HealthOf(kSecond), CameraHealth::kFrozen);
-  See(kSecond, MeasurementFate::kAccepted);
+  See(kSecond, SightingPlace::kInside);
   EXPECT_EQ(HealthOf(kSecond), CameraHealth::kGood);
 }
 
 TEST_F(CameraWatchTest, CameraThatContradictsIsLeftOutForGood) {
   for (int i = 0; i < 10; ++i, Step()) {
     EXPECT_EQ(HealthOf(kSecond), CameraHealth::kGood) << i;
-    See(kFirst, MeasurementFate::kAccepted);
-    See(kSecond, MeasurementFate::kFarFromTrack, 0.5 + 0.01 * i);
+    See(kFirst, SightingPlace::kInside);
+    See(kSecond, SightingPlace::kOutside, 0.5 + 0.01 * i);
   }
   EXPECT_EQ(HealthOf(kSecond), CameraHealth::kContradicts);
   EXPECT_NEAR(watch_.state(kSecond).offset_m, 0.55, 0.02);
   EXPECT_THAT(InWords(watch_.state(kSecond)), HasSubstr("m from where the others see it"));
-  for (int i = 0; i < 20; ++i, Step()) See(kSecond, MeasurementFate::kAccepted);
+  for (int i = 0; i < 20; ++i, Step()) See(kSecond, SightingPlace::kInside);
   EXPECT_EQ(HealthOf(kSecond), CameraHealth::kContradicts);
   EXPECT_EQ(HealthOf(kFirst), CameraHealth::kSilent);
 }
@@ -73,11 +73,11 @@ TEST_F(CameraWatchTest, CameraThatContradictsIsLeftOutForGood) {
 TEST_F(CameraWatchTest, CamerasThatLoseTheTrackTogetherAreBothUsed) {
   for (int i = 0; i < 40; ++i, Step()) {
     const bool has_moved = i >= 10 && i < 13;
-    const auto fate = i == 13     ? MeasurementFate::kStarted
-                      : has_moved ? MeasurementFate::kFarFromTrack
-                                  : MeasurementFate::kAccepted;
-    See(kFirst, fate, 1);
-    See(kSecond, has_moved ? fate : MeasurementFate::kAccepted, 1);
+    const auto place = i == 13     ? SightingPlace::kStart
+                       : has_moved ? SightingPlace::kOutside
+                                   : SightingPlace::kInside;
+    See(kFirst, place, 1);
+    See(kSecond, has_moved ? place : SightingPlace::kInside, 1);
   }
   EXPECT_TRUE(watch_.IsUsed(kFirst));
   EXPECT_TRUE(watch_.IsUsed(kSecond));
@@ -86,13 +86,13 @@ TEST_F(CameraWatchTest, CamerasThatLoseTheTrackTogetherAreBothUsed) {
 // While the first camera does not see the target, the second one draws the track to where it sees
 // it. When the first one is back, its sightings are the ones that are far from the track.
 TEST_F(CameraWatchTest, CameraThatHasMovedTheTrackIsTheOneThatIsLeftOut) {
-  See(kFirst, MeasurementFate::kStarted);
-  for (int i = 0; i < 10; ++i, Step()) See(kFirst, MeasurementFate::kAccepted);
-  for (int i = 0; i < 4; ++i, Step()) See(kSecond, MeasurementFate::kFarFromTrack, 2);
-  See(kSecond, MeasurementFate::kStarted);
+  See(kFirst, SightingPlace::kStart);
+  for (int i = 0; i < 10; ++i, Step()) See(kFirst, SightingPlace::kInside);
+  for (int i = 0; i < 4; ++i, Step()) See(kSecond, SightingPlace::kOutside, 2);
+  See(kSecond, SightingPlace::kStart);
   for (int i = 0; i < 10; ++i, Step()) {
-    See(kFirst, MeasurementFate::kFarFromTrack, 2);
-    See(kSecond, MeasurementFate::kAccepted);
+    See(kFirst, SightingPlace::kOutside, 2);
+    See(kSecond, SightingPlace::kInside);
   }
   EXPECT_EQ(HealthOf(kFirst), CameraHealth::kGood);
   EXPECT_EQ(HealthOf(kSecond), CameraHealth::kContradicts);
@@ -100,10 +100,10 @@ TEST_F(CameraWatchTest, CameraThatHasMovedTheTrackIsTheOneThatIsLeftOut) {
 
 TEST_F(CameraWatchTest, CameraThatContradictsTheAttitudeIsTheOneThatIsLeftOut) {
   tilted_ = kSecond;
-  See(kSecond, MeasurementFate::kStarted);
+  See(kSecond, SightingPlace::kStart);
   for (int i = 0; i < 10; ++i, Step()) {
-    See(kSecond, MeasurementFate::kAccepted);
-    See(kFirst, MeasurementFate::kFarFromTrack, 2);
+    See(kSecond, SightingPlace::kInside);
+    See(kFirst, SightingPlace::kOutside, 2);
   }
   EXPECT_EQ(HealthOf(kFirst), CameraHealth::kGood);
   EXPECT_EQ(HealthOf(kSecond), CameraHealth::kContradicts);

@@ -134,7 +134,8 @@ class LandingPipeline::Impl {
   static Eigen::Vector3d SweepOf(const Eye& eye, const LandingObservation& observation);
   TargetMeasurement MeasurementOf(const Eye& eye, const LandingObservation& observation) const;
   void Track(Eye* eye, LandingObservation* observation);
-  void Judge(const TargetMeasurement& measurement, const LandingObservation& observation);
+  void Judge(const TargetMeasurement& measurement, const std::optional<TargetEstimate>& expected,
+             const LandingObservation& observation);
   void Remember(const LandingObservation& observation, Eye* eye);
 
   LandingPipelineOptions options_;
@@ -264,8 +265,10 @@ void LandingPipeline::Impl::Detect(const cv::Mat& image, Eye* eye,
   eye->next_step = observation->report.diagnostics.next_step;
   auto& detection = observation->report.detection;
   if (!detection) return;
-  eye->contradictions.Add(reported, *detection);
-  eye->calibration.Add(*detection);
+  if (IsUsed(observation->camera)) {
+    eye->contradictions.Add(reported, *detection);
+    eye->calibration.Add(*detection);
+  }
   if (!options_.still) AddErrorOfFocalLength(*eye, &*detection);
 }
 
@@ -391,23 +394,34 @@ void LandingPipeline::Impl::Track(Eye* eye, LandingObservation* observation) {
   if (!is_used) eye->is_track_trusted = false;
   if (observation->center_in_world && is_used) {
     const TargetMeasurement measurement = MeasurementOf(*eye, *observation);
+    const auto expected = has_several() ? tracker_.Predict(observation->time) : std::nullopt;
     observation->fate = tracker_.Add(measurement);
     eye->is_track_trusted = observation->fate <= MeasurementFate::kAccepted;
-    if (has_several()) Judge(measurement, *observation);
+    if (has_several()) Judge(measurement, expected, *observation);
   }
   observation->track_state = tracker_.StateAt(observation->time);
   observation->target = tracker_.Predict(observation->time);
 }
 
+// 'expected': the track without the measurement.
 void LandingPipeline::Impl::Judge(const TargetMeasurement& measurement,
+                                  const std::optional<TargetEstimate>& expected,
                                   const LandingObservation& observation) {
+  constexpr double kSigmas = 3;
+  constexpr double kTolerated_rad = 0.035;  // by mounts and clocks
+  constexpr double kFarthest_rad = 0.3;     // the most that they explain: beyond is another thing
+  SightingPlace place = SightingPlace::kStart;
   double offset_m = 0;
-  if (observation.fate == MeasurementFate::kFarFromTrack) {
-    const auto target = tracker_.Predict(observation.time);
-    if (target) offset_m = (measurement.position_in_world - target->motion.position()).norm();
+  if (observation.fate != MeasurementFate::kStarted) {
+    if (!expected) return;
+    const double distance_m = observation.report.detection->camera_from_target.translation.norm();
+    offset_m = (measurement.position_in_world - expected->motion.position()).norm();
+    if (offset_m > kFarthest_rad * distance_m) return;
+    const double most_m = kSigmas * expected->position_sigma_m() + kTolerated_rad * distance_m;
+    place = offset_m > most_m ? SightingPlace::kOutside : SightingPlace::kInside;
   }
   watch_.AddSighting(
-      observation.camera, observation.time, *observation.fate, offset_m,
+      observation.camera, observation.time, place, offset_m,
       [this](std::size_t camera) { return eyes_[camera].contradictions.Attitude().has_value(); });
 }
 
