@@ -4,12 +4,11 @@
 //
 //   json_lines flight > detections.jsonl
 #include <iostream>
+#include <memory>
 
 #include "json_lines_sink.h"
 #include "kestrel/error.h"
-#include "kestrel/live_session.h"
-#include "kestrel/open_source.h"
-#include "kestrel/realtime_replay.h"
+#include "kestrel/session.h"
 
 int main(int argc, char** argv) {
   if (argc != 2) {
@@ -17,20 +16,11 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    const auto open = [&] { return kestrel::OpenSource({argv[1]}); };
-    kestrel::LiveSessionParts parts;
-    parts.calibration = open()->calibration().value();
-    const kestrel::Duration offset =
-        parts.calibration.clock_offset.value_or(kestrel::Duration::zero());
-    kestrel::RealtimeReplay replay(open, offset, /*is_looped=*/false);
-    JsonLinesSink sink(&std::cout);
-    parts.source = &replay;
-    parts.has_poses = true;
-    parts.sink = &sink;
-    kestrel::LiveSession session(parts);
-    session.Run([] { return false; });
-    sink.Finish();
-    return sink.lines() > 0 ? 0 : 1;
+    const auto flight = kestrel::OpenLiveSource({.recording = {.sources = {argv[1]}}}, {});
+    const auto session = kestrel::MakeSession(flight, kestrel::LandTask({}));
+    const auto* const sink = session->sinks().Add(std::make_unique<JsonLinesSink>(&std::cout));
+    session->Run();
+    return sink->lines() > 0 ? 0 : 1;
   } catch (const kestrel::InputError& error) {
     std::cerr << error.what() << "\n";
     return 1;

@@ -4,11 +4,12 @@
 //
 //   land_recording flight
 #include <iostream>
+#include <memory>
+#include <optional>
 #include <variant>
 
-#include "kestrel/event_source.h"
-#include "kestrel/landing_pipeline.h"
-#include "kestrel/open_source.h"
+#include "kestrel/error.h"
+#include "kestrel/session.h"
 
 namespace {
 
@@ -23,6 +24,13 @@ kestrel::LandingPipelineOptions Options() {
   return options;
 }
 
+struct LastTarget : kestrel::ObservationSink {
+  void Take(const kestrel::Observation& observation) override {
+    target = std::get<kestrel::LandingObservation>(observation.seen).target;
+  }
+  std::optional<kestrel::TargetEstimate> target;
+};
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -31,26 +39,14 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    const auto source = kestrel::OpenSource({argv[1]});
-    const kestrel::CameraCalibration calibration = source->calibration().value();
-    kestrel::LandingPipeline pipeline(calibration, Options());
-    const kestrel::Duration lead = calibration.clock_offset.value_or(kestrel::Duration::zero());
-    kestrel::RecordingEvents events(source.get(), source->poses(), lead);
-    kestrel::LandingObservation last;
-    int frames = 0, found = 0;
-    for (kestrel::Event event = events.Next(); !std::holds_alternative<kestrel::EndOfStream>(event);
-         event = events.Next()) {
-      if (const auto* pose = std::get_if<kestrel::PoseSample>(&event)) pipeline.AddPose(*pose);
-      if (const auto* frame = std::get_if<kestrel::Frame>(&event)) {
-        last = pipeline.Process(frame->image, frame->time);
-        ++frames;
-        found += last.report.detection.has_value();
-      }
-    }
-    std::cout << "found in " << found << " of " << frames << " frames\n";
-    if (!last.target) return 1;
-    std::cout << "the pad is at " << last.target->motion.position().transpose() << " m, drives at "
-              << last.target->speed() << " m/s\n";
+    const auto recording = kestrel::OpenRecording({.sources = {argv[1]}});
+    const auto session = kestrel::MakeSession(recording, kestrel::LandTask(Options()));
+    const auto* const last = session->sinks().Add(std::make_unique<LastTarget>());
+    session->Run();
+    std::cout << session->Summary();
+    if (!last->target) return 1;
+    std::cout << "the pad is at " << last->target->motion.position().transpose() << " m, drives at "
+              << last->target->speed() << " m/s\n";
   } catch (const kestrel::InputError& error) {
     std::cerr << error.what() << "\n";
     return 1;

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A camera of one's own in a LiveSession: finds the landing pattern in its images and writes what
+// A camera of one's own in a session: finds the landing pattern in its images and writes what
 // was found as JSON lines. With an argument, as "serial:///dev/ttyAMA0:921600", it tells an
 // autopilot where the pattern is.
 #include <chrono>
 #include <iostream>
+#include <memory>
 #include <string>
 #include <thread>
 
 #include <opencv2/imgproc.hpp>
 
 #include "json_lines_sink.h"
-#include "kestrel/live_session.h"
+#include "kestrel/session.h"
 
 namespace {
 
@@ -43,16 +44,14 @@ class DrawnCamera : public kestrel::LiveSource {
 }  // namespace
 
 int main(int argc, char** argv) {
-  kestrel::LiveSessionParts parts;
-  DrawnCamera camera;
-  parts.source = &camera;
-  parts.calibration.intrinsics = {
+  kestrel::OpenedLiveSource camera{.source = std::make_unique<DrawnCamera>()};
+  camera.calibration.intrinsics = {
       .width_px = 640, .height_px = 480, .fx_px = 400, .fy_px = 400, .cx_px = 320, .cy_px = 240};
-  JsonLinesSink sink(&std::cout);
-  parts.sink = &sink;
-  if (argc > 1) parts.autopilot = argv[1];
-  kestrel::LiveSession session(parts);
-  session.Run([] { return false; });
-  std::cerr << session.Summary();
-  return sink.lines() > 30 ? 0 : 1;
+  kestrel::SessionOptions options;
+  if (argc > 1) options.autopilot = argv[1];
+  const auto session = kestrel::MakeSession(camera, kestrel::LandTask({}), options);
+  const auto* const sink = session->sinks().Add(std::make_unique<JsonLinesSink>(&std::cout));
+  session->Run();
+  std::cerr << session->Summary();
+  return sink->lines() > 30 ? 0 : 1;
 }

@@ -6,7 +6,8 @@
 // Example:
 //   const OpenedLiveSource camera = OpenLiveSource(
 //       {.recording = {.sources = {"/dev/video0"}, .camera = "camera.yaml"}}, {});
-//   LiveSession session({.source = camera.source.get(), .calibration = camera.calibration});
-//   session.Run([] { return false; });
+//   while (const auto event = camera.source->Next(std::chrono::seconds(1))) {
+//     if (const auto* frame = std::get_if<Frame>(&*event)) std::cout << frame->name << "\n";
+//   }
 
 #include "kestrel/flight/onboard/open_live_source.h"  // IWYU pragma: export

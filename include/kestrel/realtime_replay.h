@@ -4,9 +4,11 @@
 // A recording as a live source, played at the pace at which it was flown.
 //
 // Example:
-//   RealtimeReplay replay([] { return OpenSource({"flight"}); }, /*clock_offset=*/Duration::zero(),
-//                         /*is_looped=*/false);
-//   LiveSession session({.source = &replay, .calibration = ReadCalibration("camera.yaml")});
-//   session.Run([] { return false; });
+//   const OpenedLiveSource flight{
+//       .source = std::make_unique<RealtimeReplay>([] { return OpenSource({"flight"}); },
+//                                                  /*clock_offset=*/Duration::zero(),
+//                                                  /*is_looped=*/false),
+//       .calibration = ReadCalibration("camera.yaml")};
+//   MakeSession(flight, LandTask({}))->Run();
 
 #include "kestrel/flight/onboard/realtime_replay.h"  // IWYU pragma: export

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Sessions: a source, the vision, and functions of Python that get the results.
+#include "kestrel/session.h"
+
 #include <atomic>
 #include <exception>
 #include <functional>
@@ -17,16 +19,11 @@
 #include "bindings.h"
 #include "enum_casters.h"
 #include "kestrel/app/fly/fly_autopilot.h"
-#include "kestrel/app/fly/fly_session.h"
 #include "kestrel/app/fly/fly_source.h"
 #include "kestrel/asynchronous_sink.h"
 #include "kestrel/comms/dds/dds_domain.h"
-#include "kestrel/flight/session/task.h"
 #include "kestrel/io/recording/tables/landing_csv.h"
 #include "kestrel/io/recording/tables/object_csv.h"
-#include "kestrel/live_session.h"
-#include "kestrel/observation_sinks.h"
-#include "kestrel/recorded_session.h"
 #include "kestrel/simulation/autopilots/sitl_result.h"
 #include "option_values.h"
 #include "recordings.h"
@@ -80,21 +77,24 @@ struct Choices {
   bool guides = false;
 };
 
-// Calls functions of Python with the frames of a session over a recording.
+// Calls functions of Python with the frames and events of a session over a recording.
 class CallingSink : public ObservationSink {
  public:
-  CallingSink(const std::vector<py::function>* sinks, Views views)
-      : sinks_(sinks), views_(std::move(views)) {}
+  CallingSink(const Choices* choices, Views views) : choices_(*choices), views_(std::move(views)) {}
 
   void Take(const Observation& observation) override {
-    if (sinks_->empty()) return;
+    if (choices_.sinks.empty()) return;
     const py::gil_scoped_acquire acquire;
     const py::object seen = py::cast(views_.Seen(observation));
-    for (const py::function& sink : *sinks_) sink(seen);
+    for (const py::function& sink : choices_.sinks) sink(seen);
+  }
+  void Take(const SessionEvent& event) override {
+    const py::gil_scoped_acquire acquire;
+    if (!choices_.on_event.is_none()) choices_.on_event(event.text);
   }
 
  private:
-  const std::vector<py::function>* sinks_;
+  const Choices& choices_;
   Views views_;
 };
 
@@ -130,21 +130,20 @@ class FirstError {
 // Calls them in a flight, which does not wait: with a thread of its own.
 class CallingWriter : public SinkWriter {
  public:
-  CallingWriter(const Choices* choices, Views views, FirstError* error)
-      : sink_(&choices->sinks, std::move(views)), on_event_(&choices->on_event), error_(error) {}
+  CallingWriter(std::unique_ptr<CallingSink> sink, FirstError* error)
+      : sink_(std::move(sink)), error_(error) {}
 
   void Write(const Observation& observation, std::size_t /*waiting*/) override {
-    error_->Catch([&] { sink_.Take(observation); });
+    Pass(observation);
   }
-  void Write(const SessionEvent& event) override {
-    const py::gil_scoped_acquire acquire;
-    if (on_event_->is_none()) return;
-    error_->Catch([&] { (*on_event_)(event.text); });
-  }
+  void Write(const SessionEvent& event) override { Pass(event); }
 
  private:
-  CallingSink sink_;
-  const py::object* on_event_;
+  void Pass(const auto& value) {
+    error_->Catch([&] { sink_->Take(value); });
+  }
+
+  std::unique_ptr<CallingSink> sink_;
   FirstError* error_;
 };
 
@@ -234,45 +233,15 @@ class Session {
   std::string RunRecorded() {
     const OpenedSource opened = Open();
     const py::gil_scoped_release release;
-    RecordedSession session(opened, *task_, choices_.altitude_m);
-    if (!choices_.output.empty()) {
-      session.AddTables({choices_.output, choices_.replace, "", opened.source->rate_hz()});
-    }
-    session.sinks().Add(std::make_unique<CallingSink>(&choices_.sinks,
-                                                      ViewsOf(opened.calibration, opened.further)));
-    session.Run([&](std::size_t /*done*/) {
+    const auto session = MakeSession(opened, *task_, WithChoices({}));
+    session->sinks().Add(SinkFor(opened.calibration, opened.further));
+    session->Run([this] {
       CheckSignals();
-      return !is_stopped_;
+      return is_stopped_.load();
     });
-    std::string text = session.Summary();
-    if (const auto warning = session.vision().Warning(); !warning.empty()) text += warning + "\n";
+    std::string text = session->Summary();
+    if (const auto warning = session->vision().Warning(); !warning.empty()) text += warning + "\n";
     return text;
-  }
-
-  LiveSessionParts Parts(FlySource* source, const FlyAutopilot& autopilot,
-                         ObservationSink* sink) const {
-    LiveSessionParts parts = SessionParts(source, autopilot);
-    parts.task = task_;
-    parts.sink = sink;
-    parts.guides = choices_.guides;
-    parts.output = choices_.output;
-    parts.record = choices_.record;
-    parts.replace = choices_.replace;
-    return parts;
-  }
-
-  Views ViewsOf(const CameraCalibration& calibration,
-                const std::vector<CameraCalibration>& further = {}) const {
-    const LandingPipelineOptions& landing = options_.landing;
-    const TargetShape shape = ShapeOfTarget(landing.target, landing.detector);
-    Views views{{}, choices_.model};
-    views.pads.push_back(
-        std::make_shared<PadView>(PadView{CameraModel(calibration.intrinsics), shape}));
-    for (const CameraCalibration& camera : further) {
-      views.pads.push_back(
-          std::make_shared<PadView>(PadView{CameraModel(camera.intrinsics), shape}));
-    }
-    return views;
   }
 
   std::string RunLive() {
@@ -284,15 +253,15 @@ class Session {
     const FlyAutopilot autopilot =
         MakeFlyAutopilot(choices_.autopilot, flight_.fly, choices_.guides, &source);
     FirstError sink_error;
-    ObservationSinks sinks;
-    sinks.Add(std::make_unique<AsynchronousSink>(
+    const auto session =
+        MakeSession(source.live, *task_,
+                    WithChoices(SessionOptionsFor(autopilot, flight_.fly, choices_.guides)));
+    session->sinks().Add(std::make_unique<AsynchronousSink>(
         AsynchronousSinkOptions{.thread_name = "python"},
-        std::make_unique<CallingWriter>(&choices_, ViewsOf(source.live.calibration), &sink_error)));
-    LiveSession session(Parts(&source, autopilot, &sinks),
-                        SessionOptions(flight_, source, autopilot));
+        std::make_unique<CallingWriter>(SinkFor(source.live.calibration), &sink_error)));
     if (autopilot.simulated) autopilot.simulated->Start();
     std::exception_ptr interruption;
-    const FlightEnd end = session.Run([&] {
+    const FlightEnd end = session->Run([&] {
       try {
         CheckSignals();
       } catch (const py::error_already_set&) {
@@ -301,12 +270,32 @@ class Session {
       return is_stopped_ || interruption;
     });
     if (autopilot.simulated) autopilot.simulated->Stop();
-    sinks.Finish();
     if (interruption) std::rethrow_exception(interruption);
     sink_error.Rethrow();
-    std::string text = kestrel::InWords(end) + "\n" + session.Summary();
+    std::string text = kestrel::InWords(end) + "\n" + session->Summary();
     if (autopilot.simulated) text += kestrel::InWords(autopilot.simulated->result());
     return text;
+  }
+
+  SessionOptions WithChoices(SessionOptions options) const {
+    options.altitude_m = choices_.altitude_m;
+    options.output = choices_.output;
+    options.replace = choices_.replace;
+    options.record = choices_.record;
+    return options;
+  }
+
+  // Returns a sink that calls the functions of Python.
+  std::unique_ptr<CallingSink> SinkFor(const CameraCalibration& calibration,
+                                       const std::vector<CameraCalibration>& further = {}) const {
+    const LandingPipelineOptions& landing = options_.landing;
+    const TargetShape shape = ShapeOfTarget(landing.target, landing.detector);
+    const auto view_of = [&](const CameraCalibration& camera) {
+      return std::make_shared<PadView>(PadView{CameraModel(camera.intrinsics), shape});
+    };
+    Views views{{view_of(calibration)}, choices_.model};
+    for (const CameraCalibration& camera : further) views.pads.push_back(view_of(camera));
+    return std::make_unique<CallingSink>(&choices_, std::move(views));
   }
 
   Choices choices_;
@@ -373,9 +362,9 @@ void BindSession(py::module_& module) {
           "or the path of such a file.\naltitude_m: height of the camera above what it looks for, "
           "where there are no poses.\noutput: folder of the tables, as the commands write them; "
           "replace: those that are there.\nlive: in real time, as it is flown; a sink that is slow "
-          "misses frames.\nautopilot, guide, record, on_event: of live sessions, as of `kestrel "
-          "fly`, also autopilot='sim:ardupilot' or 'sim:px4', a simulated one; on_event gets each "
-          "message as a text.")
+          "misses frames.\nautopilot, guide, record: of live sessions, as of `kestrel fly`, also "
+          "autopilot='sim:ardupilot' or 'sim:px4', a simulated one.\non_event: gets each message, "
+          "as a warning, as a text.")
       .def("run", &Session::Run,
            "Runs to the end of the source, until stop() or Ctrl-C. Returns a summary in words. "
            "Raises InputError when the source fails, and what a sink raises: at once over a "

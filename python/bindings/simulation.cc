@@ -42,7 +42,7 @@ std::string TextOf(const RecordingPlan& plan, const std::string& name) {
   return "";
 }
 
-// The frames of a plan, each rendered when it is asked for.
+// The frames of a plan, each rendered when it is requested.
 class RenderedFrames : public FrameSource {
  public:
   RenderedFrames(std::shared_ptr<const RecordingPlan> plan, std::vector<PoseSample> poses)

@@ -1275,8 +1275,9 @@ class Session:
         altitude_m: height of the camera above what it looks for, where there are no poses.
         output: folder of the tables, as the commands write them; replace: those that are there.
         live: in real time, as it is flown; a sink that is slow misses frames.
-        autopilot, guide, record, on_event: of live sessions, as of `kestrel fly`, also
-        autopilot='sim:ardupilot' or 'sim:px4', a simulated one; on_event gets each message as a text.
+        autopilot, guide, record: of live sessions, as of `kestrel fly`, also autopilot='sim:ardupilot'
+        or 'sim:px4', a simulated one.
+        on_event: gets each message, as a warning, as a text.
         """
     def run(self) -> str:
         """Runs to the end of the source, until stop() or Ctrl-C. Returns a summary in words. Raises

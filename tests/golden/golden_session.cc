@@ -19,8 +19,7 @@
 #include "kestrel/app/console/replay/replay_run.h"
 #include "kestrel/app/foxglove/mcap_sink.h"
 #include "kestrel/core/base/error.h"
-#include "kestrel/flight/onboard/live_session.h"
-#include "kestrel/flight/onboard/live_session_options.h"
+#include "kestrel/flight/onboard/session.h"
 #include "kestrel/flight/ros/ros_sink.h"
 #include "kestrel/flight/session/observation_sinks.h"
 #include "kestrel/flight/session/task.h"
@@ -105,10 +104,10 @@ void WritePage(const ReplayResult& result, const fs::path& file) {
 
 void Play(const std::string& name, const std::string& recording, const fs::path& folder) {
   const ObjectModel model = DefaultObjectModel();
-  LiveSessionOptions options;
+  SessionOptions options{.output = (folder / "tables").string()};
   options.flight.events.pose_wait_s = 1;  // no frame goes without its pose
   const TaskOptions tasks;
-  const std::shared_ptr<const Task> task = MakeTask(name, tasks);
+  const std::unique_ptr<Task> task = MakeTask(name, tasks);
   const std::unique_ptr<ReplaySearch> search =
       name == "hunt" ? SearchForObjects({recording}, tasks.hunt, model, std::nullopt)
                      : SearchForPattern({recording}, tasks.landing, std::nullopt);
@@ -116,7 +115,8 @@ void Play(const std::string& name, const std::string& recording, const fs::path&
   const OpenedSource opened = OpenRecording(choice);
   fs::create_directories(folder);
 
-  MaskedSinks sinks;
+  auto masked = std::make_unique<MaskedSinks>();
+  MaskedSinks& sinks = *masked;
   sinks.sinks.Add(OpenMcapFile((folder / "session.mcap").string(), /*replace=*/true, *task,
                                opened.calibration));
   sinks.sinks.Add(MakeWaitingRosSink(std::make_unique<RosResults>(
@@ -125,17 +125,14 @@ void Play(const std::string& name, const std::string& recording, const fs::path&
   const ReplayRun replay = search->Detect({})(opened);
   sinks.sinks.Add(std::make_unique<GuardedSink>(replay.frames, [](const std::string&) {}));
 
-  SteppedSource source(opened, std::chrono::milliseconds(100), &sinks);
-  LiveSessionParts parts;
-  parts.source = &source;
-  parts.calibration = opened.calibration;
-  parts.rate_hz = opened.source->rate_hz();
-  parts.has_poses = true;
-  parts.task = task;
-  parts.sink = &sinks;
-  parts.output = (folder / "tables").string();
-  LiveSession(parts, options).Run([] { return false; });
-  sinks.Finish();
+  const OpenedLiveSource source{
+      .source = std::make_unique<SteppedSource>(opened, std::chrono::milliseconds(100), &sinks),
+      .calibration = opened.calibration,
+      .rate_hz = opened.source->rate_hz(),
+      .has_poses = true};
+  const auto session = MakeSession(source, *task, options);
+  session->sinks().Add(std::move(masked));
+  session->Run();
   WritePage(replay.frames->TakeResult(), folder / "page.json");
 }
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Sessions that guide: what they say of a pad that the camera does not see from the search
-// altitude, and how often they ask for the autopilot's mode.
+// altitude, and how often they request the autopilot's mode.
 #include <chrono>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <thread>
 
@@ -14,7 +15,7 @@
 #include "kestrel/comms/mavlink/connection.h"
 #include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/comms/mavlink/socket_address.h"
-#include "kestrel/flight/session/task.h"
+#include "kestrel/flight/session/land_task.h"
 #include "test_session.h"
 
 namespace kestrel {
@@ -25,19 +26,16 @@ using testing::Not;
 
 // Returns what a session says that guides to a tag of 'size_m'. Nobody is at the link's other end.
 std::string EventsWithTagOf(double size_m) {
-  DrawnCamera camera(3, PatternImage, 3);
-  Witness witness;
-  LiveSessionParts parts = LandingParts(&camera, &witness);
-  parts.guides = true;
-  parts.autopilot = "udpout://127.0.0.1:9";
-  LiveSessionOptions options = SessionOptions();
+  LandingPipelineOptions landing;
+  landing.target.kind = "apriltag";
+  landing.target.apriltag.size_m = size_m;
+  SessionOptions options{.autopilot = "udpout://127.0.0.1:9", .guides = true};
   options.flight.guard.enabled = false;
-  TaskOptions tasks;
-  tasks.landing.target.kind = "apriltag";
-  tasks.landing.target.apriltag.size_m = size_m;
-  parts.task = MakeTask("land", tasks);
-  LiveSession(parts, options).Run([] { return false; });
-  return witness.seen().events;
+  const OpenedLiveSource camera = DrawnSource(3, PatternImage, 3);
+  const auto session = MakeSession(camera, LandTask(landing), options);
+  const Witness* const witness = session->sinks().Add(std::make_unique<Witness>());
+  session->Run();
+  return witness->seen().events;
 }
 
 TEST(GuidedSession, LimitsSearchToSightRange) {
@@ -51,7 +49,8 @@ TEST(GuidedSession, LimitsSearchToSightRange) {
   EXPECT_THAT(EventsWithTagOf(0.2), HasSubstr("limits.floor_m 3 is above that"));
 }
 
-// An autopilot that does nothing but live and note the intervals of messages that it is asked for.
+// An autopilot that does nothing but live and note the intervals of messages that are requested of
+// it.
 class RequestedAutopilot {
  public:
   RequestedAutopilot()
@@ -87,17 +86,13 @@ class RequestedAutopilot {
   std::jthread thread_;
 };
 
-// Returns the interval of heartbeats that a session asks for; 0: it asks for none.
+// Returns the interval of heartbeats that a session requests; 0: it requests none.
 float HeartbeatInterval(bool guides) {
   RequestedAutopilot autopilot;
-  DrawnCamera camera(60, PatternImage, 3);
-  Witness witness;
-  LiveSessionParts parts = LandingParts(&camera, &witness);
-  parts.guides = guides;
-  parts.autopilot = autopilot.url();
-  LiveSessionOptions options = SessionOptions();
+  SessionOptions options{.autopilot = autopilot.url(), .guides = guides};
   options.flight.guard.enabled = false;
-  LiveSession(parts, options).Run([] { return false; });
+  const OpenedLiveSource camera = DrawnSource(60, PatternImage, 3);
+  MakeSession(camera, LandTask({}), options)->Run();
   const auto& intervals = autopilot.Intervals();
   const auto found = intervals.find(mavlink::Heartbeat::kId);
   return found == intervals.end() ? 0 : found->second;

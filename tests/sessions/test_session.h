@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -13,8 +14,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "kestrel/core/camera/calibration.h"
-#include "kestrel/flight/onboard/live_session.h"
-#include "kestrel/flight/onboard/live_session_options.h"
+#include "kestrel/flight/onboard/session.h"
 #include "kestrel/flight/session/live_source.h"
 #include "kestrel/flight/session/observation_sink.h"
 #include "kestrel/vision/mapping/team_object.h"
@@ -70,7 +70,7 @@ class DrawnCamera : public LiveSource {
 
   std::optional<Event> Next(Duration /*timeout*/) override {
     if (std::exchange(is_pose_given_, !is_pose_given_)) {
-      std::this_thread::sleep_for(kFramePeriod);
+      std::this_thread::sleep_for(kFramePeriod);  // the camera's pace
       const int index = static_cast<int>(captured_++);
       return Frame{std::to_string(index), Now(), draw_(index)};
     }
@@ -95,6 +95,7 @@ class Witness : public ObservationSink {
     std::vector<std::string> frames;
     int found = 0;  // frames with the pattern
     int reports = 0;
+    Time end;  // when it was reported that the flight is over
     std::vector<TeamObject> team;
     std::string events;  // one a line
   };
@@ -105,9 +106,10 @@ class Witness : public ObservationSink {
     const auto* const landing = std::get_if<LandingObservation>(&observation.seen);
     if (landing != nullptr && landing->report.detection) ++seen_.found;
   }
-  void Take(const FlightReport&) override {
+  void Take(const FlightReport& report) override {
     const std::lock_guard lock(mutex_);
     ++seen_.reports;
+    if (report.end) seen_.end = Now();
   }
   void Take(const TeamReport& report) override {
     const std::lock_guard lock(mutex_);
@@ -128,22 +130,19 @@ class Witness : public ObservationSink {
   Seen seen_;
 };
 
-// Parts of a session that looks for the landing pattern.
-inline LiveSessionParts LandingParts(LiveSource* source, ObservationSink* sink) {
-  LiveSessionParts parts;
-  parts.source = source;
-  parts.calibration = SmallCamera();
-  parts.rate_hz = kRate_hz;
-  parts.has_poses = true;
-  parts.sink = sink;
-  return parts;
+// A drawn camera, as a session takes it.
+inline OpenedLiveSource DrawnSource(int frames, DrawnCamera::Draw draw, double height_m) {
+  return {.source = std::make_unique<DrawnCamera>(frames, draw, height_m),
+          .calibration = SmallCamera(),
+          .rate_hz = kRate_hz,
+          .has_poses = true};
 }
 
 // Options of a session that records on a small disk, and commits often.
-inline LiveSessionOptions SessionOptions() {
-  LiveSessionOptions options;
-  options.recorder.free_space_mb = 0;
-  options.recorder.commit_period_s = 0.05;
+inline SessionOptions SmallDisk() {
+  SessionOptions options;
+  options.flight.recorder.free_space_mb = 0;
+  options.flight.recorder.commit_period_s = 0.05;
   return options;
 }
 

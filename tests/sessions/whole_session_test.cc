@@ -46,7 +46,7 @@ TaskView LandingViewOfSession() { return ViewOf(SmallCamera(), LandingPipelineOp
 // All sinks of a flight, as `kestrel fly --console --mcap --dds` has them.
 class AllSinks {
  public:
-  AllSinks(const std::string& mcap, int domain) {
+  AllSinks(ObservationSinks* to, const std::string& mcap, int domain) : sinks(*to) {
     witness = sinks.Add(std::make_unique<Witness>());
     const CameraIntrinsics camera = SmallCamera().intrinsics;
     live = sinks.Add(std::make_unique<FlightLive>(camera, LandingViewOfSession(), 30));
@@ -63,7 +63,7 @@ class AllSinks {
     return std::stoi(url.substr(url.rfind(':') + 1));
   }
 
-  ObservationSinks sinks;
+  ObservationSinks& sinks;
   Witness* witness;
   FlightLive* live;
   FlightConsole* console;
@@ -151,23 +151,22 @@ TEST(WholeSession, StartsAndStopsSeveralTimes) {
   const int domain = TestDomain();
   Listener listener(domain);
   for (const std::string round : {"0", "1", "2"}) {
-    AllSinks all(folder / (round + ".mcap"), domain);
+    const OpenedLiveSource camera = DrawnSource(kFrames, PatternImage, 3);
+    SessionOptions options = SmallDisk();
+    options.record = folder / ("first" + round);
+    options.output = folder / ("tables" + round);
+    const auto session = MakeSession(camera, LandTask({}), options);
+    const AllSinks all(&session->sinks(), folder / (round + ".mcap"), domain);
     const Watcher watcher(all.port());
-    DrawnCamera camera(kFrames, PatternImage, 3);
-    LiveSessionParts parts = LandingParts(&camera, &all.sinks);
-    parts.record = folder / ("first" + round);
-    parts.output = folder / ("tables" + round);
-    LiveSession session(parts, SessionOptions());
     bool is_restarted = false;
-    const FlightEnd end = session.Run([&] {
-      if (session.recording().Get()->counters().images < 10) return false;
+    const FlightEnd end = session->Run([&] {
+      if (session->recording().Get()->counters().images < 10) return false;
       if (is_restarted) return true;
-      EXPECT_TRUE(session.recording().Stop());
-      EXPECT_TRUE(session.recording().Start(folder / ("second" + round), /*replace=*/false));
+      EXPECT_TRUE(session->recording().Stop());
+      EXPECT_TRUE(session->recording().Start(folder / ("second" + round), /*replace=*/false));
       is_restarted = true;
       return false;
     });
-    all.sinks.Finish();
     EXPECT_EQ(end.outcome, FlightOutcome::kStopped);
     const Witness::Seen seen = all.witness->seen();
     EXPECT_GT(seen.frames.size(), 10u);
@@ -188,52 +187,44 @@ TEST(WholeSession, StopsAtOnce) {
   const TestFolder folder;
   const int domain = TestDomain();
   for (int round = 0; round < 5; ++round) {
-    AllSinks all(folder / (std::to_string(round) + ".mcap"), domain);
-    DrawnCamera camera(1000, PatternImage, 3);
-    LiveSessionParts parts = LandingParts(&camera, &all.sinks);
-    parts.record = folder / std::to_string(round);
-    LiveSession session(parts, SessionOptions());
-    EXPECT_EQ(session.Run([] { return true; }).outcome, FlightOutcome::kStopped);
-    all.sinks.Finish();
+    const OpenedLiveSource camera = DrawnSource(1000, PatternImage, 3);
+    SessionOptions options = SmallDisk();
+    options.record = folder / std::to_string(round);
+    const auto session = MakeSession(camera, LandTask({}), options);
+    const AllSinks all(&session->sinks(), folder / (std::to_string(round) + ".mcap"), domain);
+    EXPECT_EQ(session->Run([] { return true; }).outcome, FlightOutcome::kStopped);
   }
 }
 
 TEST(WholeSession, AppliesChangedOptionsFromNextFrame) {
-  DrawnCamera camera(100, PatternImage, 3);
-  Witness witness;
-  LiveSession session(LandingParts(&camera, &witness), SessionOptions());
+  const OpenedLiveSource camera = DrawnSource(100, PatternImage, 3);
+  const auto session = MakeSession(camera, LandTask({}));
+  const Witness* const witness = session->sinks().Add(std::make_unique<Witness>());
   std::optional<Witness::Seen> changed;
-  session.Run([&] {
-    if (changed || witness.seen().found == 0) return false;
+  session->Run([&] {
+    if (changed || witness->seen().found == 0) return false;
     TaskOptions options;
     options.landing.detector.min_quality = 1;
-    session.Change(options);
-    session.BetweenFrames([&] { changed = witness.seen(); });
+    session->Change(options, /*altitude_m=*/std::nullopt);
+    session->BetweenFrames([&] { changed = witness->seen(); });
     return false;
   });
   ASSERT_TRUE(changed);
-  EXPECT_GT(witness.seen().frames.size(), changed->frames.size());
-  EXPECT_EQ(witness.seen().found, changed->found);
+  EXPECT_GT(witness->seen().frames.size(), changed->frames.size());
+  EXPECT_EQ(witness->seen().found, changed->found);
 }
 
-// A UAV that hunts and tells its team.
+// A UAV that hunts and shares its map with its team.
 class TeamUav {
  public:
   TeamUav(const std::string& name, int domain)
-      : member_({name, 1}, {}), topic_(domain, "sessions", name), camera_(300, DiscImage, 2) {
-    witness_ = sinks_.Add(std::make_unique<Witness>());
-    LiveSessionParts parts = LandingParts(&camera_, &sinks_);
-    parts.task = std::make_shared<HuntTask>(HuntPipelineOptions(), DefaultObjectModel());
-    session_.emplace(parts, SessionOptions());
-    maps_ = sinks_.Add(std::make_unique<MapCopies>(session_->vision().map(), milliseconds(50)));
-  }
+      : member_({name, 1}, {}), topic_(domain, "sessions", name) {}
 
   void Fly() {
     session_->Run([this] {
       Exchange();
       return witness_->seen().team.size() > 0 && member_.Known().size() == 2;
     });
-    sinks_.Finish();
   }
 
   std::size_t known() const { return member_.Known().size(); }
@@ -244,17 +235,18 @@ class TeamUav {
     if (auto map = maps_->TakeNewest()) member_.Share(std::move(map->objects), Now());
     topic_.Receive([this](auto bytes) { member_.Hear(bytes, Now()); });
     member_.Tick(Now(), [this](auto bytes) { topic_.Send(bytes); });
-    sinks_.Take(TeamReport{Now(), OwnMap(ViewTeam(member_, Now(), &fusion_))});
+    session_->sinks().Take(TeamReport{Now(), OwnMap(ViewTeam(member_, Now(), &fusion_))});
   }
 
   TeamMember member_;
   TeamTopic topic_;
   TeamFusion fusion_{TeamOptions(), ObjectMapOptions()};
-  DrawnCamera camera_;
-  ObservationSinks sinks_;
-  Witness* witness_;
-  MapCopies* maps_;
-  std::optional<LiveSession> session_;
+  const OpenedLiveSource camera_ = DrawnSource(300, DiscImage, 2);
+  const std::unique_ptr<LiveSession> session_ =
+      MakeSession(camera_, HuntTask({}, DefaultObjectModel()));
+  Witness* const witness_ = session_->sinks().Add(std::make_unique<Witness>());
+  MapCopies* const maps_ = session_->sinks().Add(
+      std::make_unique<MapCopies>(session_->vision().map(), milliseconds(50)));
 };
 
 TEST(WholeSession, TeamSharesMap) {

@@ -24,7 +24,7 @@
 namespace kestrel {
 namespace {
 
-// The distortion models that the user can ask for, by name.
+// The distortion models that the user can choose, by name.
 std::map<std::string, DistortionModel> Models() {
   std::map<std::string, DistortionModel> models;
   for (const auto model : {DistortionModel::kNone, DistortionModel::kRadialTangential,

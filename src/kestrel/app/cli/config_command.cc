@@ -25,7 +25,7 @@ bool HaveSameValue(const OptionField& a, const OptionField& b) {
 
 // Prints the options of a user with those of the simulators that are set, or all of the
 // simulators'.
-void Print(KestrelOptions options, bool simulation) {
+void PrintOptions(KestrelOptions options, bool simulation) {
   KestrelOptions unset;
   const OptionFields fields = FieldsOf(options);
   const OptionFields defaults = FieldsOf(unset);
@@ -47,7 +47,7 @@ void AddConfigCommand(CLI::App* app) {
   const auto simulation = std::make_shared<bool>(false);
   arguments->AddTo(command);
   command->add_flag("--simulation", *simulation, "Print all of the simulated camera and autopilot");
-  command->callback([arguments, simulation] { Print(arguments->Read(), *simulation); });
+  command->callback([arguments, simulation] { PrintOptions(arguments->Read(), *simulation); });
 }
 
 }  // namespace kestrel

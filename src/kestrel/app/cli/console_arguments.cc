@@ -54,7 +54,7 @@ LandingPipelineOptions ConsoleArguments::LandingOptions(const KestrelOptions& op
 }
 
 bool ConsoleArguments::IsLive() const {
-  return source.sources.size() == 1 && task == "land" && IsLiveSource(source.sources.front());
+  return source.sources.size() == 1 && task.name == "land" && IsLiveSource(source.sources.front());
 }
 
 void ConsoleArguments::RequireEnd() const {
@@ -70,7 +70,7 @@ bool HasSearch(std::string_view task) { return FindSearch(task) != std::end(kSea
 
 std::unique_ptr<ReplaySearch> MakeSearch(const ConsoleArguments& arguments,
                                          const KestrelOptions& options) {
-  return FindSearch(arguments.task)->make(arguments, options);
+  return FindSearch(arguments.task.name)->make(arguments, options);
 }
 
 }  // namespace kestrel

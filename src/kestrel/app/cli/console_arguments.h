@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kestrel/app/cli/source_arguments.h"
+#include "kestrel/app/cli/task_argument.h"
 #include "kestrel/app/console/replay/replay_search.h"
 #include "kestrel/app/options/kestrel_options.h"
 #include "kestrel/app/web_server/console_options.h"
@@ -19,8 +20,8 @@ struct ConsoleArguments {
   SourceArguments source;
   std::string address;
   std::string model;
-  std::string output;         // folder for the files that the page saves; empty: OutputFolder
-  std::string task = "land";  // name of its kind
+  std::string output;  // folder for the files that the page saves; empty: OutputFolder
+  TaskArgument task;
   bool is_demo = false;
   // Result of `kestrel land` or `hunt` that is shown instead of a new run; empty: none.
   std::string result;

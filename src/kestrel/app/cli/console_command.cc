@@ -98,9 +98,7 @@ void AddConsoleCommand(CLI::App* app) {
       ->add_option("--address", arguments->address,
                    "Address of the page (127.0.0.1:8080); port 0: any free one")
       ->type_name("ADDRESS:PORT");
-  command->add_flag(
-      "--hunt{hunt}", arguments->task,
-      "Search for coloured objects, as `kestrel hunt` does, instead of the landing pattern");
+  arguments->task.AddTo(command, HasSearch);
   command
       ->add_option("--model", arguments->model,
                    "Objects (YAML) whose colours the page teaches, in place of those saved before "
@@ -116,7 +114,7 @@ void AddConsoleCommand(CLI::App* app) {
     if (arguments->source.sources.empty()) throw CLI::RequiredError("SOURCE, or --demo,");
     if (IsStudy(*arguments)) return RunStudyConsole(*arguments);
     if (arguments->IsLive()) return RunCameraConsole(*arguments);
-    const std::string table(MakeTask(arguments->task, TaskOptions())->table());
+    const std::string table(MakeTask(arguments->task.name, TaskOptions())->table());
     arguments->result = TakeResult(table, &arguments->source.sources).value_or("");
     RunConsole(*arguments);
   });

@@ -83,7 +83,7 @@ TEST_F(ConsoleHuntTest, ShowsResultOverItsRecording) {
   EXPECT_THAT(timeline["marks"].dump(), HasSubstr("f"));
   EXPECT_EQ(Get(port, "/export/detections-1.csv"), ReadFile(result + "/object_detections.csv"));
   EXPECT_EQ(console.End(), 0) << console.Log();
-  ExpectInputError("console --hunt " + result, "is a result: name its recording, too");
+  ExpectInputError("console --hunt " + result, "is a result");
   const std::string table = ReadFile(result + "/object_detections.csv");
   const std::string header = table.substr(0, table.find('\n') + 1);
   const auto empty =

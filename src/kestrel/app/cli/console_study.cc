@@ -68,7 +68,7 @@ StudyConsole::Run OpenForReplay(const ConsoleArguments& given, const std::string
   arguments.source.options = {};
   ReadWords(of_run.arguments, &arguments);
   arguments.source.sources = {path};
-  arguments.task = variant.task;
+  arguments.task.name = variant.task;
   arguments.RequireEnd();
   StudyConsole::Run run;
   run.search =
@@ -91,7 +91,7 @@ void RunStudyConsole(const ConsoleArguments& arguments) {
   StudyResults results(folder);
   std::vector<StudyVariant> variants = results.Variants();
   ConsoleArguments any = arguments;
-  if (HasSearch(variants.front().task)) any.task = variants.front().task;
+  if (HasSearch(variants.front().task)) any.task.name = variants.front().task;
   ReplaySubject subject = MakeSearch(any, options)->Subject();
   subject.has_truth = true;  // some recordings may have it
   StudyConsole console(arguments.PageOptions(options), folder, std::move(results), variants,

@@ -63,7 +63,7 @@ void RequireBagOrFolder(const std::string& destination) {
                    "makes videos");
 }
 
-// Says which data of the source the destination cannot hold.
+// Reports which data of the source the destination cannot hold.
 void WarnOfLoss(const ConvertArguments& arguments, const RecordingHead& head) {
   const bool is_bag = IsBagName(arguments.destination);
   if (!head.calibration) fmt::print(stderr, "kestrel: no calibration: the source has none\n");

@@ -62,7 +62,7 @@ class DoctorVisit {
     parts.calibration = source_.live.calibration;
     parts.connection = connection_ ? &*connection_ : nullptr;
     parts.autopilot = autopilot_ ? &*autopilot_ : nullptr;
-    examination_.emplace(options_.landing, options_.fly.flight.events, parts);
+    examination_.emplace(options_.landing, options_.fly.events, parts);
   }
 
   std::vector<Finding> Look() {
@@ -113,11 +113,11 @@ class DoctorVisit {
     if (flight.profile != "auto") use.profile = ParseLinkProfile(flight.profile);
     use.guides = arguments_.flight.guide;
     if (arguments_.moving_mps > 0) use.target_mps = arguments_.moving_mps;
-    use.tilt_deg = options_.fly.flight.guidance.limits.max_tilt_deg;
-    use.sends_distance = options_.fly.flight.messages.sends_distance;
+    use.tilt_deg = options_.fly.guidance.limits.max_tilt_deg;
+    use.sends_distance = options_.fly.messages.sends_distance;
     use.attitude_rate_hz = options_.fly.autopilot.attitude_rate_hz;
     use.position_rate_hz = options_.fly.autopilot.position_rate_hz;
-    if (options_.fly.flight.link_delay_s >= 0) use.link_delay_s = options_.fly.flight.link_delay_s;
+    if (options_.fly.link_delay_s >= 0) use.link_delay_s = options_.fly.link_delay_s;
     use.record = flight.record;
   }
 

@@ -2,6 +2,7 @@
 #include "kestrel/app/cli/fly_arguments.h"
 
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -81,8 +82,8 @@ void FlyArguments::AddTo(CLI::App* command) {
       ->add_flag("--no-guard", no_guard,
                  "No guard: if Kestrel dies in flight, only the autopilot's own time-out acts")
       ->needs(guide_flag);
-  CLI::Option* hunt_flag = command->add_flag(
-      "--hunt{hunt}", task, "Search for coloured objects instead of the landing pattern");
+  task.AddTo(command, [](std::string_view) { return true; });
+  CLI::Option* hunt_flag = command->get_option("--hunt");
   command->add_option("--model", model, "Objects and their colours (YAML), with --hunt")
       ->type_name("FILE")
       ->needs(hunt_flag);
@@ -103,11 +104,11 @@ KestrelOptions FlyArguments::ReadOptions() {
     throw CLI::RequiredError("SOURCE, or fly.source in --config FILE,");
   }
   source.sources = {options.fly.source};
-  if (rate_hz) options.fly.flight.rate_hz = *rate_hz;
+  if (rate_hz) options.fly.rate_hz = *rate_hz;
   if (!signing_key.empty()) options.fly.link.signing_key = signing_key;
-  if (link_delay != "auto") options.fly.flight.link_delay_s = ParseLinkDelay(link_delay);
+  if (link_delay != "auto") options.fly.link_delay_s = ParseLinkDelay(link_delay);
   if (guide && autopilot.empty()) throw InputError("--guide: expected --autopilot URL");
-  if (no_guard) options.fly.flight.guard.enabled = false;
+  if (no_guard) options.fly.guard.enabled = false;
   if (console && !console->empty()) {
     options.console = WithAddress(options.console, *console, "--console");
     RequireValid(options.console);

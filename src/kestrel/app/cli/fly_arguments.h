@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "kestrel/app/cli/source_arguments.h"
+#include "kestrel/app/cli/task_argument.h"
 #include "kestrel/app/cli/team_arguments.h"
 #include "kestrel/app/options/kestrel_options.h"
 
@@ -25,8 +26,8 @@ struct FlyArguments {
   std::optional<std::string> console;  // ADDRESS:PORT; empty: as in the options
   bool guide = false;
   bool no_guard = false;
-  std::string task = "land";  // name of its kind
-  std::string model;          // file with the model of the objects
+  TaskArgument task;
+  std::string model;  // file with the model of the objects
   TeamArguments team;
   bool loop = false;
   // Options that the command line sets over the configuration file, as "key=value"; by ReadOptions.

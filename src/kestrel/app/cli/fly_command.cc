@@ -22,7 +22,6 @@
 #include "kestrel/app/cli/terminal.h"
 #include "kestrel/app/console/flight/flight_console.h"
 #include "kestrel/app/fly/fly_autopilot.h"
-#include "kestrel/app/fly/fly_session.h"
 #include "kestrel/app/fly/fly_source.h"
 #include "kestrel/app/foxglove/flight_live.h"
 #include "kestrel/app/foxglove/mcap_sink.h"
@@ -33,7 +32,7 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/flight/onboard/camera_automatics.h"
 #include "kestrel/flight/onboard/flight_keeper.h"
-#include "kestrel/flight/onboard/live_session.h"
+#include "kestrel/flight/onboard/session.h"
 #include "kestrel/flight/ros/ros2_result_connection.h"
 #include "kestrel/flight/ros/ros_sink.h"
 #include "kestrel/flight/session/observation_sinks.h"
@@ -85,10 +84,10 @@ class FlightLog : public ObservationSink {
 };
 
 std::shared_ptr<const Task> TaskOf(const FlyArguments& arguments, const KestrelOptions& options) {
-  return MakeTask(arguments.task, options, {.model = ReadModel(arguments.model)});
+  return MakeTask(arguments.task.name, options, {.model = ReadModel(arguments.model)});
 }
 
-// A flight: its sinks and its team around a LiveSession.
+// A flight: its sinks and its team around a session.
 class Flight {
  public:
   // 'options': those that the arguments give.
@@ -106,11 +105,9 @@ class Flight {
     OpenMcap();
     OpenDds();
     autopilot_ = MakeFlyAutopilot(arguments.autopilot, options_.fly, arguments.guide, &source_);
-    session_.emplace(Parts(), SessionOptions(options_, source_, autopilot_));
-    if (team_) {
-      maps_ = sinks_.Add(std::make_unique<MapCopies>(
-          session_->vision().map(), DurationFromSeconds(TeamOptions::kSendPeriod_s)));
-    }
+    session_ = MakeSession(source_.live, *task_, Options());
+    session_->sinks().Add(std::move(own_sinks_));
+    if (team_) ShareWithTeam();
   }
 
   // Leaves the page, with how the flight ended, to those who look at it.
@@ -121,7 +118,7 @@ class Flight {
   }
 
   // The console asks nothing of a session that is gone.
-  ~Flight() { sinks_.Finish(); }
+  ~Flight() { session_->sinks().Finish(); }
   Flight(const Flight&) = delete;
   Flight& operator=(const Flight&) = delete;
 
@@ -133,7 +130,7 @@ class Flight {
     Time next_state = Now();
     FlightEnd end = session_->Run([&] {
       log_->Show();
-      if (team_) ShareMap();
+      if (sharing_ != nullptr) sharing_->Share();
       if (Now() >= next_state) {
         Log(session_->State());
         next_state += DurationFromSeconds(kStatePeriod_s);
@@ -141,7 +138,7 @@ class Flight {
       return WasInterrupted();
     });
     if (autopilot_.simulated) autopilot_.simulated->Stop();
-    Finish();
+    PrintSummary();
     return end;
   }
 
@@ -231,21 +228,26 @@ class Flight {
       throw InputError(
           "--team: expected --autopilot or a source with poses, and the camera's mount");
     }
-    team_.emplace(arguments_.team.team, arguments_.source.dds.Domain(), options_.team,
-                  options_.hunt.map, ReadModel(arguments_.model),
-                  [this](const std::string& text) { Notify(text); });
+    team_ = std::make_unique<TeamLink>(
+        arguments_.team.team, arguments_.source.dds.Domain(), options_.team, options_.hunt.map,
+        ReadModel(arguments_.model), [this](const std::string& text) { Notify(text); });
   }
 
-  LiveSessionParts Parts() {
-    LiveSessionParts parts = SessionParts(&source_, autopilot_);
-    parts.task = task_;
-    parts.sink = &sinks_;
-    if (arguments_.profile != "auto") parts.profile = ParseLinkProfile(arguments_.profile);
-    parts.guides = arguments_.guide;
-    parts.output = arguments_.source.output;
-    parts.record = arguments_.record;
-    parts.replace = arguments_.source.force;
-    return parts;
+  SessionOptions Options() const {
+    SessionOptions options = SessionOptionsFor(autopilot_, options_.fly, arguments_.guide);
+    if (arguments_.profile != "auto") options.profile = ParseLinkProfile(arguments_.profile);
+    options.output = arguments_.source.output;
+    options.record = arguments_.record;
+    options.replace = arguments_.source.force;
+    return options;
+  }
+
+  void ShareWithTeam() {
+    const SourceArguments& source = arguments_.source;
+    std::optional<OutputFolder> folder;
+    if (!source.output.empty()) folder.emplace(source.output, source.force);
+    sharing_ = session_->sinks().Add(std::make_unique<LiveTeamSharing>(
+        std::move(team_), session_->vision().map(), std::move(folder), &sinks_, WasInterrupted));
   }
 
   FlightRequests Requests() {
@@ -268,32 +270,11 @@ class Flight {
                 }};
   }
 
-  void ShareMap() {
-    if (auto map = maps_->TakeNewest()) {
-      if (map->position) team_->SetPosition(*map->position);
-      team_->Share(std::move(map->objects));
-      sinks_.Take(TeamReport{map->captured, team_->Map()});
-      seen_ = map->captured;
-    }
-    team_->Exchange();
-  }
-
-  void LeaveTeam() {
-    team_->Finish(session_->vision().map()->Confirmed(), WasInterrupted);
-    sinks_.Take(TeamReport{seen_, team_->Map()});
-    const SourceArguments& source = arguments_.source;
-    if (source.output.empty()) return;
-    team_->WriteMap(/*origin=*/{}, OutputFolder(source.output, source.force));
-  }
-
-  // Everything that waits is written; then all that is known is said.
-  void Finish() {
-    if (team_) LeaveTeam();
-    sinks_.Finish();
+  void PrintSummary() {
     log_->Show();
     Print(session_->Summary());
     if (autopilot_.simulated) Print(InWords(autopilot_.simulated->result()));
-    if (team_) Print(team_->Found() + "\n");
+    if (sharing_ != nullptr) Print(sharing_->Found() + "\n");
   }
 
   FlyArguments arguments_;
@@ -301,14 +282,14 @@ class Flight {
   FieldSettings settings_;  // used by the page's thread
   std::shared_ptr<const Task> task_;
   FlySource source_;
-  ObservationSinks sinks_;
-  FlightLog* log_ = nullptr;          // of the sinks
-  FlightConsole* console_ = nullptr;  // of the sinks; null: none
-  std::optional<TeamLink> team_;
-  MapCopies* maps_ = nullptr;  // of the sinks; null: no team
-  Time seen_{};                // the newest frame that the team was told of
+  std::unique_ptr<ObservationSinks> own_sinks_ = std::make_unique<ObservationSinks>();
+  ObservationSinks& sinks_ = *own_sinks_;  // of the session, once there is one
+  FlightLog* log_ = nullptr;               // of the sinks
+  FlightConsole* console_ = nullptr;       // of the sinks; null: none
+  std::unique_ptr<TeamLink> team_;         // until 'sharing_' has it; null: none
   FlyAutopilot autopilot_;
-  std::optional<LiveSession> session_;
+  std::unique_ptr<LiveSession> session_;
+  LiveTeamSharing* sharing_ = nullptr;  // of the sinks; null: no team
   std::optional<FlightKeeper> keeper_;
 };
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <chrono>
 #include <csignal>
 #include <fcntl.h>
 #include <filesystem>
@@ -7,10 +6,10 @@
 #include <string>
 #include <sys/wait.h>
 #include <termios.h>
-#include <thread>
 #include <unistd.h>
 
 #include "kestrel/app/cli/test_command.h"
+#include "kestrel/core/base/test_eventually.h"
 
 namespace kestrel {
 namespace {
@@ -91,9 +90,8 @@ TEST_F(FlyTerminalTest, SigtermEndsFlightWithCompleteFiles) {
   Start("fly " + Flight() + " --loop --output " + folder_ / "out");
   ASSERT_TRUE(Await("goes on when its terminal closes"));
   CloseTerminal();
-  for (int i = 0; i < 500 && Lines(ReadFile(folder_ / "out/landing_detections.csv")) < 3; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
+  ASSERT_TRUE(
+      Eventually([&] { return Lines(ReadFile(folder_ / "out/landing_detections.csv")) >= 3; }));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out/flight_end.csv")) << "not before the end";
   kill(process_, SIGTERM);
   EXPECT_EQ(End(), 0);

@@ -14,7 +14,8 @@
 
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/ray_table.h"
-#include "kestrel/flight/onboard/live_session.h"
+#include "kestrel/flight/onboard/session.h"
+#include "kestrel/flight/session/land_task.h"
 #include "kestrel/flight/session/live_source.h"
 #include "kestrel/flight/session/observation_sink.h"
 #include "kestrel/simulation/recordings/recording_plan.h"
@@ -165,15 +166,12 @@ class Latencies : public ObservationSink {
 
 StepTimes CaptureToResult(const Images& images) {
   StepTimes times{"capture to result, 30 images/s for 5 s", {}, /*is_work=*/false};
-  ReadyCamera camera(images);
-  Latencies sink(&times.ms);
-  LiveSessionParts parts;
-  parts.source = &camera;
-  parts.calibration = PaperCalibration();
-  parts.rate_hz = kImagesPerSecond;
-  parts.sink = &sink;
-  LiveSession session(std::move(parts));
-  session.Run([] { return false; });
+  const OpenedLiveSource camera{.source = std::make_unique<ReadyCamera>(images),
+                                .calibration = PaperCalibration(),
+                                .rate_hz = kImagesPerSecond};
+  const auto session = MakeSession(camera, LandTask({}));
+  session->sinks().Add(std::make_unique<Latencies>(&times.ms));
+  session->Run();
   return times;
 }
 

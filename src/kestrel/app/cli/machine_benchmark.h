@@ -16,9 +16,9 @@ struct StepTimes {
   bool is_work = true;  // processor time of one thread; else time that passed
 };
 
-// Measures the steps of a flight on images of simulated flights. 'print' is told what is being done
-// now. Returns, in this order: the ring in whole images, the ring near its last place, a tag in
-// whole images, coloured objects in whole images, the rays of all pixels, and the time from the
+// Measures the steps of a flight on images of simulated flights. 'print' receives what is being
+// done now. Returns, in this order: the ring in whole images, the ring near its last place, a tag
+// in whole images, coloured objects in whole images, the rays of all pixels, and the time from the
 // capture of an image to its result in a session that gets 30 images/s.
 std::vector<StepTimes> MeasureSteps(const std::function<void(const std::string&)>& print);
 

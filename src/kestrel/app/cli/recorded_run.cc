@@ -27,36 +27,23 @@ void RequireWhole(const OpenedSource& opened, std::size_t frames) {
                   frames, all ? fmt::format(" of {}", *all) : ""));
 }
 
-// Shows the progress and, as soon as there is one, the first warning.
-class Progress {
+// Shows the progress and the warnings.
+class Progress : public ObservationSink {
  public:
-  Progress(std::optional<std::size_t> frames, const Vision& vision)
-      : bar_(frames), vision_(vision) {}
+  explicit Progress(std::optional<std::size_t> frames) { bar_.emplace(frames); }
 
-  void Show(std::size_t done) {
-    if (done > 0) bar_.Show(done);
-    if (was_warned_) return;
-    const std::string warning = vision_.Warning();
-    was_warned_ = !warning.empty();
-    if (was_warned_) bar_.Report(warning);
-  }
+  void Take(const Observation& /*observation*/) override { bar_->Show(++seen_); }
+  void Take(const BrokenFrame& /*frame*/) override { ++broken_; }
+  void Take(const SessionEvent& event) override { bar_->Report(event.text); }
+  void Finish() override { bar_.reset(); }
+
+  std::size_t seen() const { return seen_; }
+  std::size_t frames() const { return seen_ + broken_; }
 
  private:
-  ProgressBar bar_;
-  const Vision& vision_;
-  bool was_warned_ = false;
+  std::optional<ProgressBar> bar_;
+  std::size_t seen_ = 0, broken_ = 0;
 };
-
-void Run(const OpenedSource& opened, RecordedSession* session,
-         const std::function<void(std::size_t done)>& on_frame) {
-  Progress progress(opened.source->frame_count(), session->vision());
-  session->Run([&](std::size_t done) {
-    progress.Show(done);
-    on_frame(done);
-    return !WasInterrupted();
-  });
-  progress.Show(session->frames() - session->broken());
-}
 
 }  // namespace
 
@@ -79,17 +66,23 @@ void AddMcapSink(const SourceArguments& arguments, const OpenedSource& opened, c
       OpenMcapFile(arguments.mcap, arguments.force, task, opened.calibration, opened.further));
 }
 
-void RunToEnd(const OpenedSource& opened, RecordedSession* session,
+void RunToEnd(const OpenedSource& opened, Session* session,
               const std::function<void(std::size_t done)>& on_frame) {
   CatchInterrupts();
+  Progress* const progress =
+      session->sinks().Add(std::make_unique<Progress>(opened.source->frame_count()));
   try {
-    Run(opened, session, on_frame);
+    session->Run([&] {
+      on_frame(progress->seen());
+      return WasInterrupted();
+    });
   } catch (const InputError&) {
-    if (session->frames() > session->broken()) fmt::print(stderr, "{}", session->Summary());
+    progress->Finish();
+    if (progress->seen() > 0) fmt::print(stderr, "{}", session->Summary());
     throw;
   }
   fmt::print(stderr, "{}", session->Summary());
-  RequireWhole(opened, session->frames());
+  RequireWhole(opened, progress->frames());
 }
 
 }  // namespace kestrel

@@ -7,9 +7,7 @@
 
 #include "kestrel/app/cli/source_arguments.h"
 #include "kestrel/app/options/kestrel_options.h"
-#include "kestrel/app/views/hunt_view.h"
-#include "kestrel/app/views/landing_view.h"
-#include "kestrel/flight/session/recorded_session.h"
+#include "kestrel/flight/onboard/session.h"
 #include "kestrel/io/bags/open_recording.h"
 #include "kestrel/vision/objects/object_model.h"
 
@@ -30,7 +28,7 @@ void AddMcapSink(const SourceArguments& arguments, const OpenedSource& opened, c
 // the summary on stderr. When it ends with an InputError the summary is shown all the same and the
 // results are kept. 'on_frame': called before each frame with the number of frames done.
 void RunToEnd(
-    const OpenedSource& opened, RecordedSession* session,
+    const OpenedSource& opened, Session* session,
     const std::function<void(std::size_t done)>& on_frame = [](std::size_t) {});
 
 }  // namespace kestrel

@@ -36,7 +36,7 @@ TEST_F(SimulateCommandTest, LandsOnSimulatedRecording) {
   EXPECT_THAT(Run("evaluate " + flight + " " + folder_ / "out").out,
               HasSubstr("| calm | all | 2 | 2 | 100.0 |"));
   ExpectInputError("simulate landing --scenario calm --seed 2 --output " + flight + kSmall,
-                   "exists already; --force replaces it");
+                   "--force");
 }
 
 TEST_F(SimulateCommandTest, LandsOnRequestedTagOnly) {

@@ -2,9 +2,9 @@
 #include "kestrel/app/cli/source_arguments.h"
 
 #include <filesystem>
+#include <iostream>
 #include <limits>
 #include <system_error>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -134,17 +134,12 @@ OpenedSource SourceArguments::OpenOrAssume(PixelFormat format, bool all_cameras)
   return OpenRecording(choice);
 }
 
-OutputOptions SourceArguments::Output(const OpenedSource& opened) const {
-  std::vector<double> further_rates_hz;
-  for (std::size_t i = 1; i <= opened.further.size(); ++i) {
-    further_rates_hz.push_back(opened.source->camera_rate_hz(i));
-  }
-  return {.folder = output,
-          .force = force,
+SessionOptions SourceArguments::Session() const {
+  return {.altitude_m = altitude_m,
+          .output = output,
+          .replace = force,
           .annotate = annotate,
-          .rate_hz = opened.source->rate_hz(),
-          .further_rates_hz = std::move(further_rates_hz),
-          .only_in_image = opened.is_lens_unknown};
+          .table = &std::cout};
 }
 
 }  // namespace kestrel

@@ -10,7 +10,7 @@
 #include "kestrel/app/cli/bag_arguments.h"
 #include "kestrel/app/cli/dds_arguments.h"
 #include "kestrel/app/cli/option_arguments.h"
-#include "kestrel/flight/session/result_files.h"
+#include "kestrel/flight/onboard/session.h"
 #include "kestrel/io/bags/open_recording.h"
 #include "kestrel/vision/objects/object_model.h"
 
@@ -44,7 +44,8 @@ struct SourceArguments {
   // assumed.
   OpenedSource OpenOrAssume(PixelFormat format, bool all_cameras = false) const;
 
-  OutputOptions Output(const OpenedSource& opened) const;
+  // The options of a session over the recording.
+  SessionOptions Session() const;
 };
 
 // Returns the objects of a file; those that are built in where it has no name.

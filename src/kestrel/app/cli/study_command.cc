@@ -16,7 +16,7 @@
 namespace kestrel {
 namespace {
 
-// The modules are tried first, so that what is missing is told in one line.
+// The modules are tried first, so that what is missing is reported in one line.
 constexpr const char* kProgram = R"py(import sys
 try:
     import distributed, fsspec, yaml

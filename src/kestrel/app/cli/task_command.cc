@@ -13,7 +13,6 @@
 #include "kestrel/app/cli/recorded_run.h"
 #include "kestrel/app/cli/source_arguments.h"
 #include "kestrel/app/cli/team_arguments.h"
-#include "kestrel/app/views/task_view.h"
 #include "kestrel/comms/team/team_link.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/flight/session/task.h"
@@ -118,27 +117,24 @@ void RunTask(const TaskKind& kind, const TaskArguments& arguments) {
   RequireOneCamera(source, opened);
   opened.source->set_keeps_color(!source.annotate.empty() && task->format() == PixelFormat::kGray);
   std::unique_ptr<TeamLink> team = OpenTeam(arguments, opened, options, choice.model);
-  RecordedSession session(opened, *task, source.altitude_m);
-  if (!arguments.predict_s.empty() && !session.vision().has_world()) {
+  const std::unique_ptr<Session> session = MakeSession(opened, *task, source.Session());
+  const Vision& vision = session->vision();
+  if (!arguments.predict_s.empty() && !vision.has_world()) {
     fmt::print(stderr,
                "no prediction: it needs a source with poses, a camera with its mount (T_BS) and no "
                "--still\n");
   }
-  const OutputOptions output = source.Output(opened);
-  ObservationSinks* const sinks = &session.sinks();
-  AddDdsSink(source, opened, options, *task, session.vision().has_world(), choice.model, sinks);
-  // The team finishes after the files are written: that may be a long wait.
+  ObservationSinks* const sinks = &session->sinks();
+  AddDdsSink(source, opened, options, *task, vision.has_world(), choice.model, sinks);
   TeamSharing* sharing = nullptr;
   if (team) {
     std::optional<OutputFolder> folder;
-    if (!output.folder.empty()) folder.emplace(output.folder, output.force);
-    sharing = sinks->Add(std::make_unique<TeamSharing>(std::move(team), session.vision().map(),
-                                                       arguments.origin, std::move(folder), sinks,
-                                                       WasInterrupted));
+    if (!source.output.empty()) folder.emplace(source.output, source.force);
+    sharing = sinks->Add(std::make_unique<TeamSharing>(
+        std::move(team), vision.map(), arguments.origin, std::move(folder), sinks, WasInterrupted));
   }
   AddMcapSink(source, opened, *task, sinks);
-  session.AddTables(output);
-  RunToEnd(opened, &session);
+  RunToEnd(opened, session.get());
   if (sharing != nullptr) fmt::print(stderr, "{}\n", sharing->Found());
 }
 

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <chrono>
 #include <csignal>
 #include <regex>
 #include <stdexcept>
 #include <string>
 #include <sys/types.h>
 #include <sys/wait.h>
-#include <thread>
 #include <unistd.h>
 
 #include "kestrel/app/cli/test_command.h"
+#include "kestrel/core/base/test_eventually.h"
 
 namespace kestrel {
 
@@ -35,14 +34,14 @@ class RunningCommand {
   // Returns the port of its page. Throws when it serves no page.
   int Port() const {
     const std::regex url("console: http://127\\.0\\.0\\.1:([0-9]+)/");
-    for (int i = 0; i < 1000; ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      std::smatch match;
-      const std::string log = Log();
-      if (std::regex_search(log, match, url)) return std::stoi(match[1]);
-      if (waitpid(process_, nullptr, WNOHANG) != 0) break;
-    }
-    throw std::runtime_error("serves no page: " + Log());
+    std::string log;
+    std::smatch match;
+    Eventually([&] {
+      log = Log();
+      return std::regex_search(log, match, url) || waitpid(process_, nullptr, WNOHANG) != 0;
+    });
+    if (match.empty()) throw std::runtime_error("serves no page: " + Log());
+    return std::stoi(match[1]);
   }
 
   // Ends it. Returns its exit status; -1 when it had ended by itself.

@@ -2,6 +2,7 @@
 #include "kestrel/app/fly/fly_autopilot.h"
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -41,10 +42,21 @@ FlyAutopilot MakeFlyAutopilot(const std::string& name, const FlyOptions& options
   if (guides) PrepareGuidance(name, &simulated);
   const auto seed = static_cast<std::uint64_t>(options.sim_seed);
   const int port = FreeLoopbackPort();
-  return {fmt::format("udpin://{}:{}", kLoopback, port),
-          std::make_unique<SimulatedAutopilot>(simulated,
-                                               fmt::format("udpout://{}:{}", kLoopback, port),
-                                               source->simulated.World(), seed)};
+  auto uav = std::make_unique<SimulatedAutopilot>(
+      simulated, fmt::format("udpout://{}:{}", kLoopback, port), source->simulated.World(), seed);
+  source->live.true_offset_m = [uav = uav.get()]() -> std::optional<double> {
+    const SitlResult result = uav->result();
+    return result.contact ? std::optional(result.offset_m()) : std::nullopt;
+  };
+  return {fmt::format("udpin://{}:{}", kLoopback, port), std::move(uav)};
+}
+
+SessionOptions SessionOptionsFor(const FlyAutopilot& autopilot, const FlyOptions& options,
+                                 bool guides) {
+  SessionOptions session{.flight = options, .autopilot = autopilot.url, .guides = guides};
+  // A simulated autopilot ends with this process.
+  if (autopilot.simulated) session.flight.guard.enabled = false;
+  return session;
 }
 
 }  // namespace kestrel

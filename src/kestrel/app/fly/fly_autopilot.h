@@ -6,6 +6,7 @@
 
 #include "kestrel/app/fly/fly_source.h"
 #include "kestrel/app/options/fly_options.h"
+#include "kestrel/flight/onboard/session.h"
 #include "kestrel/simulation/autopilots/simulated_autopilot.h"
 
 namespace kestrel {
@@ -22,5 +23,9 @@ struct FlyAutopilot {
 // source must outlive it. Throws InputError when the options are not valid.
 FlyAutopilot MakeFlyAutopilot(const std::string& name, const FlyOptions& options, bool guides,
                               FlySource* source);
+
+// The options of a session with this autopilot.
+SessionOptions SessionOptionsFor(const FlyAutopilot& autopilot, const FlyOptions& options,
+                                 bool guides);
 
 }  // namespace kestrel

@@ -3,13 +3,13 @@
 
 #include <map>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "kestrel/app/foxglove/test_observations.h"
 #include "kestrel/app/foxglove/test_protobuf.h"
+#include "kestrel/core/base/test_eventually.h"
 
 namespace kestrel {
 namespace {
@@ -29,12 +29,12 @@ std::size_t ChannelOf(FlightLive* flight, const std::string& topic) {
 std::map<std::string, std::vector<ChannelMessage>> TakeFrames(FlightLive* flight,
                                                               std::size_t frames) {
   std::map<std::string, std::vector<ChannelMessage>> messages;
-  for (int i = 0; i < 1000 && messages["/result"].size() < frames; ++i) {
+  Eventually([&] {
     while (auto message = flight->channels()->Take()) {
       messages[flight->channels()->channels()[message->channel].topic].push_back(*message);
     }
-    std::this_thread::sleep_for(5ms);
-  }
+    return messages["/result"].size() >= frames;
+  });
   return messages;
 }
 

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/app/foxglove/mcap_sink.h"
 
-#include <chrono>
 #include <filesystem>
 #include <mutex>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -15,6 +13,7 @@
 #include "kestrel/app/foxglove/test_protobuf.h"
 #include "kestrel/app/views/hunt_view.h"
 #include "kestrel/app/views/landing_view.h"
+#include "kestrel/core/base/test_eventually.h"
 #include "kestrel/core/base/test_folder.h"
 #include "kestrel/flight/session/land_task.h"
 #include "kestrel/io/bags/mcap_reader.h"
@@ -53,13 +52,12 @@ TEST(McapSinkTest, WritesFrameWithinASecond) {
       OpenMcapSink(path, false, LandTask({}), ObservedCalibration(), [](const std::string&) {});
   const Frame frame = ObservedFrame(0);
   mcap->Take(Observation{frame, ObservedLanding(frame.time)});
-  std::size_t topics = 0;
-  for (int i = 0; i < 200 && topics < 9; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_TRUE(Eventually([&] {
+    std::size_t topics = 0;
     // The file may be missing, or may not be complete enough yet.
     InputErrorOf([&] { topics = McapReader(path).topics().size(); });
-  }
-  EXPECT_EQ(topics, 9u);
+    return topics == 9;
+  }));
 }
 
 TEST(McapSinkTest, ReportsFullDiskAndContinuesFlight) {

@@ -89,7 +89,7 @@ TEST(SaveSettings, ChangesFileBehindLink) {
   EXPECT_TRUE(std::filesystem::is_symlink(link));
   const KestrelOptions options = ReadKestrelOptions(file, {});
   EXPECT_EQ(options.landing.target.id, 4);
-  EXPECT_EQ(options.fly.flight.rate_hz, 30);
+  EXPECT_EQ(options.fly.rate_hz, 30);
   EXPECT_THAT(ReadFile(file), ::testing::HasSubstr("# printed in spring"));
 }
 

@@ -3,16 +3,15 @@
 
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/string_body.hpp>
-#include <chrono>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <thread>
 
 #include <nlohmann/json.hpp>
 
 #include "kestrel/app/web_server/console_options.h"
+#include "kestrel/core/base/test_eventually.h"
 
 namespace kestrel {
 
@@ -29,16 +28,6 @@ inline ConsoleOptions AnyPort(const std::string& token = "") {
   options.port = 0;
   options.token = token;
   return options;
-}
-
-// Returns true as soon as the condition holds; false when it still does not after 10 s.
-template <class Condition>
-bool Eventually(Condition condition) {
-  for (int i = 0; i < 1000; ++i) {
-    if (condition()) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  return false;
 }
 
 // Sends requests to a server on this computer, as a browser or as any other program.

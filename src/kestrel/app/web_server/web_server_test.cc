@@ -382,7 +382,7 @@ TEST_F(WebServerTest, StalledBrowserDoesNotDelayOthers) {
       frame.image = noise;
       feed_.SetFrame(&frame);
       for (int i = 0; i < 10; ++i) feed_.Add(ViewStatus{std::string(2000, 's'), "", false});
-      std::this_thread::sleep_for(5ms);
+      std::this_thread::sleep_for(5ms);  // the camera's pace
     }
   });
   std::uint64_t before = 0;

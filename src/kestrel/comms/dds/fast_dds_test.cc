@@ -6,7 +6,6 @@
 #include <optional>
 #include <set>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -15,6 +14,7 @@
 #include "kestrel/comms/dds/ros2_node.h"
 #include "kestrel/comms/dds/test_dds.h"
 #include "kestrel/comms/dds/test_fast_dds.h"
+#include "kestrel/core/base/test_eventually.h"
 #include "kestrel/io/ros_messages/message_definitions.h"
 #include "kestrel/io/ros_messages/node_messages.h"
 #include "kestrel/io/ros_messages/result_messages.h"
@@ -27,19 +27,10 @@ constexpr Duration kPatience = std::chrono::seconds(10);
 constexpr Duration kPause = std::chrono::milliseconds(10);
 constexpr FastQos kKept{.is_kept = true};
 
-template <class Condition>
-bool WaitUntil(const Condition& holds) {
-  for (const Time end = Now() + kPatience; Now() < end;) {
-    if (holds()) return true;
-    std::this_thread::sleep_for(kPause);
-  }
-  return false;
-}
-
 // Returns the first message that comes; empty when none does.
 std::string Hear(fast::DataReader* reader) {
   std::string bytes;
-  WaitUntil([&] { return TakeRaw(reader, &bytes); });
+  Eventually([&] { return TakeRaw(reader, &bytes); });
   return bytes;
 }
 
@@ -87,7 +78,7 @@ TEST(FastDds, ReceivesTypeHashes) {
       "typehash=" + TypeHash("tf2_msgs/TFMessage") + ";",
       "typehash=" + TypeHash("rmw_dds_common/ParticipantEntitiesInfo") + ";"};
   std::set<std::string> heard;
-  WaitUntil([&] {
+  Eventually([&] {
     for (const FastEntity& entity : peer.others().heard()) heard.insert(entity.user_data);
     return heard.size() >= expected.size();
   });
@@ -98,7 +89,7 @@ TEST(FastDds, ReceivesTypeHashes) {
 // empty when it does not discover it.
 std::string GidHeard(const FastParticipant& peer, const std::string& topic) {
   std::string gid;
-  WaitUntil([&] {
+  Eventually([&] {
     for (const FastEntity& entity : peer.others().heard()) {
       if (entity.topic == topic) gid = entity.gid;
     }
@@ -217,7 +208,7 @@ TEST(FastDds, MatchesQosLikeRos) {
     node.Subscribe("/from_" + topic, TfMessage::kType, pair.own);
     fast::DataReader* const reader = peer.Read("rt/to_" + topic, type, pair.other);
     fast::DataWriter* const writer = peer.Write("rt/from_" + topic, type, pair.other);
-    EXPECT_TRUE(WaitUntil([&] {
+    EXPECT_TRUE(Eventually([&] {
       fast::SubscriptionMatchedStatus matched;
       fast::IncompatibleQosStatus refused;
       reader->get_subscription_matched_status(matched);
@@ -225,7 +216,7 @@ TEST(FastDds, MatchesQosLikeRos) {
       return IsAsExpected(matched.current_count, refused, pair.subscribing);
     })) << name
         << ", the other subscribes";
-    EXPECT_TRUE(WaitUntil([&] {
+    EXPECT_TRUE(Eventually([&] {
       fast::PublicationMatchedStatus matched;
       fast::IncompatibleQosStatus refused;
       writer->get_publication_matched_status(matched);

@@ -11,6 +11,7 @@
 
 #include "kestrel/comms/dds/test_dds.h"
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/base/test_eventually.h"
 #include "kestrel/io/ros_messages/result_messages.h"
 #include "kestrel/io/ros_messages/serialization.h"
 #include "kestrel/io/ros_messages/tag_messages.h"
@@ -88,12 +89,7 @@ std::optional<std::string> Hear(Ros2Node* node, Duration timeout) {
 }
 
 bool FindsSubscriber(const Ros2Node& node, std::size_t publisher, Duration timeout) {
-  for (const Time end = Now() + timeout; Now() < end;) {
-    if (node.HasSubscribers(publisher)) return true;
-    timespec pause{0, kTick.count()};
-    nanosleep(&pause, nullptr);
-  }
-  return false;
+  return Eventually([&] { return node.HasSubscribers(publisher); }, timeout);
 }
 
 class Ros2NodeTest : public ::testing::Test {

@@ -5,7 +5,6 @@
 #include <dds/dds.h>
 #include <string>
 #include <sys/wait.h>
-#include <thread>
 #include <unistd.h>
 
 #include <gmock/gmock.h>
@@ -14,13 +13,14 @@
 #include "kestrel/comms/dds/test_dds.h"
 #include "kestrel/comms/team/team_member.h"
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/base/test_eventually.h"
 #include "kestrel/core/base/time.h"
 
 namespace kestrel {
 namespace {
 
-// Takes part until 'count' UAVs are known and nothing is missing; false after ten seconds. A UAV
-// that is done stays for the others.
+// Takes part until 'count' UAVs are known and nothing is missing; false if that does not come. A
+// UAV that is done stays for the others.
 bool TakePart(int domain, const std::string& name, std::size_t count) {
   const UavKey self{name, 1};
   TeamTopic topic(domain, "test", name);
@@ -28,16 +28,13 @@ bool TakePart(int domain, const std::string& name, std::size_t count) {
   MappedObject object;
   object.covariance.diagonal().head<3>().setConstant(0.01);
   member.Share({object}, Time());
-  const Time start = Now();
   std::optional<Time> done;
-  while (Now() - start < std::chrono::seconds(10)) {
+  return Eventually([&] {
     topic.Receive([&](std::span<const std::uint8_t> bytes) { member.Hear(bytes, Now()); });
     member.Tick(Now(), [&](std::span<const std::uint8_t> bytes) { topic.Send(bytes); });
     if (!done && member.map().parts().size() == count && member.IsWhole()) done = Now();
-    if (done && Now() - *done > std::chrono::seconds(1)) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  return false;
+    return done && Now() - *done > std::chrono::seconds(1);
+  });
 }
 
 TEST(TeamTopic, ThreeProcessesShareMaps) {

@@ -6,7 +6,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <signal.h>
@@ -22,6 +21,7 @@
 #include "kestrel/comms/mavlink/autopilot_kind.h"
 #include "kestrel/comms/mavlink/socket_address.h"
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/base/test_eventually.h"
 #include "kestrel/core/base/test_folder.h"
 #include "kestrel/simulation/autopilots/simulated_autopilot.h"
 
@@ -104,30 +104,23 @@ class GuardProcessTest : public ::testing::TestWithParam<const char*> {
   Eigen::Vector3d Place() const { return autopilot_->truth().world_from_body.translation; }
   double Speed() const { return autopilot_->truth().motion->velocity_in_world.norm(); }
 
-  // False when it takes longer than 20 s.
-  static bool Await(const std::function<bool()>& is_true) {
-    for (int i = 0; i < 4000 && !is_true(); ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
-    return is_true();
-  }
   // Waits until the pilot has given the mode and taken it back, and the program knows.
   void AwaitTakeBack() {
-    ASSERT_TRUE(Await([&] { return IsIn(FlightMode::kGuided); }));
-    ASSERT_TRUE(Await([&] { return IsIn(FlightMode::kPilot); }));
+    ASSERT_TRUE(Eventually([&] { return IsIn(FlightMode::kGuided); }));
+    ASSERT_TRUE(Eventually([&] { return IsIn(FlightMode::kPilot); }));
     Watch(0.3);
   }
   // Waits until it descends fast, well above the ground.
   void AwaitDescent() {
     const double start_z = Place().z();
-    ASSERT_TRUE(Await([&] { return Place().z() < start_z - 1.5 && Speed() > 4; }));
+    ASSERT_TRUE(Eventually([&] { return Place().z() < start_z - 1.5 && Speed() > 4; }));
   }
 
   Aftermath Watch(double for_s) const {
     Aftermath after;
     const Eigen::Vector3d place = Place();
     for (const Time end = Now() + DurationFromSeconds(for_s); Now() < end;) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));  // it samples a flight
       after.farthest_m = std::max(after.farthest_m, (Place() - place).head<2>().norm());
       after.lowest_m = std::min(after.lowest_m, Place().z());
     }
@@ -183,7 +176,7 @@ TEST_P(GuardProcessTest, ResumedProgramDoesNotDisturbGuard) {
   Start();
   AwaitDescent();
   program_->Signal(SIGSTOP);
-  ASSERT_TRUE(Await([&] { return IsIn(FlightMode::kHold); }));
+  ASSERT_TRUE(Eventually([&] { return IsIn(FlightMode::kHold); }));
   program_->Signal(SIGCONT);
   EXPECT_EQ(program_->Wait(), static_cast<int>(GuardState::kTookOver));
   ExpectStopped(Watch(4));
@@ -215,7 +208,7 @@ TEST_P(GuardProcessTest, EndsWithProgramAndFreesLine) {
   program_->Signal(SIGINT);
   EXPECT_EQ(program_->Wait(), static_cast<int>(GuardState::kWatches));
   // Its number stays until whoever inherited the process has reaped it.
-  EXPECT_TRUE(Await([&] { return kill(guard, 0) != 0; }));
+  EXPECT_TRUE(Eventually([&] { return kill(guard, 0) != 0; }));
   EXPECT_EQ(autopilot_->result().modes_by_link, 0);
   const GuardLink next(url_, {.program = KESTREL_GUARD}, "");
   EXPECT_EQ(next.state(), GuardState::kWatches);
@@ -235,7 +228,7 @@ TEST_P(GuardProcessTest, ReplacesHangingGuard) {
   AwaitDescent();
   const pid_t guard = program_->Guard();
   kill(guard, SIGSTOP);
-  EXPECT_TRUE(Await([&] { return program_->Guard() != guard; }));
+  EXPECT_TRUE(Eventually([&] { return program_->Guard() != guard; }));
   Watch(0.3);
   EXPECT_TRUE(IsIn(FlightMode::kGuided));
   EXPECT_GT(Speed(), 3.5);
@@ -258,7 +251,7 @@ TEST_P(GuardProcessTest, NextFlightWaitsForWorkingGuard) {
   GuardLink next(url_, {.program = KESTREL_GUARD}, "");
   EXPECT_EQ(next.state(), GuardState::kWaits);
   std::array<std::uint8_t, 4096> buffer;
-  EXPECT_TRUE(Await([&] {
+  EXPECT_TRUE(Eventually([&] {
     next.Receive(std::chrono::milliseconds(1), buffer);
     return next.state() == GuardState::kWatches;
   }));

@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kestrel/core/base/test_eventually.h"
 #include "kestrel/core/base/test_folder.h"
 
 namespace kestrel {
@@ -38,10 +39,10 @@ TEST(DeviceFaultTest, NamesProgramThatUsesDevice) {
     _exit(127);
   }
   std::string users;
-  for (int i = 0; i < 500 && users.find("sleep") == std::string::npos; ++i) {
-    usleep(10'000);
+  Eventually([&] {
     users = UsersOf(device);
-  }
+    return users.find("sleep") != std::string::npos;
+  });
   EXPECT_EQ(users, "sleep (process " + std::to_string(other) + ")");
   EXPECT_EQ(DeviceFault(device, EBUSY), device + ": in use by " + users);
   kill(other, SIGKILL);

@@ -17,7 +17,7 @@ namespace kestrel {
 std::filesystem::path PathOfNow(const std::filesystem::path& folder,
                                 const std::string& prefix = "");
 
-// Keeps recordings and snapshots that the user asks for in flight, in a folder of its own. Never
+// Keeps recordings and snapshots that the user requests in flight, in a folder of its own. Never
 // replaces existing files. Used by one thread, which waits for the disk.
 class FlightKeeper {
  public:

@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <string>
-
 #include "kestrel/comms/guard/guard_options.h"
+#include "kestrel/comms/mavlink/autopilot.h"
+#include "kestrel/comms/mavlink/connection.h"
 #include "kestrel/comms/mavlink/target_profile.h"
 #include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/thread_setup.h"
+#include "kestrel/core/camera/exposure_controller.h"
 #include "kestrel/flight/guidance/guidance_options.h"
+#include "kestrel/flight/onboard/flight_recorder.h"
+#include "kestrel/flight/onboard/gstreamer_camera.h"
 #include "kestrel/flight/onboard/target_reporter.h"
 #include "kestrel/flight/session/live_events.h"
 
 namespace kestrel {
 
+// The options of a flight, as `kestrel config` prints them in the group "fly".
 struct FlightOptions {
   double rate_hz = 50;
   double link_delay_s = -1;
@@ -24,6 +28,12 @@ struct FlightOptions {
   GuardOptions guard;
   LiveEventsOptions events;
   ThreadOptions vision_thread;
+  GstreamerCameraOptions camera;
+  bool control_exposure = false;
+  ExposureOptions exposure;
+  ConnectionOptions link;
+  AutopilotOptions autopilot;
+  FlightRecorderOptions recorder;
 
   static void Visit(auto& self, auto&& visit) {
     visit("rate_hz", self.rate_hz, Range{1, 400}, "rate of landing targets or set-points");
@@ -41,6 +51,13 @@ struct FlightOptions {
     visit.Group("guard", self.guard);
     visit.Group("events", self.events);
     visit.Group("vision_thread", self.vision_thread);
+    visit.Group("camera", self.camera);
+    visit("control_exposure", self.control_exposure,
+          "the camera's exposure is set by the brightness of its images");
+    visit.Group("exposure", self.exposure);
+    visit.Group("link", self.link);
+    visit.Group("autopilot", self.autopilot);
+    visit.Group("recorder", self.recorder);
   }
 };
 

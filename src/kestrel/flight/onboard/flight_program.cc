@@ -236,7 +236,7 @@ void FlightProgram::BetweenFrames(const std::function<void()>& action) {
   action();
 }
 
-// Warns once that the set-up contradicts the images; the summary says it again, with all that is
+// Warns once that the set-up contradicts the images; the summary repeats it, with all that is
 // known by then.
 void FlightProgram::WarnOnce() {
   if (was_warned_) return;
@@ -322,7 +322,7 @@ void FlightProgram::WatchFlight(Time now) {
        fmt::format("no heartbeat of the autopilot for {:g} s", options_.autopilot_timeout_s)});
 }
 
-// Until the first heartbeat. That one which was there is gone is said by its events.
+// Until the first heartbeat. That one which was there is gone is reported by its events.
 void FlightProgram::ReportWhatItWaitsFor(Time now) {
   constexpr Duration kPeriod = std::chrono::milliseconds(500);
   if (was_heard_ || now - began_ < kQuietStart || now < wait_due_) return;

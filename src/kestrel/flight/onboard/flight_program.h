@@ -68,8 +68,8 @@ class FlightProgram {
                 std::function<void(const std::string&)> report);
 
   // Flies until the UAV has landed, the source ends or 'is_stopped', which is called ten times a
-  // second, returns true. The end is also said to the user, the ground station and the sink. Throws
-  // what 'is_stopped' throws, once the threads have ended. Call it once only.
+  // second, returns true. The end is also reported to the user, the ground station and the sink.
+  // Throws what 'is_stopped' throws, once the threads have ended. Call it once only.
   FlightEnd Run(const std::function<bool()>& is_stopped);
 
   // Returns the present state in one line. Called by any thread.

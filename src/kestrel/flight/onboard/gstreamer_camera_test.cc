@@ -85,8 +85,8 @@ TEST(GstreamerCamera, SubtractsExposureAndReadOutFromTime) {
 TEST(GstreamerCamera, DeliversNewestFrameAndCountsDroppedOnes) {
   GstreamerCamera camera = Camera(kTestCamera);
   NextFrame(&camera);
-  std::this_thread::sleep_for(milliseconds(400));
-  NextFrame(&camera);  // it was already waiting
+  std::this_thread::sleep_for(milliseconds(400));  // a reader that is late
+  NextFrame(&camera);                              // it was already waiting
   const Time now = Now();
   EXPECT_GT(NextFrame(&camera).time, now - milliseconds(300));
   EXPECT_GE(camera.counters().missed, 5u);

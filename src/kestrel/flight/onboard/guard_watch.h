@@ -13,8 +13,8 @@
 
 namespace kestrel {
 
-// Gives the guard its signs of life, and tells the user and the ground station what becomes of it.
-// Used by the link's thread only.
+// Gives the guard its signs of life, and informs the user and the ground station what becomes of
+// it. Used by the link's thread only.
 class GuardWatch {
  public:
   // All that pointers name outlives this. 'report': receives lines for the user.

@@ -216,7 +216,7 @@ void GuidedFlight::ReportPhase(const GuidanceOutput& output) {
                                              *output.reason == '\0' ? "" : ": ", output.reason));
 }
 
-// Says before the mode is given, too, that the target is too fast for the UAV.
+// Reports before the mode is given, too, that the target is too fast for the UAV.
 void GuidedFlight::ReportWhetherItKeepsUp(const GuidanceOutput& output) {
   if (output.cannot_follow == reported_cannot_follow_) return;
   reported_cannot_follow_ = output.cannot_follow;

@@ -80,7 +80,7 @@ class GuidedFlight {
   bool knows_parameters_ = false;
 
   Time reported_frame_;  // the newest frame used for a set-point
-  Time requested_{};     // when the autopilot was last asked for a mode or to disarm
+  Time requested_{};     // when the autopilot was last sent a mode or a disarm command
   GuidancePhase reported_phase_ = GuidancePhase::kIdle;
   const char* reported_reason_ = "";
   bool reported_cannot_follow_ = false;

@@ -3,24 +3,41 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "kestrel/core/camera/calibration.h"
+#include "kestrel/core/poses/pose_history.h"
 #include "kestrel/flight/onboard/exposure_actuator.h"
 #include "kestrel/flight/onboard/gstreamer_camera.h"
 #include "kestrel/flight/session/live_source.h"
 #include "kestrel/io/bags/open_recording.h"
+#include "kestrel/io/recording/euroc/truth_rows.h"
+#include "kestrel/io/recording/frame.h"
 
 namespace kestrel {
 
 // A live source, its calibration, and what a session wants to know about it.
 struct OpenedLiveSource {
-  std::unique_ptr<LiveSource> source;
-  CameraCalibration calibration;
+  std::unique_ptr<LiveSource> source = {};
+  CameraCalibration calibration = {};
   double rate_hz = kNominalRateHz;       // of the images, nominal
   bool has_poses = false;                // the source has poses of its own
   ExposureActuator* actuator = nullptr;  // view of 'source'; null: its exposure cannot be set
+
+  // Images that equal the one before are processed. False: a camera that repeats its image is
+  // frozen.
+  bool sees_repeated = false;
+
+  // Set by a simulation: receive the autopilot's estimated and true poses; the true pattern of a
+  // frame.
+  std::function<void(const PoseSample&)> pose = {};
+  std::function<void(const PoseSample&)> true_pose = {};
+  std::function<std::optional<TruePattern>(const Frame&)> truth = {};
+  // Set by a simulation: the true offset of the touch-down, see FlightEnd; nothing before it.
+  // Called by the link's thread.
+  std::function<std::optional<double>()> true_offset_m = {};
 };
 
 // A live source to be opened: a camera, a recording that is played in real time, or the URI of a

@@ -49,7 +49,7 @@ class TargetReporter {
   std::optional<TargetState> Report(Time now, Duration until_use, const TrackSnapshot& track,
                                     const PoseHistory& poses);
 
-  // Says whether the UAV may stand on the deck: guidance may know that it hovers there.
+  // Reports whether the UAV may stand on the deck: guidance may know that it hovers there.
   void set_may_stand(bool may_stand) { may_stand_ = may_stand; }
 
   TargetPhase phase() const { return phase_; }

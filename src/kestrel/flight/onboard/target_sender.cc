@@ -109,7 +109,7 @@ void TargetSender::WarnOfSpeed(const Eigen::Vector3d& velocity) {
                              : "Kestrel: pattern moves, LAND misses it in a curve");
 }
 
-// Tells the user and the ground station when the target is found, lost, or stood on.
+// Informs the user and the ground station when the target is found, lost, or stood on.
 void TargetSender::ReportPhase() {
   const TargetPhase phase = reporter_.phase();
   if (phase == reported_phase_) return;
@@ -134,8 +134,8 @@ void TargetSender::ReportPhase() {
   autopilot_.Announce(severity, "Kestrel: " + text);
 }
 
-// Tells them when the autopilot begins to land by it. Without a pattern in view it comes down where
-// it is.
+// Informs them when the autopilot begins to land by it. Without a pattern in view it comes down
+// where it is.
 void TargetSender::ReportLanding() {
   const bool begins = autopilot_.is_landing_mode() && autopilot_.is_armed() && !was_landing_;
   was_landing_ = autopilot_.is_landing_mode() && autopilot_.is_armed();

@@ -26,7 +26,7 @@ class DeepImages {
     thread_ = std::thread([this] {
       while (!is_over_) {
         Publish();
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));  // the camera's pace
       }
     });
   }

@@ -86,7 +86,7 @@ class RosSystem {
     thread_ = std::thread([this] {
       for (std::size_t i = 0; !is_over_; ++i) {
         Publish(frames_[i % frames_.size()]);
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));  // the camera's pace
       }
     });
   }

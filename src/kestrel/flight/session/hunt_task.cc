@@ -92,7 +92,7 @@ class HuntVision : public Vision {
   void Change(const TaskOptions& options, std::optional<double> altitude_m) override;
   std::unique_ptr<ObservationSink> MakeTables(const OutputOptions& output) const override;
 
-  // Says how the objects' sizes contradict the given height of the ground; not in flight.
+  // Reports how the objects' sizes contradict the given height of the ground; not in flight.
   std::string Warning() const override;
   std::string Found() const override;
   // Number of segments left after each step, as in the paper's Table 3.

@@ -57,7 +57,7 @@ class LandingVision : public Vision {
   void Change(const TaskOptions& options, std::optional<double> altitude_m) override;
   std::unique_ptr<ObservationSink> MakeTables(const OutputOptions& output) const override;
 
-  // Says how the detections contradict the given height and attitude; in flight, the lens.
+  // Reports how the detections contradict the given height and attitude; in flight, the lens.
   std::string Warning() const override;
   std::string Found() const override;
   // Contradictions between detections and calibration; the number of frames without a pose, where

@@ -39,7 +39,7 @@ class LiveSource {
   // the source has ended for good. Does not throw.
   virtual std::optional<Event> Next(Duration timeout) = 0;
 
-  // Says why there are no frames; empty as long as the source delivers.
+  // Reports why there are no frames; empty as long as the source delivers.
   virtual std::string error() const { return ""; }
 
   virtual CaptureCounters counters() const = 0;

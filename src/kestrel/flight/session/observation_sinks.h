@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,6 +37,12 @@ class ObservationSinks : public ObservationSink {
     sinks_.push_back(std::make_unique<OwnedSink>(
         std::move(sink), errors_, [this](const std::string& error) { Notify(error); }));
     return added;
+  }
+
+  // What a sink that was left out has thrown last; empty: all work. By any thread.
+  std::string failure() const {
+    const std::lock_guard lock(mutex_);
+    return failure_;
   }
 
   bool IsWanted() const override {
@@ -72,12 +79,18 @@ class ObservationSinks : public ObservationSink {
   }
 
   void Notify(const std::string& error) {
+    {
+      const std::lock_guard lock(mutex_);
+      failure_ = error;
+    }
     TakeAll(SessionEvent{
         Now(), EventLevel::kError,
         "a sink of the results has failed: " + error + ": the flight goes on without it"});
   }
 
   SinkErrors errors_;
+  mutable std::mutex mutex_;
+  std::string failure_;  // guarded by mutex_
   std::vector<std::unique_ptr<OwnedSink>> sinks_;
 };
 

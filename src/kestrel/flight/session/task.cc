@@ -22,8 +22,9 @@ std::unique_ptr<Task> MakeHunt(const TaskOptions& options, const TaskChoice& cho
 }
 
 constexpr TaskKind kKinds[] = {
-    {"land", "Run the landing pipeline over a source", MakeLand},
-    {"hunt", "Run the coloured-object pipeline over a source", MakeHunt},
+    {"land", "Run the landing pipeline over a source", "Land on the pattern", MakeLand},
+    {"hunt", "Run the coloured-object pipeline over a source",
+     "Search for coloured objects instead of the landing pattern", MakeHunt},
 };
 
 }  // namespace

@@ -78,10 +78,11 @@ struct TaskChoice {
   std::vector<double> origin = {};     // as HuntTask's
 };
 
-// A kind of task: its subcommand, and what that does.
+// A kind of task. The first one is what a flight does without a flag.
 struct TaskKind {
-  std::string_view name;
-  const char* meaning;
+  std::string_view name;  // of its subcommand, and of its flag of others, as --hunt
+  const char* meaning;    // of the subcommand
+  const char* instead;    // meaning of the flag
   std::unique_ptr<Task> (*make)(const TaskOptions& options, const TaskChoice& choice);
 };
 std::span<const TaskKind> TaskKinds();

@@ -20,17 +20,36 @@ void TeamSharing::Take(const Observation& observation) {
   seen_ = observation.frame.time;
   if (team_->IsTimeToSend()) {
     team_->Share(map_->Confirmed());
-    Publish();
+    Publish(seen_);
   }
   team_->Exchange();
 }
 
 void TeamSharing::Finish() {
   team_->Finish(map_->Confirmed(), is_stopped_);
-  Publish();
+  Publish(seen_);
   if (folder_) team_->WriteMap(origin_, *folder_);
 }
 
-void TeamSharing::Publish() { others_->Take(TeamReport{seen_, team_->Map()}); }
+void TeamSharing::Publish(Time seen) {
+  seen_ = seen;
+  others_->Take(TeamReport{seen, team_->Map()});
+}
+
+LiveTeamSharing::LiveTeamSharing(std::unique_ptr<TeamLink> team, const ObjectMap* map,
+                                 std::optional<OutputFolder> folder, ObservationSink* others,
+                                 std::function<bool()> is_stopped)
+    : TeamSharing(std::move(team), map, /*origin=*/{}, std::move(folder), others,
+                  std::move(is_stopped)),
+      copies_(map, DurationFromSeconds(TeamOptions::kSendPeriod_s)) {}
+
+void LiveTeamSharing::Share() {
+  if (auto map = copies_.TakeNewest()) {
+    if (map->position) team().SetPosition(*map->position);
+    team().Share(std::move(map->objects));
+    Publish(map->captured);
+  }
+  team().Exchange();
+}
 
 }  // namespace kestrel

@@ -64,9 +64,12 @@ class TeamSharing : public ObservationSink {
 
   std::string Found() { return team_->Found(); }
 
- private:
-  void Publish();
+ protected:
+  TeamLink& team() { return *team_; }
+  // Passes the team's map on; 'seen': time of the newest frame that is in it.
+  void Publish(Time seen);
 
+ private:
   std::unique_ptr<TeamLink> team_;
   const ObjectMap* map_;
   std::vector<double> origin_;
@@ -74,6 +77,23 @@ class TeamSharing : public ObservationSink {
   ObservationSink* others_;
   std::function<bool()> is_stopped_;
   Time seen_{};  // time of the last frame
+};
+
+// The same in flight, where the vision's thread does not wait for the network.
+class LiveTeamSharing : public TeamSharing {
+ public:
+  // As of TeamSharing.
+  LiveTeamSharing(std::unique_ptr<TeamLink> team, const ObjectMap* map,
+                  std::optional<OutputFolder> folder, ObservationSink* others,
+                  std::function<bool()> is_stopped);
+
+  void Take(const Observation& observation) override { copies_.Take(observation); }
+
+  // Shares what is new, and exchanges messages. Called often, by the thread of Session::Run.
+  void Share();
+
+ private:
+  MapCopies copies_;
 };
 
 }  // namespace kestrel

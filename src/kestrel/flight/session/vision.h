@@ -58,8 +58,8 @@ class Vision {
     return nullptr;
   }
 
-  // Says which part of the set-up contradicts the images, and what to do, as far as it is known by
-  // now; empty where nothing does.
+  // Reports which part of the set-up contradicts the images, and what to do, as far as it is known
+  // by now; empty where nothing does.
   virtual std::string Warning() const { return ""; }
 
   // The summary: Found() for its line ("pattern found in 12"), Remarks() for the lines below it.

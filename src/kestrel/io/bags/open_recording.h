@@ -49,7 +49,7 @@ struct OpenedSource {
   bool has_world() const { return calibration.body_from_camera && !source->poses().empty(); }
 };
 
-// Opens a recording without looking for its calibration. Reports to 'bag.tell' the first images
+// Opens a recording without looking for its calibration. Reports to 'bag.notify' the first images
 // that cannot be read, unless the source's set_on_broken is changed. Throws InputError as
 // OpenSourceOrBag does.
 std::unique_ptr<FrameSource> OpenFrames(const RecordingChoice& choice);
@@ -59,7 +59,7 @@ std::unique_ptr<FrameSource> OpenFrames(const RecordingChoice& choice);
 std::vector<PoseSample> RequirePoses(const FrameSource& source, const std::string& name);
 
 // Opens a recording with the calibration of the file, its own, or an assumed one. A calibration
-// without a mount gets the source's, and its clock offset. Reports to 'bag.tell' which lens is
+// without a mount gets the source's, and its clock offset. Reports to 'bag.notify' which lens is
 // assumed, and when there are poses but no mount. Throws InputError when there is no calibration,
 // or when source or calibration are not valid.
 OpenedSource OpenRecording(const RecordingChoice& choice);

@@ -83,6 +83,9 @@ OpenedLiveSource SimulatedSource::Open(const LiveSourceChoice& choice) {
   opened.rate_hz = options_.rate_hz;
   camera_ = &source->camera();
   opened.source = std::move(source);
+  opened.pose = [this](const PoseSample& pose) { TakePose(pose); };
+  opened.true_pose = [this](const PoseSample& pose) { TakeTruePose(pose); };
+  opened.truth = [this](const Frame& frame) { return camera_->Truth(frame); };
   return opened;
 }
 
@@ -106,11 +109,6 @@ void SimulatedSource::TakeTruePose(const PoseSample& pose) {
 AutopilotOptions SimulatedSource::Asking(AutopilotOptions options) const {
   options.wants_true_pose = options.wants_true_pose || camera_ != nullptr;
   return options;
-}
-
-std::optional<TruePattern> SimulatedSource::Truth(const Frame& frame) const {
-  if (camera_ == nullptr) return std::nullopt;
-  return camera_->Truth(frame);
 }
 
 }  // namespace kestrel

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string_view>
 
 #include "kestrel/comms/mavlink/autopilot.h"
@@ -42,9 +41,6 @@ class SimulatedSource {
 
   // Returns 'options' with what the camera needs from the autopilot.
   AutopilotOptions Asking(AutopilotOptions options) const;
-
-  // The true pattern of a frame of the camera; nothing when no source was opened.
-  std::optional<TruePattern> Truth(const Frame& frame) const;
 
  private:
   OpenedLiveSource Open(const LiveSourceChoice& choice);

@@ -174,7 +174,7 @@ TEST_F(HelipadDetectorTest, CovarianceMatchesErrors) {
     error << seen.translation - pose.translation, RotationVector(turn);
     sum += error.dot(report.detection->covariance.ldlt().solve(error));
   }
-  // Six degrees of freedom: 6 on average for errors that are as large as they are said to be.
+  // Six degrees of freedom: 6 on average for errors that are as large as their covariance.
   EXPECT_GT(sum / kViews, 1);
   EXPECT_LT(sum / kViews, 14);
 }

@@ -100,7 +100,7 @@ TEST_F(MakeTargetDetectorTest, AcceptsBoardsOfTagsAsKinds) {
   SetOption("kind=aruco", &target);
   EXPECT_NEAR(ShapeOfTarget(target, {}).outlines[0][0].norm(), 0.25 * M_SQRT2, 1e-9);
   SetOption("aruco.id=50", &target);
-  EXPECT_THAT(ViolationsOf(target), ElementsAre("aruco_4x4_50 has no id 50, expected 0 to 49"));
+  EXPECT_THAT(ViolationsOf(target), ElementsAre(HasSubstr("has no id 50")));
   SetOption("kind=nested", &target);
   EXPECT_THAT(ViolationsOf(target), ElementsAre(HasSubstr("nested.board is empty")));
   // The options of other kinds do not matter.

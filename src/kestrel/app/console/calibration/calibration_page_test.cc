@@ -56,7 +56,7 @@ class CalibrationPageTest : public testing::Test {
     if (request.lens) throw InputError("the views cannot tell the lens: tilt the camera");
     while (request.moving) {
       if (!go_on(4)) return std::nullopt;
-      std::this_thread::sleep_for(1ms);
+      std::this_thread::sleep_for(1ms);  // a run's time for a frame
     }
     CalibrationResult result;
     result.calibration.intrinsics = PaperCamera();

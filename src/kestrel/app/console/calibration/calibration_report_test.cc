@@ -91,7 +91,7 @@ TEST(CalibrationReportTest, OmitsWhatFlightCannotDetermine) {
   EXPECT_THAT(no_use(0.4, 0.01, 0.4),
               HasSubstr("does not determine the mount's roll (+- 22.9 degrees), pitch"));
   EXPECT_THAT(no_use(0.01, 0.2, 0.4), HasSubstr("does not determine the clock offset (+- 0.2 s)"));
-  EXPECT_EQ(no_use(0.01, 0.01, 0.6), "the positions agree less than before");
+  EXPECT_THAT(no_use(0.01, 0.01, 0.6), HasSubstr("agree less"));
 }
 
 TEST(CalibrationReportTest, ComparesLensWithGivenOneOnSameViews) {

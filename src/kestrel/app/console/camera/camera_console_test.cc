@@ -28,7 +28,7 @@ class PlayedCamera : public LiveSource {
 
   std::optional<Event> Next(Duration) override {
     constexpr int kFrames = 40;
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));  // the camera's pace
     if (is_gone) return std::nullopt;
     Frame frame;
     frame.image = (*images_)[count_++ / kFrames % images_->size()].image;

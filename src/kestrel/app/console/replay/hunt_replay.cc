@@ -112,7 +112,7 @@ class ObjectSearch : public ReplaySearch {
   StartRun Detect(const std::vector<std::string>& settings) const override {
     return [this,
             task = HuntTask(WithSettings(options_, settings), model_)](const OpenedSource& opened) {
-      auto session = std::make_unique<RecordedSession>(opened, task, altitude_m_);
+      auto session = MakeSession(opened, task, {.altitude_m = altitude_m_});
       const auto map = [this, objects = session->vision().map()] {
         return StandingObjects(ObjectMapCsv(objects->Confirmed(), model_), "map");
       };
@@ -126,7 +126,7 @@ class ObjectSearch : public ReplaySearch {
       const HuntResult& result = earlier->result();
       const HuntView view{result.model()};
       const std::string text = result.text();
-      return ReplayRun(std::make_unique<RecordedSession>(opened, std::move(earlier)), view, text,
+      return ReplayRun(MakeSession(opened, std::move(earlier)), view, text,
                        Completion([table] { return EarlierMap(table); }));
     };
   }

@@ -71,7 +71,7 @@ class PatternSearch : public ReplaySearch {
 
   StartRun Detect(const std::vector<std::string>& settings) const override {
     return [this, task = LandTask(WithSettings(options_, settings))](const OpenedSource& opened) {
-      return ReplayRun(std::make_unique<RecordedSession>(opened, task, altitude_m_),
+      return ReplayRun(MakeSession(opened, task, {.altitude_m = altitude_m_}),
                        ViewOf(opened.calibration, task.options()), /*table=*/"", Completion());
     };
   }
@@ -80,7 +80,7 @@ class PatternSearch : public ReplaySearch {
     return [this, table](const OpenedSource& opened) {
       auto earlier = std::make_unique<EarlierResults<LandResult>>(table, opened, options_);
       const std::string text = earlier->result().text();
-      return ReplayRun(std::make_unique<RecordedSession>(opened, std::move(earlier)),
+      return ReplayRun(MakeSession(opened, std::move(earlier)),
                        ViewOf(opened.calibration, options_), text, Completion());
     };
   }

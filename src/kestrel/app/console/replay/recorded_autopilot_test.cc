@@ -48,7 +48,7 @@ class RecordedAutopilotTest : public testing::Test {
   void Report(double at_s, const Message& message) {
     log_.Add(Utc_us(at_s), message);
   }
-  // Kestrel asks for the autopilot's clock, and the other way round.
+  // Kestrel requests the autopilot's clock, and the other way round.
   void RequestTime(double at_s) {
     mavlink::Timesync question;
     question.ts1 = ToNanoseconds(kBegin + DurationFromSeconds(at_s));

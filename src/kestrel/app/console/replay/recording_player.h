@@ -33,7 +33,7 @@ inline constexpr Duration kLookInterval = std::chrono::milliseconds(20);
 ConsoleFeed::Description DescriptionOf(const std::string& title, const ReplaySubject& subject);
 
 // Plays a recording with the results of one run of the detector, or of two runs with different
-// options, as the users of a feed ask. All functions are called by one thread, Follow often.
+// options, as the users of a feed request. All functions are called by one thread, Follow often.
 class RecordingPlayer {
  public:
   // Returns the image of a frame by its index. Throws InputError when it cannot be read.

@@ -38,7 +38,7 @@ class ReplayConsole {
   // Gives the page the tools to calibrate. Call it before Play.
   void OfferCalibration(CalibrationPage::Tools tools) { tools_ = std::move(tools); }
 
-  // Plays the result of the first run (at least one frame) as the users ask, until 'is_stopped'
+  // Plays the result of the first run (at least one frame) as the users request, until 'is_stopped'
   // returns true; it is called often. Call Play once only.
   void Play(ReplayResult first, Recording recording, const std::function<bool()>& is_stopped);
 

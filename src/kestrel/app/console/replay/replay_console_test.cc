@@ -73,14 +73,14 @@ class ReplayConsoleTest : public testing::Test {
             {{changed, EventLevel::kInfo, "mode LAND, armed"}},
             ""};
   }
-  // A run that finds the pattern in the first half of the frames, unless it is told to wait or
+  // A run that finds the pattern in the first half of the frames, unless it has to wait or
   // fail.
   std::optional<ReplayResult> DetectAgain(const LandingPipelineOptions& options,
                                           const SecondRun::GoOn& go_on) {
     if (options.hint_age_s == 7) throw InputError("frame3.png: no such file");
     while (options.hint_age_s == 8) {
       if (!go_on(5)) return std::nullopt;
-      std::this_thread::sleep_for(1ms);
+      std::this_thread::sleep_for(1ms);  // a run's time for a frame
     }
     ReplayResult result{Frames(), "second\n", {}};
     for (std::size_t i = 0; i < kFrames / 2; ++i) {

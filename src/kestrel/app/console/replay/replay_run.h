@@ -13,7 +13,7 @@
 #include "kestrel/app/console/replay/replay_frame.h"
 #include "kestrel/app/views/task_view.h"
 #include "kestrel/core/base/time.h"
-#include "kestrel/flight/session/recorded_session.h"
+#include "kestrel/flight/onboard/session.h"
 #include "kestrel/io/bags/open_recording.h"
 #include "kestrel/vision/pipeline/camera_poses.h"
 
@@ -60,13 +60,13 @@ class ReplayFrames : public ObservationSink {
 
 // A run over a recording whose frames are kept.
 struct ReplayRun {
-  ReplayRun(std::unique_ptr<RecordedSession> run, TaskView view, const std::string& table,
+  ReplayRun(std::unique_ptr<Session> run, TaskView view, const std::string& table,
             ReplayFrames::Complete complete)
       : session(std::move(run)),
         frames(session->sinks().Add(std::make_unique<ReplayFrames>(
             std::move(view), session->vision(), table, std::move(complete)))) {}
 
-  std::unique_ptr<RecordedSession> session;
+  std::unique_ptr<Session> session;
   ReplayFrames* frames;  // of the session's sinks
 };
 

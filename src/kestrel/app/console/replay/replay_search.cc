@@ -9,13 +9,14 @@
 namespace kestrel {
 namespace {
 
-// Runs over the recording once more. Returns nothing when it was told to end.
+// Runs over the recording once more. Returns nothing when it was stopped.
 std::optional<ReplayResult> DetectAgain(const RecordingChoice& choice,
                                         const ReplaySearch::StartRun& start,
                                         const SecondRun::GoOn& go_on) {
   const OpenedSource opened = OpenRecording(choice);
   const ReplayRun run = start(opened);
-  if (!run.session->Run(go_on)) return std::nullopt;
+  const FlightEnd end = run.session->Run([&] { return !go_on(run.frames->done()); });
+  if (end.outcome == FlightOutcome::kStopped) return std::nullopt;
   return run.frames->TakeResult();
 }
 

@@ -33,8 +33,7 @@ TEST(ReadGrayImage, ConvertsColourToLuminance) {
 TEST(ReadGrayImage, RefusesSixteenBits) {
   const TestFolder folder;
   const std::string file = WriteTestImage(folder, "deep.png", cv::Mat(4, 4, CV_16UC1, 1000));
-  EXPECT_EQ(InputErrorOf([&] { ReadGrayImage(file); }),
-            file + ": is a 16-bit image, expected 8 bits a channel");
+  EXPECT_THAT(InputErrorOf([&] { ReadGrayImage(file); }), HasSubstr(file + ": is a 16-bit image"));
 }
 
 TEST(ReadGrayImage, RefusesFilesTruncatedAnywhere) {
