@@ -2,3 +2,8 @@
 add_executable(touchdown_accuracy touchdown_accuracy.cc)
 target_link_libraries(touchdown_accuracy PRIVATE kestrel::recordings kestrel::evaluation
                                                  CLI11::CLI11 fmt::fmt)
+
+# Two cameras on one UAV.
+add_executable(camera_pair_accuracy camera_pair_accuracy.cc)
+target_link_libraries(camera_pair_accuracy PRIVATE kestrel::recordings kestrel::evaluation
+                                                   CLI11::CLI11 fmt::fmt yaml-cpp)

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The pipelines of a landing and of a hunt, and what they see in a frame.
+#include <cstddef>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
@@ -50,41 +52,59 @@ class Guarded {
 class GuardedLanding : public Guarded<LandingPipeline> {
  public:
   explicit GuardedLanding(LandingPipeline pipeline)
-      : Guarded(std::move(pipeline)),
-        view_(std::make_shared<PadView>(
-            PadView{this->pipeline().detector().camera(), this->pipeline().detector().shape()})) {}
+      : Guarded(std::move(pipeline)), views_(ViewsOf(this->pipeline())) {}
 
-  SeenLanding Process(const py::handle& image, Time time) {
-    const cv::Mat pixels = GrayImage(image, view_->camera.intrinsics());
+  SeenLanding Process(const py::handle& image, Time time, std::size_t camera) {
+    const auto& view = views_[RequireCamera(camera)];
+    const cv::Mat pixels = GrayImage(image, view->camera.intrinsics());
     return With([&](LandingPipeline& pipeline) {
-      return SeenLanding{pipeline.Process(pixels, time), view_};
+      return SeenLanding{pipeline.Process(pixels, time, camera), view};
     });
   }
 
- private:
-  std::shared_ptr<PadView> view_;
-};
-
-class GuardedHunt : public Guarded<HuntPipeline> {
- public:
-  GuardedHunt(HuntPipeline pipeline, std::shared_ptr<ObjectModel> model)
-      : Guarded(std::move(pipeline)), model_(std::move(model)) {}
-
-  SeenHunt Process(const py::handle& image, Time time) {
-    const cv::Mat pixels = ColorImage(image, pipeline().detector().camera().intrinsics());
-    return With([&](HuntPipeline& pipeline) {
-      return SeenHunt{pipeline.Process(pixels, time), model_};
-    });
+  std::optional<std::string> FaultOf(std::size_t camera) {
+    RequireCamera(camera);
+    const CameraState state =
+        With([&](LandingPipeline& pipeline) { return pipeline.camera_state(camera); });
+    if (state.health == CameraHealth::kGood) return std::nullopt;
+    return kestrel::InWords(state);
   }
 
  private:
-  std::shared_ptr<ObjectModel> model_;
+  using PadViews = std::vector<std::shared_ptr<PadView>>;
+
+  static PadViews ViewsOf(const LandingPipeline& pipeline) {
+    PadViews views;
+    for (std::size_t i = 0; i < pipeline.camera_count(); ++i) {
+      const TargetDetector& detector = pipeline.detector(i);
+      views.push_back(std::make_shared<PadView>(PadView{detector.camera(), detector.shape()}));
+    }
+    return views;
+  }
+
+  std::size_t RequireCamera(std::size_t camera) const {
+    if (camera < views_.size()) return camera;
+    throw InputError(fmt::format("camera is {}, expected less than {}", camera, views_.size()));
+  }
+
+  PadViews views_;  // of each camera
 };
+
+using OneOrSeveral = std::variant<CameraCalibration, std::vector<CameraCalibration>>;
+
+std::vector<CameraCalibration> CamerasOf(const OneOrSeveral& calibration) {
+  if (const auto* one = std::get_if<CameraCalibration>(&calibration)) return {*one};
+  const auto& cameras = std::get<std::vector<CameraCalibration>>(calibration);
+  if (!cameras.empty()) return cameras;
+  throw InputError("calibration is an empty list, expected one for each camera");
+}
 
 void BindLandingObservation(py::module_& module) {
   using Seen = SeenLanding;
   ValueClass<Seen>(module, "LandingObservation", "What the landing pipeline saw in a frame.")
-      .Field("time_ns", &Seen::time, "Of the frame, on the images' clock, int, ns.")
+      .Field("time_ns", &Seen::time,
+             "Of the frame, on the images' clock; of several cameras, the first one's, int, ns.")
+      .Field("camera", &Seen::camera, "Index of the camera, int.")
       .Field(
           "report",
           [](const Seen& self) {
@@ -156,22 +176,27 @@ void BindLandingPipeline(py::module_& module) {
       module, "LandingPipeline",
       "The whole vision of a landing: images and poses in; the pad, its place in the world and its "
       "track out.")
-      .def(py::init([](const CameraCalibration& calibration, const py::object& options,
+      .def(py::init([](const OneOrSeveral& calibration, const py::object& options,
                        const std::shared_ptr<Detector>& detector, const py::kwargs& keywords) {
              const auto values = OptionsOf<LandingPipelineOptions>(
                  options, keywords, [](const auto& file) { return file.landing; });
+             const std::vector<CameraCalibration> cameras = CamerasOf(calibration);
+             if (detector && cameras.size() > 1) {
+               throw InputError("detector: expected the calibration of one camera");
+             }
              if (detector) {
                return std::make_shared<GuardedLanding>(LandingPipeline(
-                   calibration, std::make_unique<SharedDetector>(detector->target()), values));
+                   cameras.front(), std::make_unique<SharedDetector>(detector->target()), values));
              }
-             auto made = std::make_shared<GuardedLanding>(LandingPipeline(calibration, values));
+             auto made = std::make_shared<GuardedLanding>(LandingPipeline(cameras, values));
              WarnOf(values.target);
              return made;
            }),
            py::arg("calibration"), py::arg("options") = py::none(),
            py::arg("detector") = py::none(),
            "calibration: CameraCalibration; poses place the pad in the world where it has a "
-           "mount.\noptions: a dict by the names of `kestrel config` under landing, or the path of "
+           "mount. A list: several cameras, which together make one track.\noptions: a dict by the "
+           "names of `kestrel config` under landing, or the path of "
            "such a file; keyword arguments are options, too, as target={'kind': 'helipad'}.\n"
            "detector: TargetDetector in place of that of the options.")
       .def(
@@ -188,9 +213,13 @@ void BindLandingPipeline(py::module_& module) {
           },
           py::arg("altitude_m"), kSetAltitude)
       .def("process", &GuardedLanding::Process, py::arg("image"), py::arg("time_ns"),
+           py::arg("camera_index") = 0,
            "Processes a frame.\n\nimage: uint8 of shape (rows, columns), gray, of the camera's "
-           "size; not copied.\ntime_ns: middle of the exposure, int, ns.\nReturns a "
-           "LandingObservation. Lets other threads run.")
+           "size; not copied.\ntime_ns: middle of the exposure, int, ns.\ncamera_index: of "
+           "several cameras.\nReturns a LandingObservation. Lets other threads run.")
+      .def("camera_fault", &GuardedLanding::FaultOf, py::arg("camera_index"),
+           "Returns in words why one of several cameras does not contribute to the track; None "
+           "where it does.")
       .def(
           "predict",
           [](GuardedLanding& self, Time time) {

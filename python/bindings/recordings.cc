@@ -149,6 +149,7 @@ void BindFrame(py::module_& module) {
   ValueClass<Frame>(module, "Frame", "An image of a source.")
       .Field("name", &Frame::name, "Path of the image, as given or relative to the source.")
       .Field("time_ns", &Frame::time, "Middle of the exposure, int, ns.")
+      .Field("camera", &Frame::camera, "Index of the camera, int.")
       .Field(
           "image", [](const Frame& self) { return ArrayOf(self.image); },
           [](const py::handle& value, Frame* self) {

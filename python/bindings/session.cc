@@ -44,7 +44,7 @@ struct SeenFrame {
 
 // Pad and objects of a session, for drawing its results.
 struct Views {
-  std::shared_ptr<PadView> pad;
+  std::vector<std::shared_ptr<PadView>> pads;  // of each camera
   std::shared_ptr<ObjectModel> model;
 
   SeenFrame Seen(const Observation& observation) const {
@@ -52,7 +52,8 @@ struct Views {
     if (const auto* hunt = std::get_if<HuntObservation>(&observation.seen)) {
       frame.seen = SeenHunt{*hunt, model};
     } else {
-      frame.seen = SeenLanding{std::get<LandingObservation>(observation.seen), pad};
+      frame.seen = SeenLanding{std::get<LandingObservation>(observation.seen),
+                               pads[observation.frame.camera]};
     }
     return frame;
   }
@@ -224,14 +225,16 @@ class Session {
       opened.source->set_format(task_->format());
       return opened;
     }
-    return OpenWithWarnings(ChoiceOf(choices_.source, choices_.camera, task_->format()));
+    RecordingChoice choice = ChoiceOf(choices_.source, choices_.camera, task_->format());
+    choice.all_cameras = task_->takes_several_cameras();
+    return OpenWithWarnings(choice);
   }
 
   std::string RunRecorded() {
     const OpenedSource opened = Open();
     const py::gil_scoped_release release;
     const auto session = MakeSession(opened, *task_, WithChoices({}));
-    session->sinks().Add(SinkFor(opened.calibration));
+    session->sinks().Add(SinkFor(opened.calibration, opened.further));
     session->Run([this] {
       CheckSignals();
       return is_stopped_.load();
@@ -283,11 +286,15 @@ class Session {
   }
 
   // Returns a sink that calls the functions of Python.
-  std::unique_ptr<CallingSink> SinkFor(const CameraCalibration& calibration) const {
+  std::unique_ptr<CallingSink> SinkFor(const CameraCalibration& calibration,
+                                       const std::vector<CameraCalibration>& further = {}) const {
     const LandingPipelineOptions& landing = options_.landing;
-    Views views{std::make_shared<PadView>(PadView{CameraModel(calibration.intrinsics),
-                                                  ShapeOfTarget(landing.target, landing.detector)}),
-                choices_.model};
+    const TargetShape shape = ShapeOfTarget(landing.target, landing.detector);
+    const auto view_of = [&](const CameraCalibration& camera) {
+      return std::make_shared<PadView>(PadView{CameraModel(camera.intrinsics), shape});
+    };
+    Views views{{view_of(calibration)}, choices_.model};
+    for (const CameraCalibration& camera : further) views.pads.push_back(view_of(camera));
     return std::make_unique<CallingSink>(&choices_, std::move(views));
   }
 
@@ -316,7 +323,7 @@ void BindSeenFrame(py::module_& module) {
           [](const SeenFrame& self) {
             const auto* hunt = std::get_if<SeenHunt>(&self.seen);
             return hunt ? ObjectCsvRows(self.frame.name, *hunt, *hunt->model)
-                        : LandingCsvRow(self.frame.name, std::get<SeenLanding>(self.seen));
+                        : LandingCsvRow(self.frame, std::get<SeenLanding>(self.seen), false);
           },
           "Its lines of that table.");
 }

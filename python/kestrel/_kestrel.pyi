@@ -1022,11 +1022,14 @@ class ObjectMap:
 
 class LandingObservation:
     """What the landing pipeline saw in a frame."""
-    def __init__(self, *, time_ns: int = ..., report: TargetReport = ..., world_from_camera: RigidTransform | None = ..., pose: PoseLookup | str = ..., pose_uncertainty: PoseUncertainty = ..., center_in_world: ArrayLike | None = ..., position_method: PositionMethod | str = ..., yaw_in_world: float | None = ..., fate: MeasurementFate | str | None = ..., track_state: TrackState | str = ..., target: TargetEstimate | None = ..., detect_time_s: float = ..., view: PadView = ...) -> None: ...
-    def replace(self, *, time_ns: int = ..., report: TargetReport = ..., world_from_camera: RigidTransform | None = ..., pose: PoseLookup | str = ..., pose_uncertainty: PoseUncertainty = ..., center_in_world: ArrayLike | None = ..., position_method: PositionMethod | str = ..., yaw_in_world: float | None = ..., fate: MeasurementFate | str | None = ..., track_state: TrackState | str = ..., target: TargetEstimate | None = ..., detect_time_s: float = ..., view: PadView = ...) -> LandingObservation: ...
+    def __init__(self, *, time_ns: int = ..., camera: int = ..., report: TargetReport = ..., world_from_camera: RigidTransform | None = ..., pose: PoseLookup | str = ..., pose_uncertainty: PoseUncertainty = ..., center_in_world: ArrayLike | None = ..., position_method: PositionMethod | str = ..., yaw_in_world: float | None = ..., fate: MeasurementFate | str | None = ..., track_state: TrackState | str = ..., target: TargetEstimate | None = ..., detect_time_s: float = ..., view: PadView = ...) -> None: ...
+    def replace(self, *, time_ns: int = ..., camera: int = ..., report: TargetReport = ..., world_from_camera: RigidTransform | None = ..., pose: PoseLookup | str = ..., pose_uncertainty: PoseUncertainty = ..., center_in_world: ArrayLike | None = ..., position_method: PositionMethod | str = ..., yaw_in_world: float | None = ..., fate: MeasurementFate | str | None = ..., track_state: TrackState | str = ..., target: TargetEstimate | None = ..., detect_time_s: float = ..., view: PadView = ...) -> LandingObservation: ...
     @property
     def time_ns(self) -> int:
-        """Of the frame, on the images' clock, int, ns."""
+        """Of the frame, on the images' clock; of several cameras, the first one's, int, ns."""
+    @property
+    def camera(self) -> int:
+        """Index of the camera, int."""
     @property
     def report(self) -> TargetReport:
         """TargetReport: the detection in the camera frame, or why there is none."""
@@ -1099,8 +1102,9 @@ class LandingPipeline:
     """The whole vision of a landing: images and poses in; the pad, its place in the world and its
     track out.
     """
-    def __init__(self, calibration: CameraCalibration, options: _Options = ..., detector: TargetDetector | None = ..., **kwargs: Any) -> None:
-        """calibration: CameraCalibration; poses place the pad in the world where it has a mount.
+    def __init__(self, calibration: CameraCalibration | list[CameraCalibration], options: _Options = ..., detector: TargetDetector | None = ..., **kwargs: Any) -> None:
+        """calibration: CameraCalibration; poses place the pad in the world where it has a mount. A list:
+        several cameras, which together make one track.
         options: a dict by the names of `kestrel config` under landing, or the path of such a file;
         keyword arguments are options, too, as target={'kind': 'helipad'}.
         detector: TargetDetector in place of that of the options.
@@ -1113,12 +1117,17 @@ class LandingPipeline:
         """Sets the height (m) of the camera above what it looks for, for frames without a pose; None: not
         known.
         """
-    def process(self, image: NDArray[np.uint8], time_ns: int) -> LandingObservation:
+    def process(self, image: NDArray[np.uint8], time_ns: int, camera_index: int = ...) -> LandingObservation:
         """Processes a frame.
 
         image: uint8 of shape (rows, columns), gray, of the camera's size; not copied.
         time_ns: middle of the exposure, int, ns.
+        camera_index: of several cameras.
         Returns a LandingObservation. Lets other threads run.
+        """
+    def camera_fault(self, camera_index: int) -> str | None:
+        """Returns in words why one of several cameras does not contribute to the track; None where it
+        does.
         """
     def predict(self, time_ns: int) -> TargetEstimate | None:
         """Returns the TargetEstimate of the track at a time, or None where it is not known."""
@@ -1150,14 +1159,17 @@ class HuntPipeline:
 
 class Frame:
     """An image of a source."""
-    def __init__(self, *, name: str = ..., time_ns: int = ..., image: NDArray[np.uint8] = ...) -> None: ...
-    def replace(self, *, name: str = ..., time_ns: int = ..., image: NDArray[np.uint8] = ...) -> Frame: ...
+    def __init__(self, *, name: str = ..., time_ns: int = ..., camera: int = ..., image: NDArray[np.uint8] = ...) -> None: ...
+    def replace(self, *, name: str = ..., time_ns: int = ..., camera: int = ..., image: NDArray[np.uint8] = ...) -> Frame: ...
     @property
     def name(self) -> str:
         """Path of the image, as given or relative to the source."""
     @property
     def time_ns(self) -> int:
         """Middle of the exposure, int, ns."""
+    @property
+    def camera(self) -> int:
+        """Index of the camera, int."""
     @property
     def image(self) -> NDArray[np.uint8]:
         """uint8, gray or BGR, not writable; shares the pixels."""

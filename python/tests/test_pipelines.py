@@ -34,6 +34,21 @@ def test_a_landing_is_followed_in_the_world(flight):
     assert pipeline.predict(0) is None
 
 
+def test_two_cameras_make_one_track(flight):
+    pipeline = kestrel.LandingPipeline([flight.calibration, flight.calibration])
+    for event in flight.events():
+        if isinstance(event, kestrel.PoseSample):
+            pipeline.add_pose(event)
+            continue
+        first = pipeline.process(event.image, event.time_ns)
+        second = pipeline.process(event.image, event.time_ns, camera_index=1)
+        assert (first.camera, second.camera) == (0, 1)
+        assert second.fate in ("started", "accepted")
+    assert pipeline.camera_fault(0) is None and pipeline.camera_fault(1) is None
+    with pytest.raises(kestrel.InputError, match="camera is 2, expected less than 2"):
+        pipeline.process(event.image, event.time_ns, camera_index=2)
+
+
 def test_a_detector_of_ones_own_choice(flight):
     detector = kestrel.make_detector(flight.calibration, {"target.kind": "helipad"})
     pipeline = kestrel.LandingPipeline(flight.calibration, detector=detector)

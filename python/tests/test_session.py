@@ -70,6 +70,19 @@ def test_sinks_get_each_frame(recording):
     assert kestrel.draw(seen[0].frame.image, seen[0].seen).shape == (480, 752, 3)
 
 
+def test_sinks_get_the_frames_of_all_cameras(tmp_path):
+    folder = tmp_path / "flight"
+    second = {"second.fov_deg": 60, "second.rate_hz": 5}
+    assert kestrel.simulate("calm", frames=8, rate_hz=10, **second).write(folder)
+    seen = []
+    summary = kestrel.Session(folder, sinks=[seen.append], output=tmp_path / "result").run()
+    cameras = [observation.frame.camera for observation in seen]
+    assert cameras.count(0) == 8 and cameras.count(1) == 4
+    assert all(each.seen.camera == each.frame.camera for each in seen)
+    assert "cam1" in summary
+    assert (tmp_path / "result" / "landing_detections_cam1.csv").exists()
+
+
 def test_a_simulated_flight_needs_no_disk():
     seen = []
     kestrel.Session(kestrel.simulate("calm", frames=8, rate_hz=10), sinks=[seen.append]).run()

@@ -62,7 +62,8 @@ void AddMcapSink(const SourceArguments& arguments, const OpenedSource& opened, c
                  ObservationSinks* sinks) {
   if (arguments.mcap.empty()) return;
   RequireNoSource(arguments.mcap, arguments.sources);
-  sinks->Add(OpenMcapFile(arguments.mcap, arguments.force, task, opened.calibration));
+  sinks->Add(
+      OpenMcapFile(arguments.mcap, arguments.force, task, opened.calibration, opened.further));
 }
 
 void RunToEnd(const OpenedSource& opened, Session* session,

@@ -30,7 +30,7 @@ void Render(const RecordingPlan& plan, const SimulateArguments& arguments, int w
   const int cores = static_cast<int>(std::thread::hardware_concurrency());
   const int threads = wanted_threads > 0 ? wanted_threads : std::max(cores, 1);
   CatchInterrupts();
-  ProgressBar progress(plan.times.size());
+  ProgressBar progress(plan.image_count());
   const auto start = std::chrono::steady_clock::now();
   std::size_t rendered = 0;
   const bool complete =
@@ -41,10 +41,10 @@ void Render(const RecordingPlan& plan, const SimulateArguments& arguments, int w
       });
   if (!complete) {
     throw Interrupted(fmt::format("interrupted after {} of {} images; the same command goes on",
-                                  rendered, plan.times.size()));
+                                  rendered, plan.image_count()));
   }
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  fmt::print(stderr, "{}: {} images in {:.1f} s\n", arguments.output, plan.times.size(),
+  fmt::print(stderr, "{}: {} images in {:.1f} s\n", arguments.output, plan.image_count(),
              took.count());
 }
 

@@ -127,8 +127,9 @@ RecordingChoice SourceArguments::Recording(PixelFormat format) const {
   return choice;
 }
 
-OpenedSource SourceArguments::OpenOrAssume(PixelFormat format) const {
+OpenedSource SourceArguments::OpenOrAssume(PixelFormat format, bool all_cameras) const {
   RecordingChoice choice = Recording(format);
+  choice.all_cameras = all_cameras;
   choice.may_assume_lens = mcap.empty() && !dds.is_given() && !altitude_m;
   return OpenRecording(choice);
 }

@@ -42,7 +42,7 @@ struct SourceArguments {
 
   // Opens the recording. Without a calibration, and without an output that needs one, a lens is
   // assumed.
-  OpenedSource OpenOrAssume(PixelFormat format) const;
+  OpenedSource OpenOrAssume(PixelFormat format, bool all_cameras = false) const;
 
   // The options of a session over the recording.
   SessionOptions Session() const;

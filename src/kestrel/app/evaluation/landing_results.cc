@@ -57,7 +57,7 @@ std::vector<DetectionRow> ParseDetectionRows(std::string_view text, const std::s
 
 std::vector<TrackRow> ParseTrackRows(std::string_view text, const std::string& file) {
   const CsvTable table(text, file);
-  const std::vector<Time> times = ParseTimes(table, "timestamp_ns");
+  const std::vector<Time> times = ParseTimes(table, "timestamp_ns", TimeOrder::kNotDecreasing);
   const std::size_t state = table.Column("state");
   const VectorColumns position(table, "p_", "_m");
   const VectorColumns velocity(table, "v_", "_mps");

@@ -40,7 +40,7 @@ void FoxgloveRecording::AddPose(const PoseSample& pose) {
 }
 
 void FoxgloveRecording::AddFrame(const Frame& frame) {
-  camera_.Write(frame);
+  camera_.Write(frame, frame.time);
   if (!body_from_camera_) return;
   file_.Write(kTransformsTopic, frame.time,
               foxglove::FrameTransforms{

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 
 #include "kestrel/app/foxglove/foxglove_messages.h"
 #include "kestrel/app/foxglove/foxglove_sink.h"
@@ -19,6 +20,18 @@ inline constexpr FoxgloveTopic<foxglove::PoseInFrame> kTargetTopic{"/landing/tar
 inline constexpr FoxgloveTopic<foxglove::SceneUpdate> kSceneTopic{"/scene"};
 inline constexpr FoxgloveTopic<foxglove::FrameResult> kResultTopic{"/result"};
 inline constexpr FoxgloveTopic<foxglove::Log> kLogTopic{"/log"};
+
+// The names of one camera's topics and of its frame: "/camera/image", "camera_optical_frame".
+struct CameraTopics {
+  explicit CameraTopics(const std::string& camera = "camera")
+      : image("/" + camera + "/image"),
+        calibration("/" + camera + "/calibration"),
+        annotations("/" + camera + "/annotations"),
+        pose("/" + camera + "/pose"),
+        frame(camera + "_optical_frame") {}
+
+  std::string image, calibration, annotations, pose, frame;
+};
 
 // Topics of frames and of their results; a hunt has no target.
 inline constexpr std::array kObservationTopics = {

@@ -48,6 +48,8 @@ class McapFileSink : public ObservationSink {
                const TaskView& view)
       : file_(path, replace, camera, view) {}
 
+  ObservationWriter& writer() { return file_.writer(); }
+
   void Take(const Observation& observation) override { file_.writer().Write(observation); }
   void Finish() override { file_.Close(); }
 
@@ -74,9 +76,14 @@ std::unique_ptr<AsynchronousSink> OpenMcapSink(const std::string& path, bool rep
 
 std::unique_ptr<ObservationSink> OpenMcapFile(const std::string& path, bool replace,
                                               const Task& task,
-                                              const CameraCalibration& calibration) {
-  return std::make_unique<McapFileSink>(path, replace, calibration.intrinsics,
-                                        ViewOf(task, calibration));
+                                              const CameraCalibration& calibration,
+                                              const std::vector<CameraCalibration>& further) {
+  auto sink = std::make_unique<McapFileSink>(path, replace, calibration.intrinsics,
+                                             ViewOf(task, calibration));
+  for (const CameraCalibration& camera : further) {
+    sink->writer().AddCamera(camera.name, camera.intrinsics, ViewOf(task, camera));
+  }
+  return sink;
 }
 
 }  // namespace kestrel

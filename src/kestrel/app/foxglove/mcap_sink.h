@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/flight/session/asynchronous_sink.h"
@@ -20,9 +21,11 @@ std::unique_ptr<AsynchronousSink> OpenMcapSink(const std::string& path, bool rep
                                                std::function<void(const std::string&)> notify);
 
 // Returns a sink that writes an MCAP file in the caller's thread and leaves nothing out; for
-// sessions over recordings. Take and Finish throw InputError as ObservationFile does.
+// sessions over recordings. 'further': the cameras after the first, with their names. Take and
+// Finish throw InputError as ObservationFile does.
 std::unique_ptr<ObservationSink> OpenMcapFile(const std::string& path, bool replace,
                                               const Task& task,
-                                              const CameraCalibration& calibration);
+                                              const CameraCalibration& calibration,
+                                              const std::vector<CameraCalibration>& further = {});
 
 }  // namespace kestrel

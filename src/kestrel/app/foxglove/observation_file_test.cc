@@ -69,6 +69,29 @@ TEST(ObservationFileTest, WritesLanding) {
   EXPECT_EQ(target.doubles(5).size(), 36u);
 }
 
+TEST(ObservationFileTest, HasTopicsOfEachCamera) {
+  const TestFolder folder;
+  const std::string path = folder / "flight.mcap";
+  {
+    ObservationFile file(path, false, ObservedCamera(), ObservedView());
+    file.writer().AddCamera("cam1", ObservedCamera(), ObservedView());
+    for (int i = 0; i < 6; ++i) {
+      Frame frame = ObservedFrame(i);
+      frame.camera = i % 3 == 0 ? 0 : 1;
+      file.Write(frame, ObservedLanding(frame.time));
+    }
+    file.Close();
+  }
+  const auto messages = ReadMessages(path);
+  for (const char* topic : {"image", "calibration", "annotations", "pose"}) {
+    EXPECT_EQ(messages.at(std::string("/camera/") + topic).size(), 2u) << topic;
+    EXPECT_EQ(messages.at(std::string("/cam1/") + topic).size(), 4u) << topic;
+  }
+  EXPECT_EQ(messages.at("/cam1/calibration")[0].fields.bytes(9), "cam1_optical_frame");
+  EXPECT_EQ(messages.at("/landing/target").size(), 6u);
+  EXPECT_EQ(messages.at("/log").size(), 1u);  // one track
+}
+
 TEST(ObservationFileTest, KeepsWrittenMessagesWhenRunFails) {
   const TestFolder folder;
   const Frame frame = ObservedFrame(0);

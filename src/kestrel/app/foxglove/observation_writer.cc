@@ -32,21 +32,35 @@ RigidTransform PoseOf(const TargetEstimate& target) {
   return {Eigen::Quaterniond(turn), target.motion.position()};
 }
 
+FoxgloveTopic<foxglove::ImageAnnotations> AnnotationsOf(const CameraWriter& images) {
+  return {images.topics().annotations};
+}
+
 }  // namespace
 
 ObservationWriter::ObservationWriter(FoxgloveSink* sink, const CameraIntrinsics& camera,
                                      TaskView view)
-    : sink_(sink), images_(sink, camera), view_(std::move(view)) {}
+    : sink_(sink) {
+  cameras_.emplace_back(sink, camera, CameraTopics(), std::move(view));
+}
+
+void ObservationWriter::AddCamera(const std::string& name, const CameraIntrinsics& camera,
+                                  TaskView view) {
+  cameras_.emplace_back(sink_, camera, CameraTopics(name), std::move(view));
+}
 
 void ObservationWriter::Write(const Frame& frame, const LandingObservation& observation,
                               std::optional<Duration> latency) {
-  const LandingView& view = std::get<LandingView>(view_);
-  const Time time = frame.time;
-  images_.Write(frame);
-  sink_->Offer(kAnnotationsTopic, time,
+  Camera& camera = cameras_[frame.camera];
+  const LandingView& view = std::get<LandingView>(camera.view);
+  const Time time = observation.time;
+  camera.images.Write(frame, time);
+  sink_->Offer(AnnotationsOf(camera.images), time,
                [&] { return FoxgloveAnnotations(time, LandingShapes(view, observation)); });
-  if (const auto& pose = observation.world_from_camera) WriteCameraPose(time, *pose);
-  if (const auto& found = observation.report.detection) {
+  if (const auto& pose = observation.world_from_camera) WriteCameraPose(camera, time, *pose);
+  // A frame has one parent: the pattern's is the first camera.
+  const auto& found = observation.report.detection;
+  if (found && frame.camera == 0) {
     sink_->Write(kTransformsTopic, time,
                  foxglove::FrameTransforms{{FoxgloveTransform(
                      time, kFoxgloveCamera, kFoxglovePattern, found->camera_from_target)}});
@@ -55,7 +69,7 @@ void ObservationWriter::Write(const Frame& frame, const LandingObservation& obse
     sink_->Write(kTargetTopic, time, PoseInWorld(time, PoseOf(*observation.target)));
   }
   sink_->Offer(kSceneTopic, time, [&] { return FoxgloveScene(view, observation); });
-  WriteResult(frame, latency, FoxgloveResult(observation));
+  WriteResult(frame, time, latency, FoxgloveResult(observation));
   const TrackState state = observation.track_state;
   if (std::exchange(track_state_, state) == state) return;
   Write(SessionEvent{time, state == TrackState::kLost ? EventLevel::kWarning : EventLevel::kInfo,
@@ -64,14 +78,15 @@ void ObservationWriter::Write(const Frame& frame, const LandingObservation& obse
 
 void ObservationWriter::Write(const Frame& frame, const HuntObservation& observation,
                               std::optional<Duration> latency) {
-  const HuntView& view = std::get<HuntView>(view_);
+  Camera& camera = cameras_[frame.camera];
+  const HuntView& view = std::get<HuntView>(camera.view);
   const Time time = frame.time;
-  images_.Write(frame);
-  sink_->Offer(kAnnotationsTopic, time,
+  camera.images.Write(frame, time);
+  sink_->Offer(AnnotationsOf(camera.images), time,
                [&] { return FoxgloveAnnotations(time, HuntShapes(view, observation)); });
-  if (const auto& pose = observation.world_from_camera) WriteCameraPose(time, *pose);
+  if (const auto& pose = observation.world_from_camera) WriteCameraPose(camera, time, *pose);
   sink_->Offer(kSceneTopic, time, [&] { return FoxgloveScene(view, observation); });
-  WriteResult(frame, latency, FoxgloveResult(view, observation));
+  WriteResult(frame, time, latency, FoxgloveResult(view, observation));
 }
 
 void ObservationWriter::Write(const Observation& observation) {
@@ -84,18 +99,21 @@ void ObservationWriter::Write(const SessionEvent& event) {
                foxglove::Log{event.time, LevelOf(event.level), event.text, "kestrel"});
 }
 
-void ObservationWriter::WriteCameraPose(Time time, const RigidTransform& world_from_camera) {
-  sink_->Write(kCameraPoseTopic, time, PoseInWorld(time, world_from_camera));
+void ObservationWriter::WriteCameraPose(const Camera& camera, Time time,
+                                        const RigidTransform& world_from_camera) {
+  const CameraTopics& topics = camera.images.topics();
+  sink_->Write(FoxgloveTopic<foxglove::PoseInFrame>{topics.pose}, time,
+               PoseInWorld(time, world_from_camera));
   sink_->Write(kTransformsTopic, time,
-               foxglove::FrameTransforms{
-                   {FoxgloveTransform(time, kFoxgloveWorld, kFoxgloveCamera, world_from_camera)}});
+               foxglove::FrameTransforms{{FoxgloveTransform(
+                   time, kFoxgloveWorld, topics.frame.c_str(), world_from_camera)}});
 }
 
-void ObservationWriter::WriteResult(const Frame& frame, std::optional<Duration> latency,
+void ObservationWriter::WriteResult(const Frame& frame, Time time, std::optional<Duration> latency,
                                     foxglove::FrameResult result) {
   result.frame = frame.name;
   if (latency) result.latency_ms = 1e3 * ToSeconds(*latency);
-  sink_->Write(kResultTopic, frame.time, result);
+  sink_->Write(kResultTopic, time, result);
 }
 
 }  // namespace kestrel

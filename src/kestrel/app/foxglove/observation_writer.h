@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <deque>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 
 #include "kestrel/app/foxglove/camera_writer.h"
@@ -24,7 +26,7 @@
 namespace kestrel {
 
 // Writes frames and their results as messages for Foxglove and other viewers. All messages of a
-// frame have the frame's time:
+// frame have the frame's time; with several cameras, on the clock of the first one:
 //
 //   /camera/image, /camera/calibration   foxglove.CompressedImage (JPEG), CameraCalibration
 //   /camera/annotations                  foxglove.ImageAnnotations
@@ -34,11 +36,16 @@ namespace kestrel {
 //   /result                              kestrel.FrameResult: covariances and times
 //   /log                                 foxglove.Log
 //
+// The camera after the first one is /cam1 in place of /camera, or as it is called, and so on.
+//
 // All calls throw InputError when the sink cannot be written.
 class ObservationWriter {
  public:
   // 'sink' outlives this. 'view': view of a landing or of a hunt.
   ObservationWriter(FoxgloveSink* sink, const CameraIntrinsics& camera, TaskView view);
+
+  // Adds the camera of the frames with the next index, from 1. 'name': of its topics.
+  void AddCamera(const std::string& name, const CameraIntrinsics& camera, TaskView view);
 
   // The observation must be of the view's kind. 'latency': from capture to the result, in flight.
   void Write(const Frame& frame, const LandingObservation& observation,
@@ -49,13 +56,21 @@ class ObservationWriter {
   void Write(const SessionEvent& event);
 
  private:
-  void WriteCameraPose(Time time, const RigidTransform& world_from_camera);
-  void WriteResult(const Frame& frame, std::optional<Duration> latency,
+  struct Camera {
+    Camera(FoxgloveSink* sink, const CameraIntrinsics& camera, CameraTopics topics,
+           TaskView camera_view)
+        : images(sink, camera, std::move(topics)), view(std::move(camera_view)) {}
+
+    CameraWriter images;
+    TaskView view;
+  };
+
+  void WriteCameraPose(const Camera& camera, Time time, const RigidTransform& world_from_camera);
+  void WriteResult(const Frame& frame, Time time, std::optional<Duration> latency,
                    foxglove::FrameResult result);
 
   FoxgloveSink* sink_;
-  CameraWriter images_;
-  TaskView view_;
+  std::deque<Camera> cameras_;  // they do not move
   TrackState track_state_ = TrackState::kSearching;
 };
 

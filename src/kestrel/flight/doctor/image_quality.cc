@@ -10,7 +10,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "kestrel/core/base/robust_statistics.h"
-#include "kestrel/flight/onboard/repeated_image.h"
+#include "kestrel/vision/pipeline/repeated_image.h"
 
 namespace kestrel {
 namespace {

@@ -23,7 +23,6 @@
 #include "kestrel/flight/onboard/landing_watch.h"
 #include "kestrel/flight/onboard/latency_statistics.h"
 #include "kestrel/flight/onboard/recording_switch.h"
-#include "kestrel/flight/onboard/repeated_image.h"
 #include "kestrel/flight/onboard/sign_of_life.h"
 #include "kestrel/flight/onboard/target_sender.h"
 #include "kestrel/flight/session/flight_report.h"
@@ -33,6 +32,7 @@
 #include "kestrel/flight/session/track_snapshot.h"
 #include "kestrel/flight/session/vision.h"
 #include "kestrel/io/recording/euroc/truth_rows.h"
+#include "kestrel/vision/pipeline/repeated_image.h"
 
 namespace kestrel {
 

@@ -24,6 +24,14 @@ std::string TimesInWords(std::vector<double> ms) {
   return fmt::format(", detect_ms median {:.2f}, p99 {:.2f}", quantile(0.5), quantile(0.99));
 }
 
+std::vector<double> FurtherRates(const OpenedSource& opened) {
+  std::vector<double> rates_hz;
+  for (std::size_t i = 1; i <= opened.further.size(); ++i) {
+    rates_hz.push_back(opened.source->camera_rate_hz(i));
+  }
+  return rates_hz;
+}
+
 class RecordedSession : public Session {
  public:
   RecordedSession(const OpenedSource& opened, std::unique_ptr<Vision> vision,
@@ -70,6 +78,7 @@ void RecordedSession::OpenTables() {
                                  .force = options_.replace,
                                  .annotate = options_.annotate,
                                  .rate_hz = opened_.source->rate_hz(),
+                                 .further_rates_hz = FurtherRates(opened_),
                                  .only_in_image = opened_.is_lens_unknown,
                                  .stream = options_.table});
 }
@@ -77,7 +86,7 @@ void RecordedSession::OpenTables() {
 // Returns whether the end was reached.
 bool RecordedSession::RunToEnd(const std::function<bool()>& is_stopped) {
   opened_.source->set_on_broken([this](const BrokenImage& broken) {
-    Give(BrokenFrame{broken.name, broken.time, broken.what()});
+    Give(BrokenFrame{broken.name, broken.time, broken.what(), broken.camera});
     if (broken_++ == 0) first_fault_ = broken.what();
   });
   RecordingEvents events(opened_.source.get(), opened_.source->poses(), vision().pose_lead());
@@ -121,6 +130,7 @@ std::unique_ptr<Session> MakeSession(const OpenedSource& recording, const Task& 
                                      const SessionOptions& options) {
   return MakeSession(recording,
                      task.MakeVision({.calibration = recording.calibration,
+                                      .further = recording.further,
                                       .altitude_m = options.altitude_m,
                                       .has_world = recording.has_world(),
                                       .is_lens_unknown = recording.is_lens_unknown}),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/flight/session/land_task.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -28,6 +29,16 @@ std::string AttitudeWarning(const Contradiction& tilt) {
       tilt.difference > kPi / 2 ? "is the camera mounted upside down? " : "");
 }
 
+std::vector<CameraCalibration> CamerasOf(const SessionCamera& camera) {
+  std::vector<CameraCalibration> all = {camera.calibration};
+  all.insert(all.end(), camera.further.begin(), camera.further.end());
+  return all;
+}
+
+Duration ClockOffset(const CameraCalibration& camera) {
+  return camera.clock_offset.value_or(Duration::zero());
+}
+
 // The landing pipeline in a session.
 class LandingVision : public Vision {
  public:
@@ -38,7 +49,7 @@ class LandingVision : public Vision {
 
   void AddPose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
   void AddGimbal(const GimbalSample& sample) override { pipeline_.AddGimbal(sample); }
-  Duration pose_lead() const override { return clock_offset_; }
+  Duration pose_lead() const override { return pose_lead_; }
   Observation Process(const Frame& frame) override;
   TrackSnapshot snapshot() const override { return snapshot_; }
   std::optional<PadInSight> pad() const override;
@@ -54,25 +65,43 @@ class LandingVision : public Vision {
   std::string Remarks() const override;
 
  private:
+  // One of the cameras.
+  struct Camera {
+    explicit Camera(std::string camera_name) : name(std::move(camera_name)) {}
+
+    std::string name;  // empty where it is the only one
+    FramePeriod period;
+    int frames = 0;
+    int detections = 0;
+    CameraHealth health = CameraHealth::kGood;
+  };
+
+  void Watch(const LandingObservation& observation);
+  std::string OfCamera(std::size_t camera, const std::string& text) const;
+  std::string WarningOf(std::size_t camera) const;
   void LimitSearch(const Frame& frame);
   void UpdateSnapshot(const LandingObservation& observation);
   std::optional<TargetState> Sighting(const LandingObservation& observation) const;
   std::string LensWarning() const;
 
   LandingPipeline pipeline_;
-  Duration clock_offset_;
+  Duration clock_offset_;  // of the first camera
+  Duration pose_lead_;
   std::optional<double> altitude_m_;
   bool has_world_, is_lens_unknown_, is_live_;
   std::vector<double> predict_s_;
-  FramePeriod period_;
+  std::vector<Camera> cameras_;
+  std::optional<Time> begin_;        // time of the first frame
+  std::vector<std::string> faults_;  // of the cameras, in words
   TrackSnapshot snapshot_;
   std::map<PoseLookup, std::size_t> poses_;
 };
 
 LandingVision::LandingVision(const SessionCamera& camera, const LandingPipelineOptions& options,
                              std::vector<double> predict_s)
-    : pipeline_(camera.calibration, InFlight(options, camera.is_live)),
-      clock_offset_(camera.calibration.clock_offset.value_or(Duration::zero())),
+    : pipeline_(CamerasOf(camera), InFlight(options, camera.is_live)),
+      clock_offset_(ClockOffset(camera.calibration)),
+      pose_lead_(clock_offset_),
       altitude_m_(camera.altitude_m),
       has_world_(camera.has_world),
       is_lens_unknown_(camera.is_lens_unknown),
@@ -80,11 +109,16 @@ LandingVision::LandingVision(const SessionCamera& camera, const LandingPipelineO
       predict_s_(std::move(predict_s)) {
   RequireAltitude(altitude_m_);
   pipeline_.SetAltitude(altitude_m_);
+  for (const CameraCalibration& further : camera.further) {
+    pose_lead_ = std::max(pose_lead_, ClockOffset(further));
+  }
+  for (const CameraCalibration& each : CamerasOf(camera)) cameras_.emplace_back(each.name);
 }
 
 Observation LandingVision::Process(const Frame& frame) {
   if (is_live_) LimitSearch(frame);
-  LandingObservation seen = pipeline_.Process(frame.image, frame.time);
+  LandingObservation seen = pipeline_.Process(frame.image, frame.time, frame.camera);
+  if (cameras_.size() > 1) Watch(seen);
   ++poses_[seen.pose];
   ++snapshot_.frames;
   snapshot_.detections += seen.report.detection.has_value();
@@ -98,8 +132,9 @@ Observation LandingVision::Process(const Frame& frame) {
 // other work of a frame.
 void LandingVision::LimitSearch(const Frame& frame) {
   constexpr double kSearchShare = 0.6;
-  period_.Add(frame.time);
-  if (const auto period = period_.Get()) {
+  FramePeriod& camera = cameras_[frame.camera].period;
+  camera.Add(frame.time);
+  if (const auto period = camera.Get()) {
     pipeline_.LimitSearch(kSearchShare * 1e3 * ToSeconds(*period));
   }
 }
@@ -117,7 +152,7 @@ void LandingVision::UpdateSnapshot(const LandingObservation& observation) {
   snapshot_.area = {};
   const auto& detection = observation.report.detection;
   if (!detection) return;
-  const TargetDetector& detector = pipeline_.detector();
+  const TargetDetector& detector = pipeline_.detector(observation.camera);
   snapshot_.area = PatternArea(*detection, detector.shape(), detector.camera());
   if (!observation.camera_from_body) return;
   snapshot_.sight = {snapshot_.captured,
@@ -152,10 +187,13 @@ std::optional<TargetState> LandingVision::Sighting(const LandingObservation& obs
 }
 
 std::optional<PadInSight> LandingVision::pad() const {
-  const TargetDetector& detector = pipeline_.detector();
-  const TargetShape& shape = detector.shape();
-  return PadInSight{shape.diameter_m, shape.SightRange(detector.camera().intrinsics()),
-                    pipeline_.options().tracker};
+  const TargetShape& shape = pipeline_.detector().shape();
+  double range_m = 0;
+  for (std::size_t i = 0; i < pipeline_.camera_count(); ++i) {
+    const CameraModel& camera = pipeline_.detector(i).camera();
+    range_m = std::max(range_m, shape.SightRange(camera.intrinsics()));
+  }
+  return PadInSight{shape.diameter_m, range_m, pipeline_.options().tracker};
 }
 
 void LandingVision::Change(const TaskOptions& options, std::optional<double> altitude_m) {
@@ -167,13 +205,24 @@ void LandingVision::Change(const TaskOptions& options, std::optional<double> alt
 std::unique_ptr<ObservationSink> LandingVision::MakeTables(const OutputOptions& output) const {
   // In flight they are written by another thread, which must not read the tracker.
   const std::vector<double> horizons_s = is_live_ ? std::vector<double>() : predict_s_;
-  return std::make_unique<LandingFiles>(output, &pipeline_, has_world(), horizons_s);
+  std::vector<std::string> further;
+  for (std::size_t i = 1; i < cameras_.size(); ++i) further.push_back(cameras_[i].name);
+  return std::make_unique<LandingFiles>(output, &pipeline_, has_world(), horizons_s, further);
 }
 
 std::string LandingVision::Warning() const {
   if (is_live_) return LensWarning();
-  if (const auto tilt = pipeline_.contradictions().Attitude()) return AttitudeWarning(*tilt);
-  const auto excess = pipeline_.contradictions().Altitude();
+  if (!faults_.empty()) return faults_.front();
+  for (std::size_t i = 0; i < cameras_.size(); ++i) {
+    if (const std::string warning = WarningOf(i); !warning.empty()) return OfCamera(i, warning);
+  }
+  return "";
+}
+
+std::string LandingVision::WarningOf(std::size_t camera) const {
+  const InputContradictions& contradictions = pipeline_.contradictions(camera);
+  if (const auto tilt = contradictions.Attitude()) return AttitudeWarning(*tilt);
+  const auto excess = contradictions.Altitude();
   if (!excess) return "";
   const std::string what = fmt::format(
       "the given altitude is {:.1f} m {} the one that the pattern shows (median of {} frames, "
@@ -190,20 +239,53 @@ std::string LandingVision::Warning() const {
 }
 
 std::string LandingVision::LensWarning() const {
-  return kestrel::LensWarning(pipeline_.calibration_monitor(),
-                              pipeline_.detector().camera().intrinsics().fx_px);
+  std::string warnings;
+  for (std::size_t i = 0; i < cameras_.size(); ++i) {
+    const std::string warning = kestrel::LensWarning(
+        pipeline_.calibration_monitor(i), pipeline_.detector(i).camera().intrinsics().fx_px);
+    if (warning.empty()) continue;
+    if (!warnings.empty()) warnings += "\n";
+    warnings += OfCamera(i, warning);
+  }
+  return warnings;
+}
+
+// Notes what happens to the cameras.
+void LandingVision::Watch(const LandingObservation& observation) {
+  constexpr std::size_t kMost = 20;  // one that comes and goes shall not fill the memory
+  if (!begin_) begin_ = observation.time;
+  Camera& own = cameras_[observation.camera];
+  ++own.frames;
+  own.detections += observation.report.detection.has_value();
+  for (std::size_t i = 0; i < cameras_.size(); ++i) {
+    const CameraState& state = pipeline_.camera_state(i);
+    if (state.health == std::exchange(cameras_[i].health, state.health)) continue;
+    if (faults_.size() == kMost) continue;
+    faults_.push_back(fmt::format("at {:.2f} s {} {}", ToSeconds(state.since - *begin_),
+                                  cameras_[i].name, InWords(state)));
+  }
+}
+
+std::string LandingVision::OfCamera(std::size_t camera, const std::string& text) const {
+  return cameras_.size() == 1 ? text : fmt::format("{}: {}", cameras_[camera].name, text);
 }
 
 std::string LandingVision::Found() const {
   const auto& other = snapshot_.other_tag;
-  return fmt::format("pattern found in {}{}", snapshot_.detections,
-                     other ? fmt::format(" ({})", InWords(*other)) : "");
+  std::string found = fmt::format("pattern found in {}{}", snapshot_.detections,
+                                  other ? fmt::format(" ({})", InWords(*other)) : "");
+  if (cameras_.size() == 1) return found;
+  for (const Camera& camera : cameras_) {
+    found += fmt::format(", {} {} of {}", camera.name, camera.detections, camera.frames);
+  }
+  return found;
 }
 
 std::string LandingVision::Remarks() const {
   std::string remarks;
   if (!is_lens_unknown_) remarks = LensWarning();
   if (!remarks.empty()) remarks += "\n";
+  for (const std::string& fault : faults_) remarks += fault + "\n";
   // Only where there are poses for some of the frames; a source without any is not unusual.
   for (const auto& [pose, count] : poses_) {
     if (pose == PoseLookup::kFound || pose == PoseLookup::kEmpty ||

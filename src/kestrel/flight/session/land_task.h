@@ -21,6 +21,7 @@ class LandTask : public Task {
 
   PixelFormat format() const override { return PixelFormat::kGray; }
   std::string_view table() const override { return kLandingTable; }
+  bool takes_several_cameras() const override { return true; }
   ResultTopics topics() const override { return kLandingTopics; }
   std::unique_ptr<Vision> MakeVision(const SessionCamera& camera) const override;
 

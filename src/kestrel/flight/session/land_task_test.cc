@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/flight/session/land_task.h"
 
+#include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -10,6 +12,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kestrel/core/base/read_file.h"
 #include "kestrel/core/base/test_folder.h"
 #include "kestrel/vision/pipeline/test_pattern.h"
 
@@ -69,6 +72,38 @@ TEST(LandTask, RemarksThatTheLensIsAnother) {
   };
   EXPECT_THAT(remarks(kFocal_px), Not(HasSubstr("the pattern says")));
   EXPECT_THAT(remarks(540), HasSubstr("px, the calibration 540: kestrel calibrate lens"));
+}
+
+// Two cameras whose clocks differ by a second; the second one sends no images after the first of
+// them.
+TEST(LandTask, SeveralCamerasHaveTablesOfTheirOwnAndFaultsAreInTheSummary) {
+  const cv::Mat image = DrawPattern(CameraModel(Camera(kFocal_px)), LandingPattern(),
+                                    {Eigen::Quaterniond(0, 1, 0, 0), {0.3, 0.2, 3}});
+  SessionCamera camera;
+  camera.calibration.intrinsics = Camera(kFocal_px);
+  camera.calibration.name = "cam0";
+  camera.further = {camera.calibration};
+  camera.further[0].name = "cam1";
+  camera.further[0].clock_offset = std::chrono::seconds(1);
+  const auto vision = LandTask(LandingPipelineOptions()).MakeVision(camera);
+  EXPECT_EQ(vision->pose_lead(), std::chrono::seconds(1));
+  const TestFolder folder;
+  const auto tables = vision->MakeTables({.folder = folder / "output"});
+  const auto process = [&](std::size_t index, double time_s) {
+    Frame frame{"image", Time(DurationFromSeconds(time_s)), image.clone()};
+    frame.image.at<std::uint8_t>(0, 0) = static_cast<std::uint8_t>(50 * time_s);
+    frame.camera = index;
+    tables->Take(vision->Process(frame));
+  };
+  process(1, 4);  // on the clock of the other one: 5 s
+  for (int i = 0; i < 15; ++i) process(0, 5 + 0.1 * i);
+  tables->Finish();
+  EXPECT_EQ(vision->Found(), "pattern found in 16, cam0 15 of 15, cam1 1 of 1");
+  EXPECT_THAT(vision->Remarks(), HasSubstr("at 1.10 s cam1 sends no images"));
+  const std::string first = ReadFile(folder / "output/landing_detections.csv");
+  const std::string second = ReadFile(folder / "output/landing_detections_cam1.csv");
+  EXPECT_EQ(std::count(first.begin(), first.end(), '\n'), 16);
+  EXPECT_THAT(second, HasSubstr("image,4000000000,1,"));
 }
 
 TEST(Task, WritesATrackOrAMapOnlyOfFramesThatFollowEachOther) {

@@ -51,21 +51,30 @@ void TrackFiles::Write(const LandingObservation& observation, const TargetTracke
 }
 
 LandingFiles::LandingFiles(const OutputOptions& output, const LandingPipeline* pipeline,
-                           bool has_track, const std::vector<double>& predict_s)
-    : pipeline_(pipeline),
-      only_in_image_(output.only_in_image),
-      results_(output, kLandingTable, LandingCsvHeader()) {
-  if (has_track && results_.folder()) track_.emplace(*results_.folder(), predict_s);
+                           bool has_track, const std::vector<double>& predict_s,
+                           const std::vector<std::string>& further)
+    : pipeline_(pipeline), only_in_image_(output.only_in_image) {
+  results_.push_back(std::make_unique<ResultFiles>(output, kLandingTable, LandingCsvHeader()));
+  const OutputFolder* const folder = results_.front()->folder();
+  if (!folder) return;
+  if (has_track) track_.emplace(*folder, predict_s);
+  for (std::size_t i = 0; i < further.size(); ++i) {
+    OutputOptions own = output;
+    if (i < output.further_rates_hz.size()) own.rate_hz = output.further_rates_hz[i];
+    results_.push_back(
+        std::make_unique<ResultFiles>(own, kLandingTable, LandingCsvHeader(), "_" + further[i]));
+  }
 }
 
 void LandingFiles::Take(const Observation& observation) {
   const Frame& frame = observation.frame;
   const auto& seen = std::get<LandingObservation>(observation.seen);
-  results_.WriteRows(LandingCsvRow(frame.name, seen, only_in_image_));
+  ResultFiles& results = ResultsOf(frame.camera);
+  results.WriteRows(LandingCsvRow(frame, seen, only_in_image_));
   if (track_) track_->Write(seen, pipeline_->tracker());
-  if (!results_.wants_pictures()) return;
-  const TargetDetector& detector = pipeline_->detector();
-  results_.WritePicture(
+  if (!results.wants_pictures()) return;
+  const TargetDetector& detector = pipeline_->detector(frame.camera);
+  results.WritePicture(
       frame.name,
       DrawLandingOverlay(frame.color.empty() ? frame.image : frame.color, detector.camera(),
                          detector.shape(), seen,
@@ -73,7 +82,7 @@ void LandingFiles::Take(const Observation& observation) {
 }
 
 void LandingFiles::Take(const BrokenFrame& frame) {
-  results_.WriteRows(UnreadableLandingCsvRow(frame.name, frame.time));
+  ResultsOf(frame.camera).WriteRows(UnreadableLandingCsvRow(frame.name, frame.time));
 }
 
 }  // namespace kestrel

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <fstream>
+#include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "kestrel/core/base/time.h"
@@ -25,15 +29,16 @@ class TrackFiles {
   bool has_begun_ = false;
 };
 
-// Writes the results of a landing: detections, track, predictions and annotated frames. Waits for
-// the disk. Throws InputError when it cannot write.
+// Writes the results of a landing: detections, track, predictions and annotated frames. Of several
+// cameras each has a table of detections and frames of its own; on a stream all rows are in one.
+// Waits for the disk. Throws InputError when it cannot write.
 class LandingFiles : public ObservationSink {
  public:
   // 'pipeline': the one that gives the observations; outlives this. Predictions and annotated
   // frames are of its present state. 'has_track': the target can be tracked. 'predict_s': horizons
-  // of the predictions.
+  // of the predictions. 'further': names of the cameras after the first.
   LandingFiles(const OutputOptions& output, const LandingPipeline* pipeline, bool has_track,
-               const std::vector<double>& predict_s);
+               const std::vector<double>& predict_s, const std::vector<std::string>& further = {});
 
   void Take(const Observation& observation) override;
   void Take(const BrokenFrame& frame) override;
@@ -41,7 +46,10 @@ class LandingFiles : public ObservationSink {
  private:
   const LandingPipeline* pipeline_;
   bool only_in_image_;
-  ResultFiles results_;
+  ResultFiles& ResultsOf(std::size_t camera) {
+    return *results_[std::min(camera, results_.size() - 1)];
+  }
+  std::vector<std::unique_ptr<ResultFiles>> results_;  // of each camera, or one for all
   std::optional<TrackFiles> track_;
 };
 

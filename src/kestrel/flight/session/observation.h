@@ -23,7 +23,8 @@ struct Observation {
 struct BrokenFrame {
   std::string name;
   Time time;
-  std::string fault;  // names the file
+  std::string fault;       // names the file
+  std::size_t camera = 0;  // as in Frame
 };
 
 // Returns the pose of the camera, if it is known.

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <opencv2/core.hpp>
 
@@ -15,10 +16,11 @@ namespace kestrel {
 
 // Destination of a run's results.
 struct OutputOptions {
-  std::string folder = {};    // empty: only the table, to 'stream'
-  bool force = false;         // replace existing files
-  std::string annotate = {};  // "video", "images" or empty
-  double rate_hz = 0;         // frame rate of the video
+  std::string folder = {};                    // empty: only the table, to 'stream'
+  bool force = false;                         // replace existing files
+  std::string annotate = {};                  // "video", "images" or empty
+  double rate_hz = 0;                         // frame rate of the video
+  std::vector<double> further_rates_hz = {};  // of the further cameras' videos
   // The lens is not known: distances and positions are left out.
   bool only_in_image = false;
   std::ostream* stream = nullptr;  // null: stdout
@@ -28,8 +30,10 @@ struct OutputOptions {
 // throw InputError when they cannot write.
 class ResultFiles {
  public:
-  // 'table': name of the table's file. 'header': its first line.
-  ResultFiles(const OutputOptions& options, const char* table, const std::string& header);
+  // 'table': name of the table's file. 'header': its first line. 'suffix': of the names of table
+  // and video.
+  ResultFiles(const OutputOptions& options, const std::string& table, const std::string& header,
+              const std::string& suffix = "");
   ResultFiles(const ResultFiles&) = delete;  // the writer of pictures points to the folder in it
   ResultFiles& operator=(const ResultFiles&) = delete;
 
@@ -42,7 +46,7 @@ class ResultFiles {
   const OutputFolder* folder() const { return folder_ ? &*folder_ : nullptr; }
 
  private:
-  const char* table_;
+  std::string table_;
   std::ostream* stream_;
   std::optional<OutputFolder> folder_;
   std::ofstream file_;

@@ -19,9 +19,11 @@
 
 namespace kestrel {
 
-// The camera of a session.
+// The camera of a session, or several.
 struct SessionCamera {
   CameraCalibration calibration;
+  // The further cameras, by the index of their frames less one. All have their names then.
+  std::vector<CameraCalibration> further = {};
   // Height of the camera above what is looked for, where there are no poses.
   std::optional<double> altitude_m = {};
   bool has_world = false;        // frames can be placed in the world: poses, and the camera's mount
@@ -49,6 +51,8 @@ class Task {
   virtual PixelFormat format() const = 0;
   // File name of the table with a row for each frame.
   virtual std::string_view table() const = 0;
+  // True when it takes several cameras; else a recording's first one is used.
+  virtual bool takes_several_cameras() const { return false; }
   // Topics of ROS that are advertised at once.
   virtual ResultTopics topics() const = 0;
   // Throws InputError when camera or options are not valid.

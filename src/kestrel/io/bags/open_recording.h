@@ -17,8 +17,11 @@ namespace kestrel {
 struct RecordingChoice {
   std::vector<std::string> sources;  // as OpenSourceOrBag takes them
   PixelFormat format = PixelFormat::kGray;
+  // All cameras of a recording that have a calibration; else its first.
+  bool all_cameras = false;
   BagChoice bag = {};
-  std::string camera = {};                    // file with the calibration; empty: the source's own
+  // File with the calibration; empty: the source's own. Of several cameras, as Kalibr's chain.
+  std::string camera = {};
   std::optional<Duration> clock_offset = {};  // in place of the calibration's
   // The lens where there is no calibration: of this field of view (degrees); or any, for results
   // that are only in the image.
@@ -30,6 +33,8 @@ struct RecordingChoice {
 struct OpenedSource {
   std::unique_ptr<FrameSource> source;
   CameraCalibration calibration;
+  // Those of the further cameras: of frames with the indices 1, 2, ... All have their names then.
+  std::vector<CameraCalibration> further = {};
   // Nothing is known of the lens: what is found has a place in the image, but none before the
   // camera.
   bool is_lens_unknown = false;

@@ -8,10 +8,10 @@ namespace kestrel {
 
 std::optional<CameraCalibration> CalibrationOf(
     const FrameSource& source, const std::string& file,
-    const std::function<void(const std::string&)>& notify) {
+    const std::function<void(const std::string&)>& notify, const std::string& camera) {
   const auto* const images = dynamic_cast<const ImageSequence*>(&source);
   const std::string read = file.empty() && images != nullptr ? images->calibration_file() : file;
-  return read.empty() ? source.calibration() : ReadCalibration(read, "", notify);
+  return read.empty() ? source.calibration() : ReadCalibration(read, camera, notify);
 }
 
 }  // namespace kestrel

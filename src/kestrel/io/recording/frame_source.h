@@ -36,6 +36,7 @@ class BrokenImage : public InputError {
 
   std::string name;  // as in Frame
   Time time;
+  std::size_t camera = 0;
 };
 
 // A source of frames, one after the other.
@@ -68,6 +69,8 @@ class FrameSource {
   // Number of images, broken ones included, if known; for a video an estimate.
   virtual std::optional<std::size_t> frame_count() const = 0;
   virtual double rate_hz() const = 0;
+  // The rate of one of several cameras.
+  virtual double camera_rate_hz(std::size_t /*camera*/) const { return rate_hz(); }
 
   // Returns the source's own calibration; nothing if it has none. Throws InputError when it is not
   // valid.

@@ -36,11 +36,25 @@ void RequireTime(const LandingFlightOptions& flight, double duration_s,
   }
 }
 
+void AddSecondCamera(const LandingSimulationOptions& options,
+                     const std::shared_ptr<const SimulatedLanding>& landing,
+                     const Motion& world_from_uav, std::uint64_t seed, RecordingPlan* plan) {
+  const auto camera = std::make_shared<SecondCamera>(options.second, options.recording, *landing,
+                                                     world_from_uav, seed);
+  plan->scene += camera->SceneText();
+  for (RecordingFile& file : camera->Files()) plan->files.push_back(std::move(file));
+  plan->further.push_back(
+      {camera->times(), [landing, camera](std::size_t i) { return camera->Image(i); }});
+}
+
 }  // namespace
 
 std::vector<std::string> LandingSimulationOptions::Validate() const {
   std::vector<std::string> violations;
   const bool flies = stills.show == "nothing";
+  if (!flies && second.is_there()) {
+    violations.emplace_back("second.fov_deg is more than 0, expected 0 where stills are shown");
+  }
   if (!flies && target.kind != TargetOptions().kind) {
     violations.push_back(fmt::format("target.kind is '{}', expected {} where stills are shown",
                                      target.kind, TargetOptions().kind));
@@ -81,6 +95,7 @@ RecordingPlan PlanLanding(const LandingSimulationOptions& options, const CameraC
   plan.render = [landing](std::size_t i) { return landing->flight().Image(i); };
   plan.scene = landing->SceneText("landing", PrintOptions(options));
   plan.files = landing->Files();
+  if (options.second.is_there()) AddSecondCamera(options, landing, world_from_uav, seed, &plan);
   return plan;
 }
 

@@ -7,6 +7,7 @@
 
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/simulation/recordings/recording_plan.h"
+#include "kestrel/simulation/recordings/second_camera.h"
 #include "kestrel/simulation/recordings/simulated_flight.h"
 #include "kestrel/simulation/recordings/stills_simulation.h"
 #include "kestrel/simulation/scene/landing_scene.h"
@@ -19,11 +20,13 @@ struct LandingSimulationOptions : LandingSceneOptions {
   FlightRecordingOptions recording;
   StillsOptions stills;
   LandingFlightOptions flight;
+  SecondCameraOptions second;
 
   static void Visit(auto& self, auto&& visit) {
     visit.Group(self.recording);
     visit.Group("stills", self.stills);
     visit.Group("flight", self.flight);
+    visit.Group("second", self.second);
     LandingSceneOptions::Visit(self, visit);
   }
   std::vector<std::string> Validate() const;

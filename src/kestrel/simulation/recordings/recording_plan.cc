@@ -28,13 +28,26 @@ class ImageJob {
   }
 
  private:
+  // The images of all cameras, one camera after the other.
+  void Render(std::size_t index) {
+    const std::vector<Time>* times = &plan_.times;
+    const std::function<cv::Mat(std::size_t)>* render = &plan_.render;
+    std::size_t camera = 0;
+    for (; index >= times->size(); ++camera) {
+      index -= times->size();
+      times = &plan_.further[camera].times;
+      render = &plan_.further[camera].render;
+    }
+    const Time time = (*times)[index];
+    if (!writer_.HasImage(time, camera)) writer_.WriteImage(time, (*render)(index), camera);
+  }
+
   void Work() {
     try {
       while (!stopped_) {
         const std::size_t index = next_++;
-        if (index >= plan_.times.size()) break;
-        const Time time = plan_.times[index];
-        if (!writer_.HasImage(time)) writer_.WriteImage(time, plan_.render(index));
+        if (index >= plan_.image_count()) break;
+        Render(index);
         const std::lock_guard lock(mutex_);
         if (!progress_(++done_)) stopped_ = true;
       }
@@ -56,6 +69,12 @@ class ImageJob {
 };
 
 }  // namespace
+
+std::size_t RecordingPlan::image_count() const {
+  std::size_t count = times.size();
+  for (const Camera& camera : further) count += camera.times.size();
+  return count;
+}
 
 bool WriteRecording(const RecordingPlan& plan, const std::filesystem::path& output, bool replace,
                     int threads, const RenderProgress& progress) {

@@ -24,6 +24,15 @@ struct RecordingPlan {
   // scene.yaml: names everything on which the images depend.
   std::string scene;
   std::vector<RecordingFile> files;  // all except scene.yaml and cam0/data.csv
+
+  // The images of the cameras 1, 2, ...: their times, and 'render' for each.
+  struct Camera {
+    std::vector<Time> times;
+    std::function<cv::Mat(std::size_t index)> render;
+  };
+  std::vector<Camera> further = {};
+
+  std::size_t image_count() const;  // of all cameras
 };
 
 // The camera of the paper on a UAV: it looks down, and the top of its image is forward.

@@ -4,12 +4,14 @@
 #include <chrono>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "kestrel/core/base/options.h"
 #include "kestrel/vision/pipeline/calibration_monitor.h"
 #include "kestrel/vision/pipeline/camera_poses.h"
+#include "kestrel/vision/pipeline/camera_watch.h"
 #include "kestrel/vision/pipeline/input_contradictions.h"
 #include "kestrel/vision/pipeline/world_location.h"
 
@@ -20,6 +22,18 @@ namespace {
 std::optional<RigidTransform> CameraFromBody(const CameraCalibration& calibration) {
   if (calibration.gimbal || !calibration.body_from_camera) return std::nullopt;
   return calibration.body_from_camera->Inverse();
+}
+
+// What all images of a camera share, others do not: errors of its mount and of its lens.
+Eigen::Matrix3d BetweenCameras(const Eigen::Vector3d& center_in_camera,
+                               const Eigen::Quaterniond& world_from_camera,
+                               MeasurementNoise noise) {
+  noise.pose_bias_m = 0;
+  return SharedCovarianceInWorld(center_in_camera, world_from_camera, noise);
+}
+
+Duration ClockOffset(const CameraCalibration& calibration) {
+  return calibration.clock_offset.value_or(Duration::zero());
 }
 
 }  // namespace
@@ -41,24 +55,25 @@ std::string MissInWords(const LandingObservation& observation) {
 
 class LandingPipeline::Impl {
  public:
-  // 'own_detector': null for the one that the options describe.
-  Impl(const CameraCalibration& calibration, std::unique_ptr<const TargetDetector> own_detector,
-       const LandingPipelineOptions& options);
+  // 'own_detector': null for those that the options describe.
+  Impl(std::span<const CameraCalibration> cameras,
+       std::unique_ptr<const TargetDetector> own_detector, const LandingPipelineOptions& options);
 
-  PoseStatus AddPose(const PoseSample& sample) {
-    pose_time_sigma_s_ = sample.time_sigma_s;
-    return poses_.Add(sample);
-  }
-  PoseStatus AddGimbal(const GimbalSample& sample) { return poses_.Add(sample); }
+  PoseStatus AddPose(const PoseSample& sample);
+  PoseStatus AddGimbal(const GimbalSample& sample);
   void SetAltitude(std::optional<double> altitude_m) { altitude_m_ = altitude_m; }
   void LimitSearch(double max_search_ms) { max_search_ms_ = max_search_ms; }
   void ChangeOptions(const LandingPipelineOptions& options);
-  LandingObservation Process(const cv::Mat& image, Time time);
+  LandingObservation Process(const cv::Mat& image, Time time, std::size_t camera);
 
-  const InputContradictions& contradictions() const { return contradictions_; }
-  const CalibrationMonitor& calibration_monitor() const { return calibration_monitor_; }
+  std::size_t camera_count() const { return eyes_.size(); }
+  const CameraState& camera_state(std::size_t camera) const { return watch_.state(camera); }
+  const InputContradictions& contradictions(std::size_t i) const { return eyes_[i].contradictions; }
+  const CalibrationMonitor& calibration_monitor(std::size_t i) const {
+    return eyes_[i].calibration;
+  }
   const TargetTracker& tracker() const { return tracker_; }
-  const TargetDetector& detector() const { return *detector_; }
+  const TargetDetector& detector(std::size_t camera) const { return *eyes_[camera].detector; }
   const LandingPipelineOptions& options() const { return options_; }
 
  private:
@@ -84,63 +99,106 @@ class LandingPipeline::Impl {
   };
   static std::optional<Others> OthersOf(const CameraModel& camera, const TargetOptions& target);
 
-  void Detect(const cv::Mat& image, LandingObservation* observation);
-  void LookForOthers(const cv::Mat& image, LandingObservation* observation);
+  // One camera, and what is remembered of its own images.
+  struct Eye {
+    // 'clock_offset': of the first camera's images.
+    Eye(const CameraCalibration& camera, std::unique_ptr<const TargetDetector> target_detector,
+        const LandingPipelineOptions& options, Duration clock_offset);
+
+    Time OwnTime(const LandingObservation& observation) const { return observation.time - ahead; }
+
+    std::unique_ptr<const TargetDetector> detector;
+    std::unique_ptr<TargetWorkspace> workspace;
+    std::optional<Others> others;  // nothing once the target was found
+    CameraPoses poses;
+    Duration ahead;  // the first camera's clock minus that of this camera's images
+    std::optional<RigidTransform> fixed_mount;  // camera from body
+    bool is_track_trusted = true;  // the last detection was where the track predicted it
+    std::optional<Sighting> last;
+    int next_step = 0;  // step at which the search of the last frame ran out of time
+    InputContradictions contradictions;
+    CalibrationMonitor calibration;
+  };
+
+  bool has_several() const { return eyes_.size() > 1; }
+  bool IsUsed(std::size_t camera) const { return !has_several() || watch_.IsUsed(camera); }
+  void Detect(const cv::Mat& image, Eye* eye, LandingObservation* observation) const;
+  void LookForOthers(const cv::Mat& image, Eye* eye, LandingObservation* observation);
   GivenView GivenViewOf(const LandingObservation& observation) const;
-  double AltitudeExcess() const;
-  void AddErrorOfFocalLength(TargetDetection* detection) const;
-  void AddTrack(const LandingObservation& observation, TargetHint* hint) const;
-  void AddLastSighting(const LandingObservation& observation, TargetHint* hint) const;
-  void LocateInWorld(LandingObservation* observation) const;
-  Eigen::Vector3d SweepOf(const LandingObservation& observation) const;
-  TargetMeasurement MeasurementOf(const LandingObservation& observation) const;
-  void Track(LandingObservation* observation);
-  void Remember(const LandingObservation& observation);
+  double AltitudeExcess(const Eye& eye) const;
+  static void AddErrorOfFocalLength(const Eye& eye, TargetDetection* detection);
+  void AddTrack(const Eye& eye, const LandingObservation& observation, TargetHint* hint) const;
+  void AddLastSighting(const Eye& eye, const LandingObservation& observation,
+                       TargetHint* hint) const;
+  void LocateInWorld(const Eye& eye, LandingObservation* observation) const;
+  static Eigen::Vector3d SweepOf(const Eye& eye, const LandingObservation& observation);
+  TargetMeasurement MeasurementOf(const Eye& eye, const LandingObservation& observation) const;
+  void Track(Eye* eye, LandingObservation* observation);
+  void Judge(const TargetMeasurement& measurement, const std::optional<TargetEstimate>& expected,
+             const LandingObservation& observation);
+  void Remember(const LandingObservation& observation, Eye* eye);
 
   LandingPipelineOptions options_;
   bool is_detector_own_;  // it does not come from the options
-  std::unique_ptr<const TargetDetector> detector_;
-  std::unique_ptr<TargetWorkspace> workspace_;
-  std::optional<Others> others_;  // nothing once the target was found
-  CameraPoses poses_;
-  std::optional<RigidTransform> fixed_mount_;  // camera from body
+  std::vector<Eye> eyes_;
+  CameraWatch watch_;  // of several cameras
   double pose_time_sigma_s_ = 0;
   std::optional<double> altitude_m_;
   TargetTracker tracker_;
-  bool is_track_trusted_ = true;  // the last detection was where the track predicted it
-  std::optional<Sighting> last_;
   std::optional<Heading> heading_;
-  int next_step_ = 0;  // step at which the search of the last frame ran out of time
   double max_search_ms_ = 0;
-  InputContradictions contradictions_;
-  CalibrationMonitor calibration_monitor_;
 };
 
-LandingPipeline::Impl::Impl(const CameraCalibration& calibration,
+LandingPipeline::Impl::Eye::Eye(const CameraCalibration& camera,
+                                std::unique_ptr<const TargetDetector> target_detector,
+                                const LandingPipelineOptions& options, Duration clock_offset)
+    : detector(std::move(target_detector)),
+      workspace(detector->MakeWorkspace()),
+      poses(camera, LandingPipelineOptions::kPoseCapacity, DurationFromSeconds(options.pose_gap_s),
+            Duration::zero(), DurationFromSeconds(options.pose_extrapolation_s)),
+      ahead(ClockOffset(camera) - clock_offset),
+      fixed_mount(CameraFromBody(camera)) {}
+
+LandingPipeline::Impl::Impl(std::span<const CameraCalibration> cameras,
                             std::unique_ptr<const TargetDetector> own_detector,
                             const LandingPipelineOptions& options)
     : options_(Checked(options)),
       is_detector_own_(own_detector != nullptr),
-      detector_(is_detector_own_ ? std::move(own_detector)
-                                 : MakeTargetDetector(CameraModel(calibration.intrinsics),
-                                                      options.target, options.detector)),
-      workspace_(detector_->MakeWorkspace()),
-      poses_(calibration, LandingPipelineOptions::kPoseCapacity,
-             DurationFromSeconds(options.pose_gap_s), Duration::zero(),
-             DurationFromSeconds(options.pose_extrapolation_s)),
-      fixed_mount_(CameraFromBody(calibration)),
+      watch_(cameras.size()),
       tracker_(options.tracker) {
-  if (!is_detector_own_) others_ = OthersOf(detector_->camera(), options.target);
+  for (const CameraCalibration& camera : cameras) {
+    eyes_.emplace_back(camera,
+                       is_detector_own_ ? std::move(own_detector)
+                                        : MakeTargetDetector(CameraModel(camera.intrinsics),
+                                                             options.target, options.detector),
+                       options, ClockOffset(cameras.front()));
+    if (is_detector_own_) continue;
+    eyes_.back().others = OthersOf(eyes_.back().detector->camera(), options.target);
+  }
 }
 
 void LandingPipeline::Impl::ChangeOptions(const LandingPipelineOptions& options) {
   RequireValid(options);
-  if (!is_detector_own_) {
-    detector_ = MakeTargetDetector(detector_->camera(), options.target, options.detector);
-    workspace_ = detector_->MakeWorkspace();
-    others_ = OthersOf(detector_->camera(), options.target);
+  for (Eye& eye : eyes_) {
+    if (is_detector_own_) break;
+    eye.detector = MakeTargetDetector(eye.detector->camera(), options.target, options.detector);
+    eye.workspace = eye.detector->MakeWorkspace();
+    eye.others = OthersOf(eye.detector->camera(), options.target);
   }
   options_ = options;
+}
+
+PoseStatus LandingPipeline::Impl::AddPose(const PoseSample& sample) {
+  pose_time_sigma_s_ = sample.time_sigma_s;
+  PoseStatus status{};
+  for (Eye& eye : eyes_) status = eye.poses.Add(sample);
+  return status;
+}
+
+PoseStatus LandingPipeline::Impl::AddGimbal(const GimbalSample& sample) {
+  PoseStatus status{};
+  for (Eye& eye : eyes_) status = eye.poses.Add(sample);
+  return status;
 }
 
 std::optional<LandingPipeline::Impl::Others> LandingPipeline::Impl::OthersOf(
@@ -150,71 +208,81 @@ std::optional<LandingPipeline::Impl::Others> LandingPipeline::Impl::OthersOf(
   return Others{std::move(*finder), std::nullopt};
 }
 
-void LandingPipeline::Impl::LookForOthers(const cv::Mat& image, LandingObservation* observation) {
-  if (observation->report.detection) others_.reset();
-  if (!others_) return;
-  const OtherTagFinder& finder = others_->finder;
-  if (const auto id = finder.Find(image, workspace_.get())) {
-    const std::size_t before =
-        others_->seen && others_->seen->id == *id ? others_->seen->frames : 0;
-    others_->seen = OtherTag{finder.family(), finder.id(), *id, before + 1};
+void LandingPipeline::Impl::LookForOthers(const cv::Mat& image, Eye* eye,
+                                          LandingObservation* observation) {
+  if (observation->report.detection) {
+    for (Eye& each : eyes_) each.others.reset();
   }
-  observation->other_tag = others_->seen;
+  auto& others = eye->others;
+  if (!others) return;
+  const OtherTagFinder& finder = others->finder;
+  if (const auto id = finder.Find(image, eye->workspace.get())) {
+    const std::size_t before = others->seen && others->seen->id == *id ? others->seen->frames : 0;
+    others->seen = OtherTag{finder.family(), finder.id(), *id, before + 1};
+  }
+  observation->other_tag = others->seen;
 }
 
-LandingObservation LandingPipeline::Impl::Process(const cv::Mat& image, Time time) {
+LandingObservation LandingPipeline::Impl::Process(const cv::Mat& image, Time time,
+                                                  std::size_t camera) {
+  Eye& eye = eyes_[camera];
   LandingObservation observation;
-  observation.time = time;
-  observation.camera_from_body = fixed_mount_;
-  if (const auto camera = poses_.At(time)) {
-    observation.world_from_camera = camera->world_from_camera;
-    observation.camera_from_body = camera->camera_from_body;
-    observation.pose_uncertainty = camera->uncertainty;
+  observation.time = time + eye.ahead;
+  observation.camera = camera;
+  observation.camera_from_body = eye.fixed_mount;
+  if (const auto pose = eye.poses.At(time)) {
+    observation.world_from_camera = pose->world_from_camera;
+    observation.camera_from_body = pose->camera_from_body;
+    observation.pose_uncertainty = pose->uncertainty;
   }
-  observation.pose = poses_.Check(time);
-  Detect(image, &observation);
-  LookForOthers(image, &observation);
-  LocateInWorld(&observation);
+  observation.pose = eye.poses.Check(time);
+  if (has_several()) watch_.AddFrame(camera, image, observation.time);
+  Detect(image, &eye, &observation);
+  LookForOthers(image, &eye, &observation);
+  LocateInWorld(eye, &observation);
   if (options_.still) return observation;
-  Track(&observation);
-  Remember(observation);
+  Track(&eye, &observation);
+  Remember(observation, &eye);
   return observation;
 }
 
-void LandingPipeline::Impl::Detect(const cv::Mat& image, LandingObservation* observation) {
+void LandingPipeline::Impl::Detect(const cv::Mat& image, Eye* eye,
+                                   LandingObservation* observation) const {
   const GivenView reported = GivenViewOf(*observation);
   TargetHint hint;
-  const double excess_m = AltitudeExcess();
+  const double excess_m = AltitudeExcess(*eye);
   if (reported.altitude_m > excess_m) hint.altitude_m = *reported.altitude_m - excess_m;
   hint.up_in_camera = reported.up_in_camera;
   if (!options_.still) {
-    AddTrack(*observation, &hint);
-    AddLastSighting(*observation, &hint);
-    hint.first_step = next_step_;
+    AddTrack(*eye, *observation, &hint);
+    AddLastSighting(*eye, *observation, &hint);
+    hint.first_step = eye->next_step;
     hint.max_search_ms = max_search_ms_;
   }
   const auto start = std::chrono::steady_clock::now();
-  observation->report = detector_->Detect(image, hint, *workspace_);
+  observation->report = eye->detector->Detect(image, hint, *eye->workspace);
   observation->detect_time = std::chrono::steady_clock::now() - start;
-  next_step_ = observation->report.diagnostics.next_step;
+  eye->next_step = observation->report.diagnostics.next_step;
   auto& detection = observation->report.detection;
   if (!detection) return;
-  contradictions_.Add(reported, *detection);
-  calibration_monitor_.Add(*detection);
-  if (!options_.still) AddErrorOfFocalLength(&*detection);
+  if (IsUsed(observation->camera)) {
+    eye->contradictions.Add(reported, *detection);
+    eye->calibration.Add(*detection);
+  }
+  if (!options_.still) AddErrorOfFocalLength(*eye, &*detection);
 }
 
 // Returns by how much (m) the given altitude is too large, as far as the detections contradict it.
-double LandingPipeline::Impl::AltitudeExcess() const {
+double LandingPipeline::Impl::AltitudeExcess(const Eye& eye) const {
   if (options_.still) return 0;
-  const auto excess = contradictions_.Altitude();
+  const auto excess = eye.contradictions.Altitude();
   return excess ? excess->difference : 0;
 }
 
 // A wrong focal length makes every distance wrong by the same share. Views that contradict the
 // calibration themselves were located with their own focal length and are left alone.
-void LandingPipeline::Impl::AddErrorOfFocalLength(TargetDetection* detection) const {
-  const auto focal = calibration_monitor_.Contradiction();
+void LandingPipeline::Impl::AddErrorOfFocalLength(const Eye& eye, TargetDetection* detection) {
+  const auto focal = eye.calibration.Contradiction();
   if (!focal || detection->diagnostics.calibration.contradicts) return;
   const Eigen::Vector3d error_m = (focal->factor - 1) * detection->camera_from_target.translation;
   detection->covariance.topLeftCorner<3, 3>() += error_m * error_m.transpose();
@@ -231,10 +299,10 @@ GivenView LandingPipeline::Impl::GivenViewOf(const LandingObservation& observati
   return reported;
 }
 
-void LandingPipeline::Impl::AddTrack(const LandingObservation& observation,
+void LandingPipeline::Impl::AddTrack(const Eye& eye, const LandingObservation& observation,
                                      TargetHint* hint) const {
   const auto& world_from_camera = observation.world_from_camera;
-  if (!world_from_camera || !is_track_trusted_) return;
+  if (!world_from_camera || !eye.is_track_trusted) return;
   const std::optional<TargetEstimate> target = tracker_.Predict(observation.time);
   if (!target) return;
   const Eigen::Vector3d center = world_from_camera->Inverse() * target->motion.position();
@@ -252,18 +320,19 @@ void LandingPipeline::Impl::AddTrack(const LandingObservation& observation,
   hint->id = heading_->id;
 }
 
-void LandingPipeline::Impl::AddLastSighting(const LandingObservation& observation,
+void LandingPipeline::Impl::AddLastSighting(const Eye& eye, const LandingObservation& observation,
                                             TargetHint* hint) const {
-  if (!last_ || observation.world_from_camera) return;
-  const double age_s = ToSeconds(observation.time - last_->time);
+  const auto& last = eye.last;
+  if (!last || observation.world_from_camera) return;
+  const double age_s = ToSeconds(observation.time - last->time);
   if (age_s < 0 || age_s > options_.hint_age_s) return;
-  hint->center_in_camera = last_->center_in_camera;
+  hint->center_in_camera = last->center_in_camera;
   hint->center_sigma_m = options_.hint_sigma_m + LandingPipelineOptions::kHintSpeed_mps * age_s;
-  hint->rotation_in_camera = last_->rotation_in_camera;
-  hint->id = last_->id;
+  hint->rotation_in_camera = last->rotation_in_camera;
+  hint->id = last->id;
 }
 
-void LandingPipeline::Impl::LocateInWorld(LandingObservation* observation) const {
+void LandingPipeline::Impl::LocateInWorld(const Eye& eye, LandingObservation* observation) const {
   const auto& detection = observation->report.detection;
   const auto& world_from_camera = observation->world_from_camera;
   if (!detection || !world_from_camera) return;
@@ -274,21 +343,22 @@ void LandingPipeline::Impl::LocateInWorld(LandingObservation* observation) const
   observation->center_in_world = world_from_pattern.translation;
   if (!options_.position_by_altitude) return;
   Eigen::Vector3d ray_in_camera;
-  if (detector_->camera().Unproject(detection->center_px, &ray_in_camera) ==
+  if (eye.detector->camera().Unproject(detection->center_px, &ray_in_camera) ==
       ProjectionStatus::kOutsideModel) {
     return;
   }
   const auto by_altitude = LocateByAltitude(ray_in_camera, *world_from_camera,
-                                            options_.target_height_m + AltitudeExcess());
+                                            options_.target_height_m + AltitudeExcess(eye));
   if (!by_altitude) return;
   observation->center_in_world = by_altitude;
   observation->position_method = PositionMethod::kAltitude;
 }
 
 // Velocity (m/s) with which the view sweeps over the ground where the pad is seen.
-Eigen::Vector3d LandingPipeline::Impl::SweepOf(const LandingObservation& observation) const {
+Eigen::Vector3d LandingPipeline::Impl::SweepOf(const Eye& eye,
+                                               const LandingObservation& observation) {
   constexpr Duration kStep = std::chrono::milliseconds(10);
-  const auto before = poses_.At(observation.time - kStep);
+  const auto before = eye.poses.At(eye.OwnTime(observation) - kStep);
   if (!before) return Eigen::Vector3d::Zero();
   const Eigen::Vector3d& center = observation.report.detection->camera_from_target.translation;
   return (*observation.world_from_camera * center - before->world_from_camera * center) /
@@ -296,13 +366,13 @@ Eigen::Vector3d LandingPipeline::Impl::SweepOf(const LandingObservation& observa
 }
 
 TargetMeasurement LandingPipeline::Impl::MeasurementOf(
-    const LandingObservation& observation) const {
+    const Eye& eye, const LandingObservation& observation) const {
   const TargetDetection& detection = *observation.report.detection;
   const Eigen::Vector3d& center = detection.camera_from_target.translation;
   const Eigen::Quaterniond& rotation = observation.world_from_camera->rotation;
   const MeasurementNoise noise = WithPose(options_.noise, observation.pose_uncertainty);
   const double clock_sigma_s = std::hypot(noise.clock_sigma_s, pose_time_sigma_s_);
-  const Eigen::Vector3d late_m = clock_sigma_s * SweepOf(observation);
+  const Eigen::Vector3d late_m = clock_sigma_s * SweepOf(eye, observation);
   TargetMeasurement measurement;
   measurement.time = observation.time;
   measurement.position_in_world = *observation.center_in_world;
@@ -310,6 +380,7 @@ TargetMeasurement LandingPipeline::Impl::MeasurementOf(
       CovarianceInWorld(detection.covariance.topLeftCorner<3, 3>(), center, rotation, noise) +
       late_m * late_m.transpose();
   measurement.shared_covariance = SharedCovarianceInWorld(center, rotation, noise);
+  if (has_several()) measurement.covariance += BetweenCameras(center, rotation, noise);
   if (!options_.track_yaw || !observation.yaw_in_world) return measurement;
   measurement.yaw = observation.yaw_in_world;
   measurement.yaw_variance =
@@ -318,25 +389,52 @@ TargetMeasurement LandingPipeline::Impl::MeasurementOf(
   return measurement;
 }
 
-void LandingPipeline::Impl::Track(LandingObservation* observation) {
-  if (observation->center_in_world) {
-    observation->fate = tracker_.Add(MeasurementOf(*observation));
-    is_track_trusted_ = observation->fate <= MeasurementFate::kAccepted;
+void LandingPipeline::Impl::Track(Eye* eye, LandingObservation* observation) {
+  const bool is_used = IsUsed(observation->camera);
+  if (!is_used) eye->is_track_trusted = false;
+  if (observation->center_in_world && is_used) {
+    const TargetMeasurement measurement = MeasurementOf(*eye, *observation);
+    const auto expected = has_several() ? tracker_.Predict(observation->time) : std::nullopt;
+    observation->fate = tracker_.Add(measurement);
+    eye->is_track_trusted = observation->fate <= MeasurementFate::kAccepted;
+    if (has_several()) Judge(measurement, expected, *observation);
   }
   observation->track_state = tracker_.StateAt(observation->time);
   observation->target = tracker_.Predict(observation->time);
 }
 
-void LandingPipeline::Impl::Remember(const LandingObservation& observation) {
-  last_.reset();
+// 'expected': the track without the measurement.
+void LandingPipeline::Impl::Judge(const TargetMeasurement& measurement,
+                                  const std::optional<TargetEstimate>& expected,
+                                  const LandingObservation& observation) {
+  constexpr double kSigmas = 3;
+  constexpr double kTolerated_rad = 0.035;  // by mounts and clocks
+  constexpr double kFarthest_rad = 0.3;     // the most that they explain: beyond is another thing
+  SightingPlace place = SightingPlace::kStart;
+  double offset_m = 0;
+  if (observation.fate != MeasurementFate::kStarted) {
+    if (!expected) return;
+    const double distance_m = observation.report.detection->camera_from_target.translation.norm();
+    offset_m = (measurement.position_in_world - expected->motion.position()).norm();
+    if (offset_m > kFarthest_rad * distance_m) return;
+    const double most_m = kSigmas * expected->position_sigma_m() + kTolerated_rad * distance_m;
+    place = offset_m > most_m ? SightingPlace::kOutside : SightingPlace::kInside;
+  }
+  watch_.AddSighting(
+      observation.camera, observation.time, place, offset_m,
+      [this](std::size_t camera) { return eyes_[camera].contradictions.Attitude().has_value(); });
+}
+
+void LandingPipeline::Impl::Remember(const LandingObservation& observation, Eye* eye) {
+  eye->last.reset();
   if (observation.fate == MeasurementFate::kStarted) heading_.reset();
   const auto& detection = observation.report.detection;
   if (!detection) return;
   const RigidTransform& pose = detection->camera_from_target;
-  last_ = {observation.time, pose.translation, {}, detection->id};
+  eye->last = {observation.time, pose.translation, {}, detection->id};
   if (detection->heading_symmetry == 0) return;
-  last_->rotation_in_camera = pose.rotation;
-  if (!observation.world_from_camera || !is_track_trusted_) return;
+  eye->last->rotation_in_camera = pose.rotation;
+  if (!observation.world_from_camera || !eye->is_track_trusted) return;
   // The ring alone does not determine the heading that its tags gave before.
   if (heading_ && heading_->symmetry < detection->heading_symmetry) return;
   heading_ = {observation.time, observation.world_from_camera->rotation * pose.rotation,
@@ -345,11 +443,14 @@ void LandingPipeline::Impl::Remember(const LandingObservation& observation) {
 
 LandingPipeline::LandingPipeline(const CameraCalibration& calibration,
                                  const LandingPipelineOptions& options)
-    : impl_(std::make_unique<Impl>(calibration, nullptr, options)) {}
+    : LandingPipeline(std::span(&calibration, 1), options) {}
 LandingPipeline::LandingPipeline(const CameraCalibration& calibration,
                                  std::unique_ptr<const TargetDetector> detector,
                                  const LandingPipelineOptions& options)
-    : impl_(std::make_unique<Impl>(calibration, std::move(detector), options)) {}
+    : impl_(std::make_unique<Impl>(std::span(&calibration, 1), std::move(detector), options)) {}
+LandingPipeline::LandingPipeline(std::span<const CameraCalibration> cameras,
+                                 const LandingPipelineOptions& options)
+    : impl_(std::make_unique<Impl>(cameras, nullptr, options)) {}
 LandingPipeline::~LandingPipeline() = default;
 LandingPipeline::LandingPipeline(LandingPipeline&&) noexcept = default;
 LandingPipeline& LandingPipeline::operator=(LandingPipeline&&) noexcept = default;
@@ -365,17 +466,23 @@ void LandingPipeline::LimitSearch(double max_search_ms) { impl_->LimitSearch(max
 void LandingPipeline::ChangeOptions(const LandingPipelineOptions& options) {
   impl_->ChangeOptions(options);
 }
-LandingObservation LandingPipeline::Process(const cv::Mat& image, Time time) {
-  return impl_->Process(image, time);
+LandingObservation LandingPipeline::Process(const cv::Mat& image, Time time, std::size_t camera) {
+  return impl_->Process(image, time, camera);
 }
-const InputContradictions& LandingPipeline::contradictions() const {
-  return impl_->contradictions();
+std::size_t LandingPipeline::camera_count() const { return impl_->camera_count(); }
+const CameraState& LandingPipeline::camera_state(std::size_t camera) const {
+  return impl_->camera_state(camera);
 }
-const CalibrationMonitor& LandingPipeline::calibration_monitor() const {
-  return impl_->calibration_monitor();
+const InputContradictions& LandingPipeline::contradictions(std::size_t camera) const {
+  return impl_->contradictions(camera);
+}
+const CalibrationMonitor& LandingPipeline::calibration_monitor(std::size_t camera) const {
+  return impl_->calibration_monitor(camera);
 }
 const TargetTracker& LandingPipeline::tracker() const { return impl_->tracker(); }
-const TargetDetector& LandingPipeline::detector() const { return impl_->detector(); }
+const TargetDetector& LandingPipeline::detector(std::size_t camera) const {
+  return impl_->detector(camera);
+}
 const LandingPipelineOptions& LandingPipeline::options() const { return impl_->options(); }
 
 }  // namespace kestrel

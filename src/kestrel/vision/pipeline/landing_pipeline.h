@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -17,6 +18,7 @@
 #include "kestrel/core/poses/gimbal_history.h"
 #include "kestrel/core/poses/pose_history.h"
 #include "kestrel/vision/landing/landing_pattern_detector.h"
+#include "kestrel/vision/pipeline/camera_state.h"
 #include "kestrel/vision/pipeline/measurement_noise.h"
 #include "kestrel/vision/target/target_detector.h"
 #include "kestrel/vision/targets/make_target_detector.h"
@@ -88,7 +90,7 @@ std::string InWords(const OtherTag& other);
 
 // The result of one frame.
 struct LandingObservation {
-  Time time;            // time of the frame on the images' clock
+  Time time;            // time of the frame on the images' clock; of several, the first camera's
   TargetReport report;  // the detection in the camera frame, or the reason of a miss
   // With a miss, as long as the target was never found: another tag that was read.
   std::optional<OtherTag> other_tag = {};
@@ -108,6 +110,7 @@ struct LandingObservation {
   TrackState track_state = TrackState::kSearching;
   std::optional<TargetEstimate> target;
   Duration detect_time{};  // time of TargetDetector::Detect alone
+  std::size_t camera = 0;  // index of the camera among the pipeline's
 };
 
 // Returns in words why the target was not found in a frame: that another tag was, or else as
@@ -126,6 +129,11 @@ class LandingPipeline {
   LandingPipeline(const CameraCalibration& calibration,
                   std::unique_ptr<const TargetDetector> detector,
                   const LandingPipelineOptions& options);
+  // Several cameras, at least one, whose images together make one track. They need not be
+  // synchronised. A camera that repeats its image, sends none, or contradicts the others is left
+  // out, see camera_state().
+  LandingPipeline(std::span<const CameraCalibration> cameras,
+                  const LandingPipelineOptions& options);
   ~LandingPipeline();
   LandingPipeline(LandingPipeline&&) noexcept;
   LandingPipeline& operator=(LandingPipeline&&) noexcept;
@@ -134,7 +142,8 @@ class LandingPipeline {
   // the last frame. A frame that arrives before the pose after its time has none, or a predicted
   // one.
   PoseStatus AddPose(const PoseSample& sample);
-  // Adds a report of the gimbal on which the calibration has the camera, in the same way.
+  // Adds a report of the gimbal on which the calibration has the camera, in the same way. All
+  // cameras on a gimbal are on the same one.
   PoseStatus AddGimbal(const GimbalSample& sample);
 
   // Sets the height (m) of the camera above the pattern for frames without a pose; nothing when not
@@ -149,19 +158,24 @@ class LandingPipeline {
   // nothing when the options are invalid.
   void ChangeOptions(const LandingPipelineOptions& options);
 
-  // Processes one frame. 'image': CV_8UC1 of the camera's size; 'time': on the images' clock. Does
-  // not throw, and does not allocate once it has warmed up.
-  LandingObservation Process(const cv::Mat& image, Time time);
+  // Processes one frame of a camera, by its index. 'image': CV_8UC1 of the camera's size; 'time':
+  // on the clock of its images. Does not throw, and does not allocate once it has warmed up.
+  LandingObservation Process(const cv::Mat& image, Time time, std::size_t camera = 0);
 
-  // Contradictions between the detections and the given height and attitude.
-  const InputContradictions& contradictions() const;
+  std::size_t camera_count() const;
+  // Whether a camera contributes to the track, or why not. Always, where it is the only one.
+  const CameraState& camera_state(std::size_t camera) const;
 
-  // Evidence of the detections about the calibration.
-  const CalibrationMonitor& calibration_monitor() const;
+  // Contradictions between the detections of a camera and the given height and attitude.
+  const InputContradictions& contradictions(std::size_t camera = 0) const;
 
-  // The track. Its times are those of the frames.
+  // Evidence of the detections about the calibration of a camera.
+  const CalibrationMonitor& calibration_monitor(std::size_t camera = 0) const;
+
+  // The track. Its times are those of the frames; of several cameras, those of the first one's
+  // clock.
   const TargetTracker& tracker() const;
-  const TargetDetector& detector() const;
+  const TargetDetector& detector(std::size_t camera = 0) const;
   const LandingPipelineOptions& options() const;
 
  private:

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/io/recording/euroc/euroc_recording.h"
 
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <utility>
 
@@ -27,6 +29,17 @@ YawFrame ReadYawFrame(const std::string& file) {
     if (entry.Text() == ToString(frame)) return frame;
   }
   entry.Fail(fmt::format("is '{}', expected earth or vehicle", Shown(entry.Text())));
+}
+
+// True for mav0/cam0, mav0/cam1, ...: what is in it decides, not what is around it.
+bool IsCameraFolder(const std::string& folder) {
+  const fs::path camera = PlaceOfRecording(folder);
+  const std::string name = camera.filename().string();
+  std::error_code ignored;
+  return name.size() > 3 && name.starts_with("cam") &&
+         std::all_of(name.begin() + 3, name.end(),
+                     [](unsigned char c) { return std::isdigit(c); }) &&
+         fs::exists(camera / "data.csv", ignored);
 }
 
 std::vector<GimbalSample> ReadGimbal(const fs::path& folder) {
@@ -77,18 +90,29 @@ std::optional<std::string> FindEurocRoot(const std::string& folder) {
     std::error_code ignored;
     if (fs::is_directory(root / "cam0", ignored)) return root.string();
   }
-  const fs::path camera = PlaceOfRecording(folder);
-  std::error_code ignored;
-  if (camera.filename() == "cam0" && fs::exists(camera / "data.csv", ignored)) {
-    return camera.parent_path().string();
-  }
-  return std::nullopt;
+  if (!IsCameraFolder(folder)) return std::nullopt;
+  return PlaceOfRecording(folder).parent_path().string();
 }
 
-ImageSequence OpenEurocRecording(const std::string& folder) {
+std::vector<std::string> EurocCameras(const std::string& folder) {
+  if (IsCameraFolder(folder)) return {PlaceOfRecording(folder).filename().string()};
+  const std::optional<std::string> root = FindEurocRoot(folder);
+  std::vector<std::string> names;
+  for (int i = 0; root; ++i) {
+    names.push_back(fmt::format("cam{}", i));
+    std::error_code ignored;
+    if (fs::is_directory(fs::path(*root) / names.back(), ignored)) continue;
+    names.pop_back();
+    break;
+  }
+  return names;
+}
+
+ImageSequence OpenEurocRecording(const std::string& folder, const std::string& camera_name) {
   const std::optional<std::string> root = FindEurocRoot(folder);
   if (!root) throw InputError(folder + ": no recording, expected a folder cam0 or mav0/cam0 in it");
-  const fs::path camera = fs::path(*root) / "cam0";
+  const std::string name = camera_name.empty() ? EurocCameras(folder).front() : camera_name;
+  const fs::path camera = fs::path(*root) / name;
   const std::string list = (camera / "data.csv").string();
   std::vector<ImageSequence::Item> items;
   for (const ImageRow& row : ParseImageRows(ReadFile(list), list)) {

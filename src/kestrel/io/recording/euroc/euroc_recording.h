@@ -28,12 +28,17 @@ std::vector<PoseSample> ParsePoseRows(std::string_view text, const std::string& 
 std::vector<GimbalSample> ParseGimbalRows(std::string_view text, const std::string& file,
                                           YawFrame yaw_frame);
 
-// Returns the folder of cam0: 'folder' itself or its mav0; nothing when it is not a recording.
+// Returns the folder of cam0: 'folder' itself, its mav0, or the folder in which the camera's folder
+// 'folder' is; nothing when it is not a recording.
 std::optional<std::string> FindEurocRoot(const std::string& folder);
 
-// Opens a recording in the EuRoC / ASL layout: cam0 (data.csv, data/, sensor.yaml) and, if there,
-// nav0/data.csv and gimbal0 (data.csv, sensor.yaml). Throws InputError when 'folder' is not a
-// recording or its files are not valid.
-ImageSequence OpenEurocRecording(const std::string& folder);
+// Returns the names of a recording's cameras, cam0, cam1, ..., in this order. That of the camera
+// alone where 'folder' is a camera's. Empty when it is not a recording.
+std::vector<std::string> EurocCameras(const std::string& folder);
+
+// Opens a camera of a recording in the EuRoC / ASL layout (data.csv, data/, sensor.yaml) and, if
+// there, nav0/data.csv and gimbal0 (data.csv, sensor.yaml). 'camera': its name; empty: the first of
+// EurocCameras. Throws InputError when 'folder' is not a recording or its files are not valid.
+ImageSequence OpenEurocRecording(const std::string& folder, const std::string& camera = "");
 
 }  // namespace kestrel

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/io/recording/euroc/euroc_writer.h"
 
-#include <cstddef>
 #include <vector>
 
 #include <fmt/format.h>
@@ -68,9 +67,8 @@ fs::path WithFolders(const fs::path& folder, std::span<const EurocTable> tables)
 
 }  // namespace
 
-fs::path RecordedImagePath(Time time, std::string_view extension) {
-  return fs::path(kRoot) / euroc::kImageFolder /
-         fmt::format("{}.{}", ToNanoseconds(time), extension);
+fs::path RecordedImagePath(Time time, std::string_view extension, std::size_t camera) {
+  return fs::path(kRoot) / fmt::format("cam{}/data/{}.{}", camera, ToNanoseconds(time), extension);
 }
 
 fs::path PathOf(EurocTable table) { return FileOf(table).path; }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -17,8 +18,10 @@
 
 namespace kestrel {
 
-// Returns an image's path in a recording: "mav0/cam0/data/<ns>.<extension>".
-std::filesystem::path RecordedImagePath(Time time, std::string_view extension = "png");
+// Returns an image's path in a recording: "mav0/cam0/data/<ns>.<extension>"; 'camera': the number
+// of the camera.
+std::filesystem::path RecordedImagePath(Time time, std::string_view extension = "png",
+                                        std::size_t camera = 0);
 
 // Files of a recording that grow with it.
 enum class EurocTable {

@@ -54,15 +54,17 @@ RecordingWriter::RecordingWriter(const fs::path& output, bool replace, const std
 }
 
 // A power loss may have left an empty file.
-bool RecordingWriter::HasImage(Time time) const {
+bool RecordingWriter::HasImage(Time time, std::size_t camera) const {
   std::error_code error;
-  const std::uintmax_t size = fs::file_size(part_ / RecordedImagePath(time), error);
+  const std::uintmax_t size = fs::file_size(part_ / RecordedImagePath(time, "png", camera), error);
   return !error && size > 0;
 }
 
-void RecordingWriter::WriteImage(Time time, const cv::Mat& image) const {
+void RecordingWriter::WriteImage(Time time, const cv::Mat& image, std::size_t camera) const {
   constexpr int kLevel = 1;
-  writer_->WriteImage(time, "png", EncodePng(image, kLevel));
+  const fs::path path = part_ / RecordedImagePath(time, "png", camera);
+  if (camera > 0) CreateFolders(path.parent_path());
+  ReplaceFile(path, EncodePng(image, kLevel));
 }
 
 void RecordingWriter::Publish(const std::vector<Time>& times,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -31,8 +32,9 @@ class RecordingWriter {
   // Folder of the files until they are published.
   const std::filesystem::path& part() const { return part_; }
 
-  bool HasImage(Time time) const;
-  void WriteImage(Time time, const cv::Mat& image) const;
+  // 'camera': its number.
+  bool HasImage(Time time, std::size_t camera = 0) const;
+  void WriteImage(Time time, const cv::Mat& image, std::size_t camera = 0) const;
 
   // Writes cam0/data.csv and 'files'; then gives the recording its final name.
   void Publish(const std::vector<Time>& times, const std::vector<RecordingFile>& files) const;

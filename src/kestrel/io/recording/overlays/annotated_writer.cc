@@ -26,9 +26,9 @@ class ImageWriter : public AnnotatedWriter {
 class VideoWriter : public AnnotatedWriter {
  public:
   // Neither file may exist: only with the first frame is it known which of the two it becomes.
-  VideoWriter(const OutputFolder& folder, double rate_hz)
-      : video_(folder.NewFile("annotated.mp4").replace_extension().string(), rate_hz) {
-    folder.NewFile("annotated.avi");
+  VideoWriter(const OutputFolder& folder, double rate_hz, const std::string& name)
+      : video_(folder.NewFile(name + ".mp4").replace_extension().string(), rate_hz) {
+    folder.NewFile(name + ".avi");
   }
 
   void Write(const std::string& /*frame_name*/, const cv::Mat& image) override {
@@ -45,8 +45,9 @@ std::unique_ptr<AnnotatedWriter> MakeImageWriter(const OutputFolder& folder) {
   return std::make_unique<ImageWriter>(folder);
 }
 
-std::unique_ptr<AnnotatedWriter> MakeVideoWriter(const OutputFolder& folder, double rate_hz) {
-  return std::make_unique<VideoWriter>(folder, rate_hz);
+std::unique_ptr<AnnotatedWriter> MakeVideoWriter(const OutputFolder& folder, double rate_hz,
+                                                 const std::string& name) {
+  return std::make_unique<VideoWriter>(folder, rate_hz, name);
 }
 
 }  // namespace kestrel

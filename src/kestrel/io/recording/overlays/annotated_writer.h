@@ -21,7 +21,8 @@ class AnnotatedWriter {
 // Writes annotated/<name of the frame>.png. 'folder' must outlive the writer.
 std::unique_ptr<AnnotatedWriter> MakeImageWriter(const OutputFolder& folder);
 
-// Writes annotated.mp4, or annotated.avi (motion JPEG) when GStreamer has no encoder for MP4.
-std::unique_ptr<AnnotatedWriter> MakeVideoWriter(const OutputFolder& folder, double rate_hz);
+// Writes 'name'.mp4, or 'name'.avi (motion JPEG) when GStreamer has no encoder for MP4.
+std::unique_ptr<AnnotatedWriter> MakeVideoWriter(const OutputFolder& folder, double rate_hz,
+                                                 const std::string& name = "annotated");
 
 }  // namespace kestrel

@@ -38,6 +38,19 @@ std::string SigmaCells(const std::optional<TargetDetection>& detection, bool onl
   return Position(detection->covariance.diagonal().head<3>().cwiseSqrt().eval());
 }
 
+std::string LandingRow(const std::string& frame_name, Time time,
+                       const LandingObservation& observation, bool only_in_image) {
+  const TargetReport& report = observation.report;
+  const auto& yaw = observation.yaw_in_world;
+  return fmt::format(
+      "{},{},{},{},{},{},{},{},{:.4f},{},{}\n", CsvCell(frame_name), ToNanoseconds(time),
+      report.detection ? 1 : 0, ImageCells(report.detection, only_in_image),
+      Position(observation.center_in_world), yaw ? fmt::format("{:.6f}", *yaw) : "",
+      SigmaCells(report.detection, only_in_image), report.detection ? "" : ToString(report.reached),
+      1e3 * ToSeconds(observation.detect_time), MisfitCell(report.detection, only_in_image),
+      IdCell(report.detection));
+}
+
 }  // namespace
 
 std::string LandingCsvHeader() {
@@ -48,15 +61,12 @@ std::string LandingCsvHeader() {
 
 std::string LandingCsvRow(const std::string& frame_name, const LandingObservation& observation,
                           bool only_in_image) {
-  const TargetReport& report = observation.report;
-  const auto& yaw = observation.yaw_in_world;
-  return fmt::format(
-      "{},{},{},{},{},{},{},{},{:.4f},{},{}\n", CsvCell(frame_name),
-      ToNanoseconds(observation.time), report.detection ? 1 : 0,
-      ImageCells(report.detection, only_in_image), Position(observation.center_in_world),
-      yaw ? fmt::format("{:.6f}", *yaw) : "", SigmaCells(report.detection, only_in_image),
-      report.detection ? "" : ToString(report.reached), 1e3 * ToSeconds(observation.detect_time),
-      MisfitCell(report.detection, only_in_image), IdCell(report.detection));
+  return LandingRow(frame_name, observation.time, observation, only_in_image);
+}
+
+std::string LandingCsvRow(const Frame& frame, const LandingObservation& observation,
+                          bool only_in_image) {
+  return LandingRow(frame.name, frame.time, observation, only_in_image);
 }
 
 std::string UnreadableLandingCsvRow(const std::string& frame_name, Time time) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "kestrel/io/recording/frame.h"
 #include "kestrel/vision/pipeline/landing_pipeline.h"
 
 namespace kestrel {
@@ -16,6 +17,10 @@ std::string LandingCsvHeader();
 // 'only_in_image': positions before the camera are left out, as the lens is not known.
 std::string LandingCsvRow(const std::string& frame_name, const LandingObservation& observation,
                           bool only_in_image = false);
+// The same with the frame's own time, which differs from the observation's where several cameras
+// have clocks of their own.
+std::string LandingCsvRow(const Frame& frame, const LandingObservation& observation,
+                          bool only_in_image);
 // Value of rejected_at where the image cannot be read.
 inline constexpr std::string_view kUnreadable = "unreadable";
 // The row of a frame whose image cannot be read.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/flight/onboard/repeated_image.h"
+#include "kestrel/vision/pipeline/repeated_image.h"
 
 #include <functional>
 #include <string_view>

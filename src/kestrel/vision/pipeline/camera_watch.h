@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "kestrel/core/base/time.h"
+#include "kestrel/vision/pipeline/camera_state.h"
+#include "kestrel/vision/pipeline/repeated_image.h"
+
+namespace kestrel {
+
+// Where a camera saw the target.
+enum class SightingPlace {
+  kStart,    // there was no track; it begins here
+  kInside,   // where the track is, as far as mounts and clocks can be wrong
+  kOutside,  // elsewhere
+};
+
+// Decides which of several cameras with one track can be used. A camera contradicts when several of
+// its sightings in a row are outside of the track while those of another camera are inside. Of the
+// two, the one is left out that has moved the track before, or whose views alone contradict the
+// UAV's attitude, or else the one that is outside.
+class CameraWatch {
+ public:
+  explicit CameraWatch(std::size_t cameras) : cameras_(cameras) {}
+
+  // Takes a frame; all times are on one clock. Does not allocate.
+  void AddFrame(std::size_t camera, const cv::Mat& image, Time time);
+
+  // Takes the place where the newest frame of 'camera' showed the target. 'offset_m': distance from
+  // the track. 'has_wrong_tilt': whether the views of a camera contradict the attitude.
+  void AddSighting(std::size_t camera, Time time, SightingPlace place, double offset_m,
+                   const std::function<bool(std::size_t camera)>& has_wrong_tilt);
+
+  // True when the newest frame of the camera can be used.
+  bool IsUsed(std::size_t camera) const;
+  const CameraState& state(std::size_t camera) const { return cameras_[camera].state; }
+
+ private:
+  static constexpr int kSightings = 10;  // in a row that contradict
+
+  struct Watched {
+    CameraState state;
+    std::optional<Time> newest;
+    RepeatedImage repeated;
+    int outside = 0;              // sightings in a row outside
+    int confirmed_by_others = 0;  // sightings of others inside since the first of those
+    std::array<double, kSightings> offsets_m{};
+  };
+
+  static void Set(Watched* camera, CameraHealth health, Time time);
+  void Confirm(std::size_t camera);
+  std::size_t Liar(std::size_t camera,
+                   const std::function<bool(std::size_t)>& has_wrong_tilt) const;
+  void LeaveOut(std::size_t camera, double offset_m, Time time);
+
+  std::vector<Watched> cameras_;
+  std::optional<Time> begin_;
+  std::size_t confirmed_ = 0;            // camera of the newest sighting inside
+  std::optional<std::size_t> moved_by_;  // camera that moved the track; nothing once another agreed
+};
+
+}  // namespace kestrel

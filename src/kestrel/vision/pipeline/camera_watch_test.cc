@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/pipeline/camera_watch.h"
+
+#include <chrono>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace kestrel {
+namespace {
+
+using ::testing::HasSubstr;
+
+// Two cameras with ten images a second each.
+class CameraWatchTest : public ::testing::Test {
+ protected:
+  static constexpr std::size_t kFirst = 0, kSecond = 1;
+
+  // A frame that differs from the ones before, and where it shows the target.
+  void See(std::size_t camera, SightingPlace place, double offset_m = 0) {
+    watch_.AddFrame(camera, cv::Mat(8, 8, CV_8UC1, cv::Scalar(++frames_ % 256)), time_);
+    if (!watch_.IsUsed(camera)) return;
+    watch_.AddSighting(camera, time_, place, offset_m,
+                       [this](std::size_t each) { return each == tilted_; });
+  }
+  void Step() { time_ += std::chrono::milliseconds(100); }
+  CameraHealth HealthOf(std::size_t camera) const { return watch_.state(camera).health; }
+
+  CameraWatch watch_{2};
+  Time time_ = TimeFromNanoseconds(1'000'000'000);
+  int frames_ = 0;
+  std::size_t tilted_ = 2;  // camera whose views contradict the attitude; none
+};
+
+TEST_F(CameraWatchTest, SilentCameraIsLeftOutUntilItSendsAgain) {
+  for (int i = 0; i < 12; ++i, Step()) See(kFirst, SightingPlace::kInside);
+  EXPECT_EQ(HealthOf(kSecond), CameraHealth::kSilent);
+  EXPECT_EQ(InWords(watch_.state(kSecond)), "sends no images: left out until it does");
+  EXPECT_FALSE(watch_.IsUsed(kSecond));
+  See(kSecond, SightingPlace::kInside);
+  EXPECT_TRUE(watch_.IsUsed(kSecond));
+  EXPECT_EQ(InWords(watch_.state(kSecond)), "is used again");
+  EXPECT_TRUE(watch_.IsUsed(kFirst));
+}
+
+TEST_F(CameraWatchTest, FrozenCameraIsLeftOutFromItsFirstRepetition) {
+  const cv::Mat image(8, 8, CV_8UC1, cv::Scalar(200));
+  for (int i = 0; i < 6; ++i, Step()) {
+    watch_.AddFrame(kSecond, image, time_);
+    EXPECT_EQ(watch_.IsUsed(kSecond), i == 0) << i;
+    See(kFirst, SightingPlace::kInside);
+  }
+  EXPECT_EQ(HealthOf(kSecond), CameraHealth::kFrozen);
+  See(kSecond, SightingPlace::kInside);
+  EXPECT_EQ(HealthOf(kSecond), CameraHealth::kGood);
+}
+
+TEST_F(CameraWatchTest, CameraThatContradictsIsLeftOutForGood) {
+  for (int i = 0; i < 10; ++i, Step()) {
+    EXPECT_EQ(HealthOf(kSecond), CameraHealth::kGood) << i;
+    See(kFirst, SightingPlace::kInside);
+    See(kSecond, SightingPlace::kOutside, 0.5 + 0.01 * i);
+  }
+  EXPECT_EQ(HealthOf(kSecond), CameraHealth::kContradicts);
+  EXPECT_NEAR(watch_.state(kSecond).offset_m, 0.55, 0.02);
+  EXPECT_THAT(InWords(watch_.state(kSecond)), HasSubstr("m from where the others see it"));
+  for (int i = 0; i < 20; ++i, Step()) See(kSecond, SightingPlace::kInside);
+  EXPECT_EQ(HealthOf(kSecond), CameraHealth::kContradicts);
+  EXPECT_EQ(HealthOf(kFirst), CameraHealth::kSilent);
+}
+
+// The target has moved while nobody saw it: both cameras agree on where it is.
+TEST_F(CameraWatchTest, CamerasThatLoseTheTrackTogetherAreBothUsed) {
+  for (int i = 0; i < 40; ++i, Step()) {
+    const bool has_moved = i >= 10 && i < 13;
+    const auto place = i == 13     ? SightingPlace::kStart
+                       : has_moved ? SightingPlace::kOutside
+                                   : SightingPlace::kInside;
+    See(kFirst, place, 1);
+    See(kSecond, has_moved ? place : SightingPlace::kInside, 1);
+  }
+  EXPECT_TRUE(watch_.IsUsed(kFirst));
+  EXPECT_TRUE(watch_.IsUsed(kSecond));
+}
+
+// While the first camera does not see the target, the second one draws the track to where it sees
+// it. When the first one is back, its sightings are the ones that are far from the track.
+TEST_F(CameraWatchTest, CameraThatHasMovedTheTrackIsTheOneThatIsLeftOut) {
+  See(kFirst, SightingPlace::kStart);
+  for (int i = 0; i < 10; ++i, Step()) See(kFirst, SightingPlace::kInside);
+  for (int i = 0; i < 4; ++i, Step()) See(kSecond, SightingPlace::kOutside, 2);
+  See(kSecond, SightingPlace::kStart);
+  for (int i = 0; i < 10; ++i, Step()) {
+    See(kFirst, SightingPlace::kOutside, 2);
+    See(kSecond, SightingPlace::kInside);
+  }
+  EXPECT_EQ(HealthOf(kFirst), CameraHealth::kGood);
+  EXPECT_EQ(HealthOf(kSecond), CameraHealth::kContradicts);
+}
+
+TEST_F(CameraWatchTest, CameraThatContradictsTheAttitudeIsTheOneThatIsLeftOut) {
+  tilted_ = kSecond;
+  See(kSecond, SightingPlace::kStart);
+  for (int i = 0; i < 10; ++i, Step()) {
+    See(kSecond, SightingPlace::kInside);
+    See(kFirst, SightingPlace::kOutside, 2);
+  }
+  EXPECT_EQ(HealthOf(kFirst), CameraHealth::kGood);
+  EXPECT_EQ(HealthOf(kSecond), CameraHealth::kContradicts);
+}
+
+}  // namespace
+}  // namespace kestrel
