@@ -32,7 +32,7 @@ constexpr double kPredictedShare = 0.5;  // of the velocity, which is uncertain
 
 // Agreement is 1 where a region looks as it usually did.
 constexpr double kLeastToSee = 0.35;
-constexpr double kLeastToLearn = 0.5;
+constexpr double kLeastToLearn = 0.65;
 constexpr double kLeastToFind = 0.65;
 constexpr double kLeastSharpness = 0.5;
 
@@ -64,23 +64,6 @@ void RequireBox(const cv::Rect2d& box, const cv::Size& size) {
   }
 }
 
-// Mean of the last responses of a filter to the region.
-struct UsualResponse {
-  void Start(const FilterPeak& peak) {
-    // A filter agrees best with the image that it learnt.
-    constexpr double kShare = 0.7;
-    value = kShare * peak.value;
-    sharpness = kShare * peak.sharpness;
-  }
-  void Add(const FilterPeak& peak) {
-    constexpr double kRate = 0.05;
-    value += kRate * (peak.value - value);
-    sharpness += kRate * (peak.sharpness - sharpness);
-  }
-
-  double value = 0, sharpness = 0;
-};
-
 // Probability that a region is what was marked, by the agreement of both filters: fitted to the
 // same sequences.
 double ProbabilityOf(double agreement) { return 1 / (1 + std::exp(-8 * (agreement - 0.45))); }
@@ -100,6 +83,23 @@ const char* ToString(RegionState state) {
 }
 
 struct RegionTracker::Impl {
+  // Mean of the last responses of a filter to the region.
+  struct UsualResponse {
+    void Start(const FilterPeak& peak) {
+      // A filter agrees best with the image that it learnt.
+      constexpr double kShare = 0.7;
+      value = kShare * peak.value;
+      sharpness = kShare * peak.sharpness;
+    }
+    void Add(const FilterPeak& peak) {
+      constexpr double kRate = 0.05;
+      value += kRate * (peak.value - value);
+      sharpness += kRate * (peak.sharpness - sharpness);
+    }
+
+    double value = 0, sharpness = 0;
+  };
+
   // What a filter finds in a window.
   struct Look {
     Eigen::Vector2d center_px = Eigen::Vector2d::Zero();
