@@ -16,25 +16,63 @@ HWY_BEFORE_NAMESPACE();
 namespace kestrel {
 namespace HWY_NAMESPACE {
 
+namespace hn = hwy::HWY_NAMESPACE;
+
 // Length of the gradient, and its direction in 'bins' to the turn, for the pixels of a row but its
 // first and last.
 void Gradients(const float* HWY_RESTRICT above, const float* HWY_RESTRICT row,
                const float* HWY_RESTRICT below, int side, float bins, float* HWY_RESTRICT length,
                float* HWY_RESTRICT bin) {
-  const float per_rad = bins / 6.2831853f;
-  for (int x = 1; x < side - 1; ++x) {
-    const float dx = row[x + 1] - row[x - 1], dy = below[x] - above[x];
-    length[x] = __builtin_sqrtf(dx * dx + dy * dy);
-    const float ax = dx < 0 ? -dx : dx, ay = dy < 0 ? -dy : dy;
-    const float most = ax > ay ? ax : ay, least = ax > ay ? ay : ax;
+  const hn::CappedTag<float, 8> d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const auto of = [&](float value) HWY_ATTR { return hn::Set(d, value); };
+  const auto zero = hn::Zero(d);
+  for (int i = 1; i < side - 1; i += lanes) {
+    const int x = i + lanes < side ? i : side - 1 - lanes;  // the last ones once more
+    const auto dx = hn::Sub(hn::LoadU(d, row + x + 1), hn::LoadU(d, row + x - 1));
+    const auto dy = hn::Sub(hn::LoadU(d, below + x), hn::LoadU(d, above + x));
+    hn::StoreU(hn::Sqrt(hn::MulAdd(dx, dx, hn::Mul(dy, dy))), d, length + x);
+    const auto ax = hn::Abs(dx), ay = hn::Abs(dy);
     // atan(r) for r in [0, 1], Hastings, error below 1e-4 rad.
-    const float r = least / (most + 1e-9f), s = r * r;
-    float angle = r * (0.9998660f +
-                       s * (-0.3302995f + s * (0.1801410f + s * (-0.0851330f + s * 0.0208351f))));
-    angle = ay > ax ? 1.5707963f - angle : angle;
-    angle = dx < 0 ? 3.1415927f - angle : angle;
-    angle = dy < 0 ? 6.2831853f - angle : angle;
-    bin[x] = angle * per_rad;
+    const auto r = hn::Div(hn::Min(ax, ay), hn::Add(hn::Max(ax, ay), of(1e-9f)));
+    const auto s = hn::Mul(r, r);
+    auto angle = hn::MulAdd(s, of(0.0208351f), of(-0.0851330f));
+    angle = hn::MulAdd(s, angle, of(0.1801410f));
+    angle = hn::MulAdd(s, angle, of(-0.3302995f));
+    angle = hn::Mul(r, hn::MulAdd(s, angle, of(0.9998660f)));
+    angle = hn::IfThenElse(hn::Gt(ay, ax), hn::Sub(of(1.5707963f), angle), angle);
+    angle = hn::IfThenElse(hn::Lt(dx, zero), hn::Sub(of(3.1415927f), angle), angle);
+    angle = hn::IfThenElse(hn::Lt(dy, zero), hn::Sub(of(6.2831853f), angle), angle);
+    hn::StoreU(hn::Mul(angle, of(bins / 6.2831853f)), d, bin + x);
+  }
+}
+
+// The channels of gradients of a cell with the histogram 'h', and then, after one of another kind,
+// the four of texture.
+void NormalizeCell(const float* HWY_RESTRICT h, const float* HWY_RESTRICT norms,
+                   float* HWY_RESTRICT out) {
+  constexpr int kDirections = AppearanceFeatures::kDirections;
+  constexpr int kOrientations = kDirections / 2;
+  constexpr float kMost = 0.2f;  // share of the neighbourhood's length
+  float both[kOrientations], texture[4];
+  for (int o = 0; o < kOrientations; ++o) both[o] = h[o] + h[o + kOrientations];
+  for (int o = 0; o < AppearanceFeatures::kGradientChannels; ++o) out[o] = 0;
+  for (int k = 0; k < 4; ++k) {
+    const float norm = norms[k];
+    float shares[kDirections];
+    for (int o = 0; o < kDirections; ++o) {
+      shares[o] = h[o] * norm < kMost ? h[o] * norm : kMost;
+      out[o] += 0.5f * shares[o];
+    }
+    float sum = 0;
+    for (const float share : shares) sum += share;
+    for (int o = 0; o < kOrientations; ++o) {
+      out[kDirections + o] += 0.5f * (both[o] * norm < kMost ? both[o] * norm : kMost);
+    }
+    texture[k] = sum;
+  }
+  for (int k = 0; k < 4; ++k) {
+    out[AppearanceFeatures::kGradientChannels + 1 + k] = 0.2357f * texture[k];
   }
 }
 
@@ -46,6 +84,7 @@ HWY_AFTER_NAMESPACE();
 namespace kestrel {
 
 HWY_EXPORT(Gradients);
+HWY_EXPORT(NormalizeCell);
 
 AppearanceFeatures::AppearanceFeatures(int cells, int cell_px)
     : cells_(cells),
@@ -111,7 +150,6 @@ void AppearanceFeatures::ComputeHistograms(const std::vector<float>& gray) {
 
 void AppearanceFeatures::Normalize(FeatureGrid* features) {
   constexpr int kOrientations = kDirections / 2;
-  constexpr float kMost = 0.2f;  // share of the neighbourhood's length
   for (std::size_t cell = 0; cell < energy_.size(); ++cell) {
     const float* h = &histograms_[cell * kDirections];
     float sum = 0;
@@ -135,23 +173,7 @@ void AppearanceFeatures::Normalize(FeatureGrid* features) {
       const float* h = &histograms_[(std::size_t(y) * cells_ + x) * kDirections];
       const float* n = &inverse_norm_[y * (cells_ + 1) + x];
       const std::array<float, 4> norms = {n[0], n[1], n[cells_ + 1], n[cells_ + 2]};
-      float* out = features->Cell(x, y);
-      std::array<float, 4> texture{};
-      for (int o = 0; o < kDirections; ++o) {
-        float sum = 0;
-        for (int k = 0; k < 4; ++k) {
-          const float share = std::min(h[o] * norms[k], kMost);
-          sum += share;
-          texture[k] += share;
-        }
-        out[o] = 0.5f * sum;
-      }
-      for (int o = 0; o < kOrientations; ++o) {
-        float sum = 0;
-        for (const float norm : norms) sum += std::min((h[o] + h[o + kOrientations]) * norm, kMost);
-        out[kDirections + o] = 0.5f * sum;
-      }
-      for (int k = 0; k < 4; ++k) out[kGradientChannels + 1 + k] = 0.2357f * texture[k];
+      HWY_DYNAMIC_DISPATCH(NormalizeCell)(h, norms.data(), features->Cell(x, y));
     }
   }
 }

@@ -21,7 +21,10 @@ BackgroundMotion::BackgroundMotion()
       grid_(kSide, 2),
       current_(kSide, 2),
       previous_(kSide, 2),
-      cross_(kSide, 2) {}
+      cross_(kSide, 2),
+      taper_(kSide) {
+  for (int i = 0; i < kSide; ++i) taper_[i] = static_cast<float>(std::sin(kPi * (i + 0.5) / kSide));
+}
 
 // The green of a colour image is its gray about.
 void BackgroundMotion::Shrink(const cv::Mat& image) {
@@ -42,9 +45,8 @@ void BackgroundMotion::Shrink(const cv::Mat& image) {
   for (int i = 0; i < kSide * kSide; ++i) mean += grid_.values[2 * i] / (kSide * kSide);
   for (int y = 0; y < kSide; ++y) {
     for (int x = 0; x < kSide; ++x) {
-      const double window = std::sin(kPi * (x + 0.5) / kSide) * std::sin(kPi * (y + 0.5) / kSide);
       float& value = grid_.Cell(x, y)[0];
-      value = static_cast<float>((value - mean) * window);
+      value = (value - mean) * taper_[x] * taper_[y];
     }
   }
 }
@@ -61,7 +63,7 @@ Eigen::Vector2d BackgroundMotion::Update(const cv::Mat& image) {
     const float* a = current_.Bin(bin);
     const float* b = previous_.Bin(bin);
     const float re = a[0] * b[0] + a[2] * b[2], im = a[2] * b[0] - a[0] * b[2];
-    const float inverse = 1 / (std::hypot(re, im) + 1e-3f);
+    const float inverse = 1 / (std::sqrt(re * re + im * im) + 1e-3f);
     cross_.Bin(bin)[0] = re * inverse;
     cross_.Bin(bin)[2] = im * inverse;
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
@@ -25,6 +27,7 @@ class BackgroundMotion {
   GridTransform transform_;
   FeatureGrid grid_;
   GridSpectrum current_, previous_, cross_;
+  std::vector<float> taper_;  // towards the border, by row and by column
   cv::Size size_;
 };
 

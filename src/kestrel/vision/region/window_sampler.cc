@@ -62,6 +62,21 @@ void WindowSampler::Reserve(const cv::Size& image_size, int channels) {
   rows_.weights.reserve(2 * image_size.height + 4 * kMostSide);
 }
 
+template <int channels>
+void WindowSampler::SampleRow(int first, int y, SampledWindow* window) const {
+  for (int x = 0; x < window->side; ++x) {
+    const Taps& taps = columns_.taps[x];
+    const float* from = &row_[std::size_t(taps.first - first) * channels];
+    const float* weights = &columns_.weights[taps.first_weight];
+    std::array<float, channels> sum{};
+    for (int k = 0; k < taps.count; ++k, from += channels) {
+      for (int c = 0; c < channels; ++c) sum[c] += weights[k] * from[c];
+    }
+    for (int c = 0; c < channels; ++c)
+      window->values[c][std::size_t(y) * window->side + x] = sum[c];
+  }
+}
+
 void WindowSampler::Sample(const cv::Mat& image, const Eigen::Vector2d& center_px,
                            const Eigen::Vector2d& size_px, SampledWindow* window) {
   const int side = window->side, channels = image.channels();
@@ -78,15 +93,10 @@ void WindowSampler::Sample(const cv::Mat& image, const Eigen::Vector2d& center_p
       (image.ptr<std::uint8_t>(rows.first + k) + first * channels,
        rows_.weights[rows.first_weight + k], static_cast<int>(row_.size()), row_.data());
     }
-    for (int x = 0; x < side; ++x) {
-      const Taps& taps = columns_.taps[x];
-      const float* from = &row_[std::size_t(taps.first - first) * channels];
-      std::array<float, 3> sum{};
-      for (int k = 0; k < taps.count; ++k) {
-        const float weight = columns_.weights[taps.first_weight + k];
-        for (int c = 0; c < channels; ++c) sum[c] += weight * *from++;
-      }
-      for (int c = 0; c < channels; ++c) window->values[c][std::size_t(y) * side + x] = sum[c];
+    if (channels == 3) {
+      SampleRow<3>(first, y, window);
+    } else {
+      SampleRow<1>(first, y, window);
     }
   }
 }

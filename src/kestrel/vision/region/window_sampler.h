@@ -46,6 +46,11 @@ class WindowSampler {
     void Fill(int side, double center_px, double size_px, int limit);
   };
 
+  // Makes row 'y' of the result from the weighted sum of the source's rows, whose first column is
+  // 'first'.
+  template <int channels>
+  void SampleRow(int first, int y, SampledWindow* window) const;
+
   Axis columns_, rows_;
   std::vector<float> row_;
 };
