@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// RegionTracker over sequences of images with truth, beside the trackers of OpenCV (opencv-contrib)
+// in the same run: success (area under the curve of overlaps), precision (share of centres within
+// 20 px), images per second of processor time of one thread, and the share of the images in which
+// RegionTracker says that the region is lost. Usage: region_accuracy FOLDER... [--peers]
+//
+// A FOLDER has a folder for each sequence: groundtruth_rect.txt (x,y,width,height by image; NaN
+// where the region is hidden) and img/*.jpg, as in OTB; or NAME.txt beside the folder NAME, as the
+// sequences of UAV123@10fps that github.com/vision4robotics/ARCF-tracker has in seq/. There NAME_1,
+// NAME_2 ... are the parts of the folder NAME, one after the other.
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <opencv2/core.hpp>
+#include <opencv2/tracking.hpp>
+#include <opencv2/tracking/tracking_legacy.hpp>
+
+#include "kestrel/core/base/error.h"
+#include "kestrel/io/recording/media/image_file.h"
+#include "kestrel/vision/region/region_tracker.h"
+#include "report_main.h"
+
+namespace kestrel {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kPeriod_s = 0.1;  // of the images
+
+struct Sequence {
+  std::string name;
+  std::vector<fs::path> images;
+  std::vector<cv::Rect2d> truth;  // of no area where the region is hidden
+};
+
+std::vector<cv::Rect2d> ReadTruth(const fs::path& file) {
+  std::ifstream in(file);
+  std::vector<cv::Rect2d> boxes;
+  for (std::string line; std::getline(in, line);) {
+    std::replace_if(
+        line.begin(), line.end(), [](char c) { return c == ',' || c == '\t'; }, ' ');
+    char* at = line.data();
+    double values[4];
+    for (double& value : values) value = std::strtod(at, &at);
+    const bool is_hidden = !(values[2] > 0 && values[3] > 0 && std::isfinite(values[0]));
+    if (at == line.data()) continue;
+    boxes.push_back(is_hidden ? cv::Rect2d()
+                              : cv::Rect2d(values[0], values[1], values[2], values[3]));
+  }
+  if (boxes.empty() || boxes[0].area() == 0) {
+    throw InputError(file.string() + ": expected x,y,width,height in its first row");
+  }
+  return boxes;
+}
+
+std::vector<fs::path> ImagesIn(const fs::path& folder) {
+  std::vector<fs::path> images;
+  for (const auto& entry : fs::directory_iterator(folder)) images.push_back(entry.path());
+  std::sort(images.begin(), images.end());
+  return images;
+}
+
+// Name of the folder with the images of NAME.txt: NAME, or NAME without "_1".
+std::string FolderOf(const fs::path& folder, const std::string& name) {
+  if (fs::is_directory(folder / name)) return name;
+  return name.substr(0, name.rfind('_'));
+}
+
+std::vector<Sequence> SequencesIn(const fs::path& folder) {
+  std::vector<Sequence> sequences;
+  std::map<std::string, std::size_t> used;  // images, by folder
+  std::vector<fs::path> entries = ImagesIn(folder);
+  for (const fs::path& entry : entries) {
+    Sequence sequence{entry.stem().string(), {}, {}};
+    if (fs::exists(entry / "groundtruth_rect.txt")) {
+      sequence.images = ImagesIn(entry / "img");
+      sequence.truth = ReadTruth(entry / "groundtruth_rect.txt");
+    } else if (entry.extension() == ".txt") {
+      const std::string images = FolderOf(folder, sequence.name);
+      sequence.images = ImagesIn(folder / images);
+      sequence.truth = ReadTruth(entry);
+      const std::size_t first = used[images];
+      used[images] += sequence.truth.size();
+      if (first >= sequence.images.size()) {
+        throw InputError(entry.string() + ": has more rows than there are images");
+      }
+      sequence.images.erase(sequence.images.begin(),
+                            sequence.images.begin() + static_cast<std::ptrdiff_t>(first));
+    } else {
+      continue;
+    }
+    sequence.images.resize(std::min(sequence.images.size(), sequence.truth.size()));
+    sequences.push_back(std::move(sequence));
+  }
+  if (sequences.empty()) throw InputError(folder.string() + ": has no sequences with truth");
+  return sequences;
+}
+
+// A tracker of any kind. 'Next' returns the box, or nothing where the region is lost.
+class Tracker {
+ public:
+  virtual ~Tracker() = default;
+  virtual void Start(const cv::Mat& image, const cv::Rect2d& box) = 0;
+  virtual std::optional<cv::Rect2d> Next(const cv::Mat& image) = 0;
+};
+
+class Own : public Tracker {
+ public:
+  void Start(const cv::Mat& image, const cv::Rect2d& box) override {
+    tracker_.Mark(image, time_, box);
+  }
+  std::optional<cv::Rect2d> Next(const cv::Mat& image) override {
+    time_ += DurationFromSeconds(kPeriod_s);
+    const RegionReport report = tracker_.Track(image, time_);
+    if (report.state == RegionState::kLost) return std::nullopt;
+    return report.box_px;
+  }
+
+ private:
+  RegionTracker tracker_;
+  Time time_{};
+};
+
+template <class Peer>
+class OpenCvTracker : public Tracker {
+ public:
+  explicit OpenCvTracker(cv::Ptr<Peer> peer) : peer_(std::move(peer)) {}
+
+  void Start(const cv::Mat& image, const cv::Rect2d& box) override { peer_->init(image, box); }
+  std::optional<cv::Rect2d> Next(const cv::Mat& image) override {
+    Box box;
+    if (!peer_->update(image, box)) return std::nullopt;
+    return box;
+  }
+
+ private:
+  using Box = std::conditional_t<std::is_same_v<Peer, cv::Tracker>, cv::Rect, cv::Rect2d>;
+  cv::Ptr<Peer> peer_;
+};
+
+struct Competitor {
+  std::string_view name;
+  std::function<std::unique_ptr<Tracker>()> make;
+};
+
+std::vector<Competitor> Competitors(bool with_peers) {
+  std::vector<Competitor> all = {{"Kestrel", [] { return std::make_unique<Own>(); }}};
+  if (!with_peers) return all;
+  all.push_back({"CSRT", [] {
+                   return std::make_unique<OpenCvTracker<cv::Tracker>>(cv::TrackerCSRT::create());
+                 }});
+  all.push_back({"KCF", [] {
+                   return std::make_unique<OpenCvTracker<cv::Tracker>>(cv::TrackerKCF::create());
+                 }});
+  all.push_back({"MOSSE", [] {
+                   return std::make_unique<OpenCvTracker<cv::legacy::Tracker>>(
+                       cv::legacy::TrackerMOSSE::create());
+                 }});
+  return all;
+}
+
+struct Score {
+  double success = 0, precision = 0;
+  double ms = 0;    // mean of an image
+  double lost = 0;  // share of the images
+};
+
+double Overlap(const cv::Rect2d& a, const cv::Rect2d& b) {
+  const double both = (a & b).area();
+  return both / (a.area() + b.area() - both);
+}
+
+// A tracker that has lost its region keeps its last box, as the benchmarks have it.
+Score Run(const Sequence& sequence, Tracker* tracker) {
+  constexpr int kThresholds = 20;
+  constexpr double kNear_px = 20;
+  Score score;
+  cv::Rect2d box = sequence.truth[0];
+  double scored = 0;
+  std::clock_t spent = 0;  // of the processor: other programs do not count
+  for (std::size_t i = 0; i < sequence.images.size(); ++i) {
+    const cv::Mat image = ReadImage(sequence.images[i], PixelFormat::kBgr);
+    if (i == 0) {
+      tracker->Start(image, box);
+    } else {
+      const std::clock_t start = std::clock();
+      const std::optional<cv::Rect2d> found = tracker->Next(image);
+      spent += std::clock() - start;
+      if (found) box = *found;
+      score.lost += !found;
+    }
+    const cv::Rect2d& truth = sequence.truth[i];
+    if (truth.area() == 0) continue;
+    ++scored;
+    const double overlap = Overlap(box, truth);
+    for (int k = 0; k <= kThresholds; ++k) {
+      score.success += (overlap > double{k} / kThresholds) / (kThresholds + 1.0);
+    }
+    const cv::Point2d away = 0.5 * (box.tl() + box.br() - truth.tl() - truth.br());
+    score.precision += std::hypot(away.x, away.y) <= kNear_px;
+  }
+  score.success /= scored;
+  score.precision /= scored;
+  const double tracked = std::max(1.0, static_cast<double>(sequence.images.size()) - 1);
+  score.ms = 1e3 * static_cast<double>(spent) / CLOCKS_PER_SEC / tracked;
+  score.lost /= tracked;
+  return score;
+}
+
+void PrintRow(std::string_view sequence, std::string_view tracker, const Score& score) {
+  fmt::print("{:14} {:8} {:7.3f} {:9.3f} {:9.0f} {:6.1f}\n", sequence, tracker, score.success,
+             score.precision, 1e3 / score.ms, 100 * score.lost);
+  std::fflush(stdout);
+}
+
+int Report(const std::vector<std::string>& folders, bool with_peers) {
+  cv::setNumThreads(1);
+  fmt::print("{:14} {:8} {:>7} {:>9} {:>9} {:>6}\n", "sequence", "tracker", "success", "precision",
+             "images/s", "lost %");
+  const std::vector<Competitor> competitors = Competitors(with_peers);
+  std::vector<Score> means(competitors.size());
+  double count = 0;
+  for (const std::string& folder : folders) {
+    for (const Sequence& sequence : SequencesIn(folder)) {
+      ++count;
+      for (std::size_t i = 0; i < competitors.size(); ++i) {
+        const Score score = Run(sequence, competitors[i].make().get());
+        PrintRow(sequence.name, competitors[i].name, score);
+        means[i].success += score.success;
+        means[i].precision += score.precision;
+        means[i].ms += score.ms;
+        means[i].lost += score.lost;
+      }
+    }
+  }
+  for (std::size_t i = 0; i < competitors.size(); ++i) {
+    const Score& sum = means[i];
+    PrintRow("mean", competitors[i].name,
+             {sum.success / count, sum.precision / count, sum.ms / count, sum.lost / count});
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace kestrel
+
+int main(int argc, char** argv) {
+  CLI::App app("RegionTracker over sequences of images with truth");
+  std::vector<std::string> folders;
+  bool with_peers = false;
+  app.add_option("folder", folders, "Folders with sequences")
+      ->required()
+      ->check(CLI::ExistingDirectory);
+  app.add_flag("--peers", with_peers, "OpenCV's CSRT, KCF and MOSSE, too");
+  CLI11_PARSE(app, argc, argv);
+  return kestrel::ReportMain([&] { return kestrel::Report(folders, with_peers); });
+}

@@ -1,0 +1,354 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/region/region_tracker.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/geometry/angles.h"
+#include "kestrel/vision/region/appearance_features.h"
+#include "kestrel/vision/region/appearance_filter.h"
+#include "kestrel/vision/region/background_motion.h"
+#include "kestrel/vision/region/window_sampler.h"
+
+namespace kestrel {
+namespace {
+
+// Chosen on sequences of UAV123 and DTB70 that the benchmark does not score, and on copies of them
+// that were reduced to objects of 5 to 20 px.
+constexpr int kCells = 32, kCellPx = 4;
+constexpr int kChannels = AppearanceFeatures::kChannels;
+constexpr double kPadding = 5;          // side of the window by that of a square like the region
+constexpr double kLeastWindow_px = 64;  // small things move as fast as large ones
+constexpr double kScaleStep = 1.03;
+constexpr double kTemporal = 3000;       // weight of what was learnt before
+constexpr double kSlowTemporal = 20000;  // the same for the slow filter
+constexpr int kSlowPeriod = 5;           // images from one step of the slow filter to the next
+constexpr double kVelocityTime_s = 0.3;
+constexpr double kPredictedShare = 0.5;  // of the velocity, which is uncertain
+
+// Agreement is 1 where a region looks as it usually did.
+constexpr double kLeastToSee = 0.35;
+constexpr double kLeastToLearn = 0.65;
+constexpr double kLeastToFind = 0.65;
+constexpr double kLeastSharpness = 0.5;
+
+constexpr double kLeastSide_px = 4;
+constexpr double kCoasting_s = 0.5;
+constexpr int kPlacesPerImage = 3;
+
+void RequireImage(const cv::Mat& image) {
+  if (image.empty() || (image.type() != CV_8UC1 && image.type() != CV_8UC3)) {
+    throw InputError("image: expected 8 bits, gray or BGR, and not empty");
+  }
+}
+
+void RequireBox(const cv::Rect2d& box, const cv::Size& size) {
+  const double middle_x = box.x + 0.5 * box.width, middle_y = box.y + 0.5 * box.height;
+  const bool is_box = std::isfinite(middle_x) && std::isfinite(middle_y) &&
+                      box.width >= kLeastSide_px && box.height >= kLeastSide_px;
+  if (!is_box) {
+    throw InputError(
+        fmt::format("box {:g},{:g},{:g},{:g}: expected x,y,width,height in px, width "
+                    "and height at least {:g}",
+                    box.x, box.y, box.width, box.height, kLeastSide_px));
+  }
+  if (middle_x < 0 || middle_x > size.width || middle_y < 0 || middle_y > size.height ||
+      box.width > size.width || box.height > size.height) {
+    throw InputError(
+        fmt::format("box {:g},{:g},{:g},{:g}: expected one within the image of {} x {}", box.x,
+                    box.y, box.width, box.height, size.width, size.height));
+  }
+}
+
+// Probability that a region is what was marked, by the agreement of both filters: fitted to the
+// same sequences.
+double ProbabilityOf(double agreement) { return 1 / (1 + std::exp(-8 * (agreement - 0.45))); }
+
+}  // namespace
+
+const char* ToString(RegionState state) {
+  switch (state) {
+    case RegionState::kFollowing:
+      return "following";
+    case RegionState::kCoasting:
+      return "coasting";
+    case RegionState::kLost:
+      return "lost";
+  }
+  return "";
+}
+
+struct RegionTracker::Impl {
+  // Mean of the last responses of a filter to the region.
+  struct UsualResponse {
+    void Start(const FilterPeak& peak) {
+      // A filter agrees best with the image that it learnt.
+      constexpr double kShare = 0.7;
+      value = kShare * peak.value;
+      sharpness = kShare * peak.sharpness;
+    }
+    void Add(const FilterPeak& peak) {
+      constexpr double kRate = 0.05;
+      value += kRate * (peak.value - value);
+      sharpness += kRate * (peak.sharpness - sharpness);
+    }
+
+    double value = 0, sharpness = 0;
+  };
+
+  // What a filter finds in a window.
+  struct Look {
+    Eigen::Vector2d center_px = Eigen::Vector2d::Zero();
+    double scale = 1;
+    FilterPeak peak;
+  };
+
+  void Mark(const cv::Mat& image, Time now, const cv::Rect2d& box);
+  RegionReport Track(const cv::Mat& image, Time now, const std::optional<RegionHint>& hint);
+
+  // Computes the spectrum of the window around a place.
+  void See(const cv::Mat& image, const Eigen::Vector2d& at, double scale);
+  Look LookAt(const cv::Mat& image, const AppearanceFilter& by, const Eigen::Vector2d& at,
+              double scale);
+  // Looks for the region near a place, at three scales.
+  Look Follow(const cv::Mat& image, const Eigen::Vector2d& expected);
+  // Moves the box, and learns what it shows unless that is ambiguous. Returns how much it looks
+  // like what was marked.
+  double Accept(const cv::Mat& image, const Look& look);
+  // True when the box has stopped with the background, which the region had not done.
+  bool HasDrifted(const Eigen::Vector2d& shift, double seconds, double agreement);
+  // Looks for a region that is not seen, around the expected place.
+  void Search(const cv::Mat& image, const Eigen::Vector2d& expected, double radius_px);
+  Eigen::Vector2d NextPlace(const Eigen::Vector2d& around, double radius_px);
+  RegionReport Report(double probability) const;
+
+  WindowSampler sampler;
+  SampledWindow window{kCells * kCellPx, 3};
+  AppearanceFeatures features{kCells, kCellPx};
+  FeatureGrid grid{kCells, kChannels};
+  GridSpectrum sample{kCells, kChannels};
+  FilterWorkspace workspace{kCells, kChannels};
+  AppearanceFilter filter{kCells, kChannels}, slow{kCells, kChannels};
+  BackgroundMotion background;
+  std::array<float, kCells> taper;
+
+  int type = -1;  // of the images
+  cv::Size image_size;
+  Time time, seen;
+  RegionState state = RegionState::kLost;
+  Eigen::Vector2d center, size;  // of the region, px
+  double window_px = 0;          // side
+  Eigen::Vector2d velocity;      // against the background, px/s
+  double usual_speed = 0, still_s = 0;
+  UsualResponse usual, slow_usual;
+  int learnt = 0;       // images
+  int place = 0;        // the next of the search
+  bool is_hit = false;  // the last image had it at 'center', while it is looked for
+};
+
+void RegionTracker::Impl::See(const cv::Mat& image, const Eigen::Vector2d& at, double scale) {
+  const double side = scale * window_px;
+  sampler.Sample(image, at, {side, side}, &window);
+  features.Compute(window, &grid);
+  for (int y = 0; y < kCells; ++y) {
+    for (int x = 0; x < kCells; ++x) {
+      const float weight = taper[x] * taper[y];
+      float* cell = grid.Cell(x, y);
+      for (int c = 0; c < kChannels; ++c) cell[c] *= weight;
+    }
+  }
+  workspace.transform.Forward(&grid, &sample);
+}
+
+RegionTracker::Impl::Look RegionTracker::Impl::LookAt(const cv::Mat& image,
+                                                      const AppearanceFilter& by,
+                                                      const Eigen::Vector2d& at, double scale) {
+  See(image, at, scale);
+  Look look;
+  look.peak = by.Find(sample, &workspace);
+  look.scale = scale;
+  look.center_px = at + look.peak.displacement * (scale * window_px / kCells);
+  return look;
+}
+
+void RegionTracker::Impl::Mark(const cv::Mat& image, Time now, const cv::Rect2d& box) {
+  for (int i = 0; i < kCells; ++i) {
+    taper[i] = static_cast<float>(0.5 - 0.5 * std::cos(2 * kPi * (i + 0.5) / kCells));
+  }
+  type = image.type();
+  image_size = image.size();
+  sampler.Reserve(image_size, image.channels());
+  window.planes = image.channels();
+  time = seen = now;
+  state = RegionState::kFollowing;
+  center = {box.x + 0.5 * (box.width - 1), box.y + 0.5 * (box.height - 1)};
+  size = {box.width, box.height};
+  window_px = std::max(kPadding * std::sqrt(size.prod()), kLeastWindow_px);
+  velocity.setZero();
+  usual_speed = still_s = 0;
+  learnt = place = 0;
+  is_hit = false;
+  const Eigen::Vector2d target = size * (kCells / window_px);
+  filter.Reset(target, &workspace);
+  slow.Reset(target, &workspace);
+  See(image, center, 1);
+  filter.Learn(sample, kTemporal, &workspace);
+  slow.Learn(sample, kSlowTemporal, &workspace);
+  usual.Start(filter.Find(sample, &workspace));
+  slow_usual.Start(slow.Find(sample, &workspace));
+  background.Update(image);
+}
+
+RegionReport RegionTracker::Impl::Report(double probability) const {
+  const Eigen::Vector2d corner = center - 0.5 * (size - Eigen::Vector2d::Ones());
+  return {state, {corner.x(), corner.y(), size.x(), size.y()}, probability};
+}
+
+RegionTracker::Impl::Look RegionTracker::Impl::Follow(const cv::Mat& image,
+                                                      const Eigen::Vector2d& expected) {
+  constexpr double kFar = 0.125 * kCells;
+  Look look = LookAt(image, filter, expected, 1);
+  // Near the border of a window a response is weak.
+  if (look.peak.displacement.norm() > kFar) look = LookAt(image, filter, look.center_px, 1);
+  const double larger = LookAt(image, filter, look.center_px, kScaleStep).peak.value;
+  const double smaller = LookAt(image, filter, look.center_px, 1 / kScaleStep).peak.value;
+  // The vertex of the parabola through the three responses.
+  const double bend = smaller - 2 * look.peak.value + larger;
+  const double steps = bend < 0 ? std::clamp(0.5 * (smaller - larger) / bend, -1.0, 1.0)
+                                : (larger > smaller ? 1.0 : -1.0);
+  look.scale = std::pow(kScaleStep, steps);
+  return look;
+}
+
+double RegionTracker::Impl::Accept(const cv::Mat& image, const Look& look) {
+  center = look.center_px;
+  const double least = kLeastSide_px / size.minCoeff();
+  const double most = std::min(image_size.width / size.x(), image_size.height / size.y());
+  const double scale = std::clamp(look.scale, std::min(least, 1.0), std::max(most, 1.0));
+  size *= scale;
+  window_px *= scale;
+  See(image, center, 1);
+  const FilterPeak slow_peak = slow.Find(sample, &workspace);
+  const double agreement =
+      0.5 * (look.peak.value / usual.value + slow_peak.value / slow_usual.value);
+  if (agreement < kLeastToLearn) return agreement;
+  usual.Add(look.peak);
+  slow_usual.Add(slow_peak);
+  filter.Learn(sample, kTemporal, &workspace);
+  if (++learnt % kSlowPeriod == 0) slow.Learn(sample, kSlowTemporal, &workspace);
+  return agreement;
+}
+
+bool RegionTracker::Impl::HasDrifted(const Eigen::Vector2d& moved, double seconds,
+                                     double agreement) {
+  constexpr double kUsual_s = 2, kStill_s = 0.3;
+  constexpr double kMoving = 0.5;  // sizes of the region per second
+  constexpr double kStillShare = 0.1, kDoubtful = 0.8;
+  velocity += std::min(1.0, seconds / kVelocityTime_s) * (moved / seconds - velocity);
+  const double speed = velocity.norm();
+  const bool was_moving = usual_speed > kMoving * std::sqrt(size.prod());
+  const bool is_still = was_moving && speed < kStillShare * usual_speed && agreement < kDoubtful;
+  still_s = is_still ? still_s + seconds : 0;
+  if (!is_still) usual_speed += std::min(1.0, seconds / kUsual_s) * (speed - usual_speed);
+  return still_s > kStill_s;
+}
+
+// The expected place first, then places of a spiral around it, half a window apart.
+Eigen::Vector2d RegionTracker::Impl::NextPlace(const Eigen::Vector2d& around, double radius_px) {
+  constexpr double kGoldenAngle = 2.399963;
+  const double spacing = 0.4 * window_px;
+  const double away = spacing * std::sqrt(place);
+  const double angle = place * kGoldenAngle;
+  ++place;
+  if (away + spacing > radius_px) place = 0;
+  const Eigen::Vector2d at = around + away * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+  return at.cwiseMax(0).cwiseMin(Eigen::Vector2d(image_size.width, image_size.height));
+}
+
+void RegionTracker::Impl::Search(const cv::Mat& image, const Eigen::Vector2d& expected,
+                                 double radius_px) {
+  Look best;
+  for (int i = 0; i < kPlacesPerImage; ++i) {
+    const Eigen::Vector2d at = i == 0 ? expected : NextPlace(expected, radius_px);
+    const Look look = LookAt(image, slow, at, 1);
+    if (look.peak.value > best.peak.value) best = look;
+  }
+  // A second look, from the place itself: a window's middle is seen best.
+  best = LookAt(image, slow, best.center_px, 1);
+  const bool was_hit = is_hit;
+  is_hit = best.peak.value > kLeastToFind * slow_usual.value &&
+           best.peak.sharpness > kLeastSharpness * slow_usual.sharpness;
+  if (!is_hit) return;
+  center = best.center_px;
+  if (!was_hit) return;
+  state = RegionState::kFollowing;
+  seen = time;
+  filter = slow;
+  usual = slow_usual;
+  velocity.setZero();
+  usual_speed = still_s = 0;
+  place = 0;
+  is_hit = false;
+}
+
+RegionReport RegionTracker::Impl::Track(const cv::Mat& image, Time now,
+                                        const std::optional<RegionHint>& hint) {
+  if (image.type() != type || image.size() != image_size) {
+    state = RegionState::kLost;
+    return Report(0);
+  }
+  constexpr double kShortest_s = 1e-3, kLongest_s = 1;
+  const double seconds = std::clamp(ToSeconds(now - time), kShortest_s, kLongest_s);
+  time = now;
+  const Eigen::Vector2d shift = background.Update(image);
+  Eigen::Vector2d expected = center + shift;
+  if (state != RegionState::kLost) expected += kPredictedShare * seconds * velocity;
+  if (hint && !is_hit) expected = hint->center_px;
+  if (state != RegionState::kLost) {
+    const Eigen::Vector2d before = center + shift;
+    const Look look = Follow(image, expected);
+    const double share = look.peak.value / usual.value;
+    if (share > kLeastToSee) {
+      const double agreement = Accept(image, look);
+      if (agreement > kLeastToSee && !HasDrifted(center - before, seconds, agreement)) {
+        state = RegionState::kFollowing;
+        seen = now;
+        is_hit = false;
+        return Report(ProbabilityOf(agreement));
+      }
+    }
+    state = RegionState::kCoasting;
+  }
+  center = expected.cwiseMax(0).cwiseMin(Eigen::Vector2d(image_size.width, image_size.height));
+  const double unseen_s = ToSeconds(now - seen);
+  if (unseen_s > kCoasting_s) state = RegionState::kLost;
+  // Without a hint the region may move on by a few of its sizes in a second.
+  constexpr double kSizesPerSecond = 4, kSigmas = 3;
+  const double radius =
+      hint ? kSigmas * std::sqrt(hint->covariance_px2.trace())
+           : kSizesPerSecond * unseen_s * std::sqrt(size.prod()) + velocity.norm() * unseen_s;
+  Search(image, expected, radius);
+  if (state == RegionState::kFollowing) return Report(ProbabilityOf(kLeastToFind));
+  return Report(state == RegionState::kLost ? 0 : ProbabilityOf(0));
+}
+
+RegionTracker::RegionTracker() : impl_(std::make_unique<Impl>()) {}
+RegionTracker::~RegionTracker() = default;
+RegionTracker::RegionTracker(RegionTracker&&) noexcept = default;
+RegionTracker& RegionTracker::operator=(RegionTracker&&) noexcept = default;
+
+void RegionTracker::Mark(const cv::Mat& image, Time time, const cv::Rect2d& box_px) {
+  RequireImage(image);
+  RequireBox(box_px, image.size());
+  impl_->Mark(image, time, box_px);
+}
+
+RegionReport RegionTracker::Track(const cv::Mat& image, Time time,
+                                  const std::optional<RegionHint>& hint) {
+  return impl_->Track(image, time, hint);
+}
+}  // namespace kestrel
