@@ -19,6 +19,7 @@ void BindDetection(pybind11::module_& module);
 void BindDetectors(pybind11::module_& module);
 void BindObjects(pybind11::module_& module);
 void BindTracking(pybind11::module_& module);
+void BindRegions(pybind11::module_& module);
 void BindMaps(pybind11::module_& module);
 void BindPipelines(pybind11::module_& module);
 void BindRecordings(pybind11::module_& module);

@@ -15,6 +15,7 @@ PYBIND11_MODULE(_kestrel, module) {
   BindDetectors(module);
   BindObjects(module);
   BindTracking(module);
+  BindRegions(module);
   BindMaps(module);
   BindPipelines(module);
   BindRecordings(module);
