@@ -207,7 +207,7 @@ Score Run(const Sequence& sequence, Tracker* tracker) {
     ++scored;
     const double overlap = Overlap(box, truth);
     for (int k = 0; k <= kThresholds; ++k) {
-      score.success += (overlap > double{k} / kThresholds) / (kThresholds + 1.0);
+      score.success += (overlap > static_cast<double>(k) / kThresholds) / (kThresholds + 1.0);
     }
     const cv::Point2d away = 0.5 * (box.tl() + box.br() - truth.tl() - truth.br());
     score.precision += std::hypot(away.x, away.y) <= kNear_px;

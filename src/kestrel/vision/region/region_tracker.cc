@@ -233,13 +233,17 @@ double RegionTracker::Impl::Accept(const cv::Mat& image, const Look& look) {
   window_px *= scale;
   See(image, center, 1);
   const FilterPeak slow_peak = slow.Find(sample, &workspace);
-  const double agreement =
-      0.5 * (look.peak.value / usual.value + slow_peak.value / slow_usual.value);
-  if (agreement < kLeastToLearn) return agreement;
-  usual.Add(look.peak);
-  slow_usual.Add(slow_peak);
-  filter.Learn(sample, kTemporal, &workspace);
-  if (++learnt % kSlowPeriod == 0) slow.Learn(sample, kSlowTemporal, &workspace);
+  const double share = look.peak.value / usual.value;
+  const double slow_share = slow_peak.value / slow_usual.value;
+  const double agreement = 0.5 * (share + slow_share);
+  if (share > kLeastToLearn) {
+    usual.Add(look.peak);
+    filter.Learn(sample, kTemporal, &workspace);
+  }
+  if (agreement > kLeastToLearn) {
+    slow_usual.Add(slow_peak);
+    if (++learnt % kSlowPeriod == 0) slow.Learn(sample, kSlowTemporal, &workspace);
+  }
   return agreement;
 }
 
@@ -306,7 +310,8 @@ RegionReport RegionTracker::Impl::Track(const cv::Mat& image, Time now,
   time = now;
   const Eigen::Vector2d shift = background.Update(image);
   Eigen::Vector2d expected = center + shift;
-  if (state != RegionState::kLost) expected += kPredictedShare * seconds * velocity;
+  if (state == RegionState::kFollowing) expected += kPredictedShare * seconds * velocity;
+  if (state == RegionState::kCoasting) expected += seconds * velocity;
   if (hint && !is_hit) expected = hint->center_px;
   if (state != RegionState::kLost) {
     const Eigen::Vector2d before = center + shift;
