@@ -24,6 +24,7 @@ struct FlyArguments {
   std::string record;
   std::optional<std::string> console;  // ADDRESS:PORT; empty: as in the options
   bool guide = false;
+  bool point = false;
   bool no_guard = false;
   std::string task = "land";  // name of its kind
   std::string model;          // file with the model of the objects

@@ -242,6 +242,7 @@ class Flight {
     parts.sink = &sinks_;
     if (arguments_.profile != "auto") parts.profile = ParseLinkProfile(arguments_.profile);
     parts.guides = arguments_.guide;
+    parts.points = arguments_.point;
     parts.output = arguments_.source.output;
     parts.record = arguments_.record;
     parts.replace = arguments_.source.force;

@@ -139,6 +139,7 @@ class LiveSession::Impl {
 
  private:
   bool HasWorld() const;
+  bool Points() const;
   void OpenVision();
   void OpenTables();
   void OpenExposure();
@@ -219,6 +220,13 @@ bool LiveSession::Impl::HasWorld() const {
   return parts_.calibration.body_from_camera && (parts_.has_poses || !parts_.autopilot.empty());
 }
 
+bool LiveSession::Impl::Points() const {
+  if (parts_.points && !parts_.calibration.gimbal) {
+    throw InputError("the camera's file has no gimbal to point (docs/mounts.md)");
+  }
+  return (parts_.points || parts_.guides) && parts_.calibration.gimbal && vision_->pad();
+}
+
 void LiveSession::Impl::OpenVision() {
   vision_ = parts_.task->MakeVision({.calibration = parts_.calibration,
                                      .altitude_m = options_.altitude_m,
@@ -288,6 +296,7 @@ void LiveSession::Impl::OpenAutopilot() {
   guard_ = guard.get();
   if (const auto& gimbal = parts_.calibration.gimbal) {
     options_.autopilot.gimbal_device_id = gimbal->device_id;
+    options_.autopilot.points_gimbal = Points();
   }
   connection_.emplace(parts_.autopilot, options_.link, tap, std::move(guard));
   autopilot_.emplace(
@@ -299,7 +308,7 @@ void LiveSession::Impl::OpenAutopilot() {
           .text = [this](
                       std::uint8_t severity,
                       std::string_view text) { Notify(WordsOfAutopilot(text), LevelOf(severity)); },
-          .gimbal = [this](const GimbalSample& report) { program_->TakeGimbal(report); },
+          .gimbal = [this](const GimbalSample& report) { program_->TakeAutopilotGimbal(report); },
       });
 }
 
@@ -313,6 +322,7 @@ FlightParts LiveSession::Impl::ProgramParts() {
           .recording = &recording_,
           .tables = tables_ ? &*tables_ : nullptr,
           .sink = sink_ ? &*sink_ : nullptr,
+          .pointed = Points() ? &parts_.calibration : nullptr,
           .guides = parts_.guides,
           .source_has_poses = parts_.has_poses,
           .sees_repeated = parts_.sees_repeated,

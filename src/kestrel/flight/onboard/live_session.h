@@ -45,6 +45,9 @@ struct LiveSessionParts {
   // line (docs/guard.md), unless the setting fly.guard.enabled says otherwise.
   bool guides = false;
 
+  // Points the camera's gimbal at the pad in flight; always where 'guides' is set and there is one.
+  bool points = false;
+
   std::string output;  // folder of the tables; empty: none
   std::string record;  // folder of a recording that begins at once; empty: none
   bool replace = false;
