@@ -129,8 +129,9 @@ std::optional<Vector3d> PointedGimbal::Target(Time then, const TrackSnapshot& tr
   return sighting_->position_in_world;
 }
 
-// A gimbal that neither is where it was sent nor comes nearer is moved by somebody of whom the
-// manager reports nothing: a ground station's slider, a region of interest.
+// A gimbal that neither is where it was sent nor turns there is moved by somebody of whom the
+// manager reports nothing, as a ground station's slider. One that is on its way to an aim that runs
+// away is not.
 void PointedGimbal::WatchFollowing(Time now, const GimbalAngles& aim, double heading) {
   constexpr double kNear = Radians(12.0), kNearer = Radians(3.0);
   constexpr double kPatience_s = 1.5, kOld_s = 1.5;
@@ -142,11 +143,16 @@ void PointedGimbal::WatchFollowing(Time now, const GimbalAngles& aim, double hea
   const bool is_in_earth = report_sample_->yaw_frame == YawFrame::kEarth;
   const Eigen::AngleAxisd turn(is_in_earth ? 0 : heading, Vector3d::UnitZ());
   const Vector3d reported = turn * (report_sample_->level_from_platform * Vector3d::UnitX());
-  const double error = AngleBetween(reported, aim.rotation() * Vector3d::UnitX());
-  if (!following_ || error < kNear || error < following_->least_error - kNearer) {
-    following_ = Following{error, now};
+  const Vector3d wanted = aim.rotation() * Vector3d::UnitX();
+  const double error = AngleBetween(reported, wanted);
+  if (following_) {
+    following_->progress += AngleBetween(following_->axis, wanted) - error;
+    following_->axis = reported;
   }
-  if (ToSeconds(now - following_->improved) < kPatience_s) return;
+  if (!following_ || error < kNear || following_->progress > kNearer) {
+    following_ = Following{now, 0, reported};
+  }
+  if (ToSeconds(now - following_->since) < kPatience_s) return;
   manager_.Yield("somebody else, or its own limit,");
 }
 

@@ -43,10 +43,11 @@ class PointedGimbal {
   void Point(Time now, const TrackSnapshot& track, const PoseHistory& poses);
 
  private:
-  // How well the gimbal follows.
+  // Whether the gimbal follows.
   struct Following {
-    double least_error = 0;  // rad
-    Time improved{};
+    Time since{};                   // it was near its aim, or had come nearer
+    double progress = 0;            // since then towards the aim, rad
+    Eigen::Vector3d axis{1, 0, 0};  // of the newest report
   };
 
   void WatchFlight();

@@ -145,7 +145,7 @@ struct Landings {
 // wind.
 Landings LandOnCar(AutopilotFirmware firmware, bool has_gimbal,
                    const SimulatedMountOptions& gimbal) {
-  constexpr int kFlights = 8;
+  constexpr int kFlights = 20;
   Landings landings;
   for (int seed = 1; seed <= kFlights; ++seed) {
     AutopilotModelOptions options;
