@@ -112,6 +112,7 @@ class DoctorVisit {
     const FlyArguments& flight = arguments_.flight;
     if (flight.profile != "auto") use.profile = ParseLinkProfile(flight.profile);
     use.guides = arguments_.flight.guide;
+    use.points = flight.point || flight.guide;
     if (arguments_.moving_mps > 0) use.target_mps = arguments_.moving_mps;
     use.tilt_deg = options_.fly.guidance.limits.max_tilt_deg;
     use.sends_distance = options_.fly.messages.sends_distance;
@@ -165,6 +166,7 @@ class DoctorVisit {
     AutopilotOptions options = source_.simulated.Asking(options_.fly.autopilot);
     if (const auto& gimbal = source_.live.calibration.gimbal) {
       options.gimbal_device_id = gimbal->device_id;
+      options.points_gimbal = true;
     }
     autopilot_.emplace(
         options, &*connection_,

@@ -82,12 +82,15 @@ void FlyArguments::AddTo(CLI::App* command) {
       ->add_flag("--no-guard", no_guard,
                  "No guard: if Kestrel dies in flight, only the autopilot's own time-out acts")
       ->needs(guide_flag);
+  CLI::Option* point_flag = command->add_flag(
+      "--point", point, "Point the camera's gimbal at the pattern, as --guide does, too");
   task.AddTo(command, [](std::string_view) { return true; });
   CLI::Option* hunt_flag = command->get_option("--hunt");
   command->add_option("--model", model, "Objects and their colours (YAML), with --hunt")
       ->type_name("FILE")
       ->needs(hunt_flag);
   guide_flag->excludes(hunt_flag);
+  point_flag->excludes(hunt_flag);
   hunt_flag->excludes("--target")->excludes("--target-id")->excludes("--target-size");
   team.AddTo(command)->needs(hunt_flag);
   command->add_flag("--loop", loop, "Play a recording in a loop");
@@ -108,6 +111,7 @@ KestrelOptions FlyArguments::ReadOptions() {
   if (!signing_key.empty()) options.fly.link.signing_key = signing_key;
   if (link_delay != "auto") options.fly.link_delay_s = ParseLinkDelay(link_delay);
   if (guide && autopilot.empty()) throw InputError("--guide: expected --autopilot URL");
+  if (point && autopilot.empty()) throw InputError("--point: expected --autopilot URL");
   if (no_guard) options.fly.guard.enabled = false;
   if (console && !console->empty()) {
     options.console = WithAddress(options.console, *console, "--console");

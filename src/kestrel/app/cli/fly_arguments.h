@@ -25,6 +25,7 @@ struct FlyArguments {
   std::string record;
   std::optional<std::string> console;  // ADDRESS:PORT; empty: as in the options
   bool guide = false;
+  bool point = false;
   bool no_guard = false;
   TaskArgument task;
   std::string model;  // file with the model of the objects

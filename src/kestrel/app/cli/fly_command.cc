@@ -236,6 +236,7 @@ class Flight {
   SessionOptions Options() const {
     SessionOptions options = SessionOptionsFor(autopilot_, options_.fly, arguments_.guide);
     if (arguments_.profile != "auto") options.profile = ParseLinkProfile(arguments_.profile);
+    options.points = arguments_.point;
     options.output = arguments_.source.output;
     options.record = arguments_.record;
     options.replace = arguments_.source.force;

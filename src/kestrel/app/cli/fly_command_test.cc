@@ -86,6 +86,27 @@ TEST_F(FlyCommandTest, GuidesSimulatedPx4OntoCar) {
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("descend: "), HasSubstr("landed: contact")));
 }
 
+// The camera is level and looks ahead when it starts.
+TEST_F(FlyCommandTest, PointsGimbalAtPadAndLands) {
+  const std::string camera = folder_.Write("gimbal.yaml", R"(camera_model: pinhole
+resolution: [301, 192]
+intrinsics: [104.4, 104.4, 150.1, 95.7]
+distortion_model: equidistant
+distortion_coefficients: [-0.0448, 0.0686053, -0.072277, 0.027011955]
+T_GS: [[0, 0, 1, 0.02], [-1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]]
+gimbal:
+  T_BG: [[1, 0, 0, 0.12], [0, 1, 0, 0], [0, 0, 1, -0.05], [0, 0, 0, 1]]
+)");
+  for (const std::string autopilot : {"ardupilot", "px4"}) {
+    const Outcome outcome = Succeed("fly sim:standing --point --camera " + camera +
+                                    " --autopilot sim:" + autopilot + kNear);
+    EXPECT_LT(MissOf(outcome), 0.15) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("points the gimbal at the pattern")) << outcome.err;
+  }
+  ExpectInputError("fly sim:standing --autopilot udpin://127.0.0.1:0 --camera " + camera,
+                   "expected sim:ardupilot or sim:px4");
+}
+
 // ArduPilot's own landing trails behind what drives in a curve.
 TEST_F(FlyCommandTest, LandingBesidePatternIsNoSuccess) {
   const Outcome outcome = Run(std::string("fly sim:figure8 --autopilot sim:ardupilot") + kNear);
@@ -173,6 +194,8 @@ TEST_F(FlyCommandTest, ReportsFaults) {
   ExpectInputError("fly sim:standing --set fly.rate_hz=0", "rate_hz");
   ExpectInputError("fly sim:standing --guide", "--autopilot URL");
   ExpectInputError(source + "sim:px4 --guide --rate 10", "at least 20 set-points");
+  ExpectInputError("fly sim:standing --point", "--autopilot URL");
+  ExpectInputError(source + "sim:px4 --point", "no gimbal to point");
   const std::string key = folder_.Write("key", std::string(64, 'a'));
   fs::permissions(key, fs::perms::owner_read | fs::perms::others_read);
   ExpectInputError(source + "sim:ardupilot --signing-key " + key, key);

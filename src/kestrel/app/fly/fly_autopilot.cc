@@ -31,7 +31,14 @@ void PrepareGuidance(std::string_view name, SimulatedAutopilotOptions* options) 
 
 FlyAutopilot MakeFlyAutopilot(const std::string& name, const FlyOptions& options, bool guides,
                               FlySource* source) {
-  if (!name.starts_with(kSimulated)) return {name, nullptr};
+  const bool has_gimbal = source->simulated.has_gimbal();
+  if (!name.starts_with(kSimulated)) {
+    if (!has_gimbal || name.empty()) return {name, nullptr};
+    throw InputError(fmt::format(
+        "autopilot {}: expected {} or {}: a sim: camera on a gimbal needs one that knows its "
+        "attitude",
+        name, kSimulatedArduPilot, kSimulatedPx4));
+  }
   if (name != kSimulatedArduPilot && name != kSimulatedPx4) {
     throw InputError(
         fmt::format("autopilot {}: expected {} or {}", name, kSimulatedArduPilot, kSimulatedPx4));
@@ -39,6 +46,7 @@ FlyAutopilot MakeFlyAutopilot(const std::string& name, const FlyOptions& options
   SimulatedAutopilotOptions simulated = options.sim_autopilot;
   simulated.firmware = name.substr(kSimulated.size());
   simulated.signing_key = options.link.signing_key;
+  simulated.model.has_gimbal = has_gimbal;
   if (guides) PrepareGuidance(name, &simulated);
   const auto seed = static_cast<std::uint64_t>(options.sim_seed);
   const int port = FreeLoopbackPort();

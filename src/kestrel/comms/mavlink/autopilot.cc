@@ -17,6 +17,7 @@ namespace {
 constexpr double kLandedRate_hz = 5;
 constexpr double kRangeRate_hz = 20;
 constexpr double kGimbalRate_hz = 50;
+constexpr double kGimbalControl_hz = 5;
 constexpr double kStatusRate_hz = 2;
 constexpr double kTruePoseRate_hz = 100;
 // After so long without a heartbeat the autopilot is away.
@@ -402,6 +403,10 @@ void Autopilot::WantStreams() {
   streams_.WantIfThere(mavlink::DistanceSensor::kId, kRangeRate_hz);
   if (gimbal_) streams_.WantIfThere(mavlink::GimbalDeviceAttitudeStatus::kId, kGimbalRate_hz);
   const bool is_px4 = kind_ == AutopilotKind::kPx4;
+  if (options_.points_gimbal) {
+    streams_.WantIfThere(mavlink::GimbalManagerStatus::kId, kGimbalControl_hz);
+    if (!is_px4) streams_.WantIfThere(mavlink::RcChannels::kId, kGimbalControl_hz);
+  }
   streams_.WantIfThere(is_px4 ? mavlink::CurrentMode::kId : mavlink::Heartbeat::kId,
                        options_.mode_rate_hz);
   streams_.WantIfThere(is_px4 ? mavlink::EstimatorStatus::kId : mavlink::EkfStatusReport::kId,

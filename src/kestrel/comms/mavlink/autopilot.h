@@ -36,6 +36,7 @@ struct AutopilotOptions {
   double mode_rate_hz = 0;
   bool wants_true_pose = false;                        // which only simulated vehicles know
   std::optional<int> gimbal_device_id = std::nullopt;  // see GimbalReports; nothing: no gimbal
+  bool points_gimbal = false;                          // wants what GimbalManager needs
   bool poses_as_ground_station = false;
 
   static void Visit(auto& self, auto&& visit) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/comms/mavlink/gimbal_reports.h"
 
+#include <chrono>
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -57,6 +58,19 @@ bool GimbalReports::IsWanted(int device_id) {
   return device_id == device_id_;
 }
 
+// An autopilot that is asked for more reports than its gimbal makes repeats the newest one with a
+// later time: a gimbal that turns would seem to turn in steps. One that stands is the same for
+// long.
+bool GimbalReports::IsRepeated(const GimbalSample& sample) {
+  constexpr Duration kSlowest = std::chrono::milliseconds(250);
+  const bool is_repeated =
+      newest_ && newest_->level_from_platform.coeffs() == sample.level_from_platform.coeffs() &&
+      newest_->yaw_frame == sample.yaw_frame && sample.time > newest_->time &&
+      sample.time - newest_->time < kSlowest;
+  if (!is_repeated) newest_ = sample;
+  return is_repeated;
+}
+
 std::optional<GimbalSample> GimbalReports::Handle(const mavlink::Packet& packet, Time received,
                                                   std::uint8_t autopilot, const TimeSync& clock) {
   std::optional<GimbalSample> sample;
@@ -79,6 +93,7 @@ std::optional<GimbalSample> GimbalReports::Handle(const mavlink::Packet& packet,
   const TimeSync& its_clock = packet.component == autopilot ? clock : own_clock_;
   if (!its_clock.is_known()) return std::nullopt;
   sample->time = its_clock.ToLocal(remote_ns);
+  if (IsRepeated(*sample)) return std::nullopt;
   return sample;
 }
 

@@ -27,8 +27,8 @@ class GimbalReports {
   explicit GimbalReports(int device_id) : wanted_(device_id) {}
 
   // Returns the sample in a packet of the vehicle; nothing when the packet is no report, is of
-  // another gimbal, or its clock is not known yet. 'autopilot' and 'clock' are the component and
-  // the clock of the autopilot.
+  // another gimbal, repeats the one before, or its clock is not known yet. 'autopilot' and 'clock'
+  // are the component and the clock of the autopilot.
   std::optional<GimbalSample> Handle(const mavlink::Packet& packet, Time received,
                                      std::uint8_t autopilot, const TimeSync& clock);
 
@@ -37,10 +37,12 @@ class GimbalReports {
 
  private:
   bool IsWanted(int device_id);
+  bool IsRepeated(const GimbalSample& sample);
 
   int wanted_;
   int device_id_ = 0;
   bool has_new_reports_ = false;  // MOUNT_ORIENTATION is then not needed
+  std::optional<GimbalSample> newest_;
   TimeSync own_clock_;
 };
 

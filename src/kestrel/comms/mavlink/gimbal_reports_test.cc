@@ -94,8 +94,9 @@ class GimbalOnLinkTest : public AutopilotTest {
     Start(options);
     Pass(5);
   }
-  void SendGimbal(int device_id, int component, std::uint32_t boot_ms) {
-    auto report = Report(mavlink::kGimbalYawInVehicleFrame, kPan_deg, 0);
+  // 'turned_deg': from where it looks at first.
+  void SendGimbal(int device_id, int component, std::uint32_t boot_ms, double turned_deg = 0) {
+    auto report = Report(mavlink::kGimbalYawInVehicleFrame, kPan_deg + turned_deg, 0);
     report.time_boot_ms = boot_ms;
     report.gimbal_device_id = static_cast<std::uint8_t>(device_id);
     SendMessage(report, 1, component);
@@ -136,10 +137,26 @@ TEST_F(GimbalOnLinkTest, LearnsClockOfGimbalThatIsComponent) {
   constexpr std::uint32_t kOtherBoot_ms = 7'000'000;
   for (int i = 0; i < 100; ++i) {
     Pass(0.05);
-    SendGimbal(0, kGimbal, BootMs() - kOtherBoot_ms);
+    SendGimbal(0, kGimbal, BootMs() - kOtherBoot_ms, i);
   }
   ASSERT_GT(gimbal_.size(), 20u);
   EXPECT_NEAR(ToSeconds(gimbal_.back().time - now_), 0, 0.005);
+}
+
+// An autopilot repeats the newest report of a slow gimbal, with later times.
+TEST_F(GimbalOnLinkTest, LeavesOutRepeatedReports) {
+  StartWithGimbal(0);
+  for (int i = 0; i < 40; ++i) {
+    Pass(0.02);
+    SendGimbal(1, 1, BootMs(), i / 10);
+  }
+  EXPECT_EQ(gimbal_.size(), 4u);
+  gimbal_.clear();
+  for (int i = 0; i < 100; ++i) {
+    Pass(0.02);
+    SendGimbal(1, 1, BootMs(), 3);
+  }
+  EXPECT_NEAR(gimbal_.size(), 8, 1) << "a gimbal that stands";
 }
 
 TEST_F(GimbalOnLinkTest, OldReportsYieldToNewOnes) {

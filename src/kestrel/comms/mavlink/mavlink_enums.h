@@ -33,7 +33,9 @@ inline constexpr std::uint8_t kAutopilotPx4 = 12;
 inline constexpr std::uint8_t kComponentAutopilot = 1;
 inline constexpr std::uint8_t kComponentOnboardComputer = 191;
 
-// GIMBAL_DEVICE_FLAGS
+// GIMBAL_DEVICE_FLAGS and GIMBAL_MANAGER_FLAGS
+inline constexpr std::uint16_t kGimbalRollLock = 4;
+inline constexpr std::uint16_t kGimbalPitchLock = 8;
 inline constexpr std::uint16_t kGimbalYawLock = 16;
 inline constexpr std::uint16_t kGimbalYawInVehicleFrame = 32;
 inline constexpr std::uint16_t kGimbalYawInEarthFrame = 64;
@@ -54,6 +56,8 @@ inline constexpr std::uint16_t kCommandDoSetMode = 176;
 inline constexpr std::uint16_t kCommandArmDisarm = 400;
 inline constexpr std::uint16_t kCommandSetMessageInterval = 511;
 inline constexpr std::uint16_t kCommandRequestMessage = 512;
+inline constexpr std::uint16_t kCommandGimbalPitchyaw = 1000;
+inline constexpr std::uint16_t kCommandGimbalConfigure = 1001;
 
 // MAV_RESULT
 inline constexpr std::uint8_t kResultAccepted = 0;

@@ -23,8 +23,8 @@ constexpr auto kTable =
               CommandAck, SetAttitudeTarget, SetPositionTargetLocalNed, SimState, Timesync,
               HilStateQuaternion, DistanceSensor, FollowTarget, AutopilotVersion, LandingTarget,
               EkfStatusReport, EstimatorStatus, HomePosition, MessageInterval, ExtendedSysState,
-              Statustext, MountOrientation, GimbalDeviceAttitudeStatus, CurrentMode,
-              TargetRelative>();
+              Statustext, MountOrientation, GimbalManagerInformation, GimbalManagerStatus,
+              GimbalDeviceAttitudeStatus, GimbalManagerSetPitchyaw, CurrentMode, TargetRelative>();
 
 constexpr bool IsSortedById() {
   return std::is_sorted(kTable.begin(), kTable.end(),
@@ -74,7 +74,10 @@ static_assert(Is<MessageInterval>(95, 6, 6));
 static_assert(Is<ExtendedSysState>(130, 2, 2));
 static_assert(Is<Statustext>(83, 51, 54));
 static_assert(Is<MountOrientation>(26, 16, 20));
+static_assert(Is<GimbalManagerInformation>(70, 33, 33));
+static_assert(Is<GimbalManagerStatus>(48, 13, 13));
 static_assert(Is<GimbalDeviceAttitudeStatus>(137, 40, 49));
+static_assert(Is<GimbalManagerSetPitchyaw>(1, 23, 23));
 static_assert(Is<CurrentMode>(193, 9, 9));
 static_assert(Is<TargetRelative>(28, 71, 71));
 

@@ -903,6 +903,54 @@ struct MountOrientation {
   }
 };
 
+struct GimbalManagerInformation {
+  static constexpr std::uint32_t kId = 280;
+  static constexpr std::string_view kName = "GIMBAL_MANAGER_INFORMATION";
+  std::uint32_t time_boot_ms = 0;
+  std::uint32_t cap_flags = 0;
+  std::uint8_t gimbal_device_id = 0;
+  float roll_min = 0;
+  float roll_max = 0;
+  float pitch_min = 0;
+  float pitch_max = 0;
+  float yaw_min = 0;
+  float yaw_max = 0;
+
+  static constexpr void Visit(auto& self, auto&& visitor) {
+    visitor("time_boot_ms", self.time_boot_ms, "ms");
+    visitor("cap_flags", self.cap_flags, "");
+    visitor("gimbal_device_id", self.gimbal_device_id, "");
+    visitor("roll_min", self.roll_min, "rad");
+    visitor("roll_max", self.roll_max, "rad");
+    visitor("pitch_min", self.pitch_min, "rad");
+    visitor("pitch_max", self.pitch_max, "rad");
+    visitor("yaw_min", self.yaw_min, "rad");
+    visitor("yaw_max", self.yaw_max, "rad");
+  }
+};
+
+struct GimbalManagerStatus {
+  static constexpr std::uint32_t kId = 281;
+  static constexpr std::string_view kName = "GIMBAL_MANAGER_STATUS";
+  std::uint32_t time_boot_ms = 0;
+  std::uint32_t flags = 0;
+  std::uint8_t gimbal_device_id = 0;
+  std::uint8_t primary_control_sysid = 0;
+  std::uint8_t primary_control_compid = 0;
+  std::uint8_t secondary_control_sysid = 0;
+  std::uint8_t secondary_control_compid = 0;
+
+  static constexpr void Visit(auto& self, auto&& visitor) {
+    visitor("time_boot_ms", self.time_boot_ms, "ms");
+    visitor("flags", self.flags, "");
+    visitor("gimbal_device_id", self.gimbal_device_id, "");
+    visitor("primary_control_sysid", self.primary_control_sysid, "");
+    visitor("primary_control_compid", self.primary_control_compid, "");
+    visitor("secondary_control_sysid", self.secondary_control_sysid, "");
+    visitor("secondary_control_compid", self.secondary_control_compid, "");
+  }
+};
+
 struct GimbalDeviceAttitudeStatus {
   static constexpr std::uint32_t kId = 285;
   static constexpr std::string_view kName = "GIMBAL_DEVICE_ATTITUDE_STATUS";
@@ -933,6 +981,30 @@ struct GimbalDeviceAttitudeStatus {
     visitor("delta_yaw", self.delta_yaw, "rad");
     visitor("delta_yaw_velocity", self.delta_yaw_velocity, "rad/s");
     visitor("gimbal_device_id", self.gimbal_device_id, "");
+  }
+};
+
+struct GimbalManagerSetPitchyaw {
+  static constexpr std::uint32_t kId = 287;
+  static constexpr std::string_view kName = "GIMBAL_MANAGER_SET_PITCHYAW";
+  std::uint8_t target_system = 0;
+  std::uint8_t target_component = 0;
+  std::uint32_t flags = 0;
+  std::uint8_t gimbal_device_id = 0;
+  float pitch = 0;
+  float yaw = 0;
+  float pitch_rate = 0;
+  float yaw_rate = 0;
+
+  static constexpr void Visit(auto& self, auto&& visitor) {
+    visitor("target_system", self.target_system, "");
+    visitor("target_component", self.target_component, "");
+    visitor("flags", self.flags, "");
+    visitor("gimbal_device_id", self.gimbal_device_id, "");
+    visitor("pitch", self.pitch, "rad");
+    visitor("yaw", self.yaw, "rad");
+    visitor("pitch_rate", self.pitch_rate, "rad/s");
+    visitor("yaw_rate", self.yaw_rate, "rad/s");
   }
 };
 

@@ -10,7 +10,7 @@
 namespace kestrel {
 namespace {
 
-constexpr std::array<ListedCheck, 36> kChecks = {{
+constexpr std::array<ListedCheck, 41> kChecks = {{
     {"image size", "images have the size of the calibration"},
     {"lens model", "every pixel has a ray: the distortion does not bend back before the rim"},
     {"principal point, pixels", "the optical axis is near the middle, and pixels are square"},
@@ -37,6 +37,11 @@ constexpr std::array<ListedCheck, 36> kChecks = {{
     {"autopilot's clock", "TIMESYNC is answered, and the clock does not jump"},
     {"round trip", "at most 100 ms, with px4-vte 10 ms"},
     {"others on the line", "one companion, one set of ids, one source of landing targets"},
+    {"gimbal", "of a camera on one: reports at least 10 times a second"},
+    {"gimbal's motors", "its attitude neither jumps nor tilts with the UAV"},
+    {"gimbal against images", "by its reports the pattern stays where it is"},
+    {"gimbal's control", "--point, --guide: nobody else has it"},
+    {"gimbal's range", "the camera can look straight down"},
     {"frame of the target", "--profile is that of the autopilot"},
     {"moving target", "with PX4 only by kestrel fly --guide"},
     {"latency", "from light to message as PLND_LAG has it, and below 150 ms"},

@@ -38,6 +38,7 @@ TEST(DoctorTest, FlagsNothingOnGoodSetup) {
   for (const AutopilotKind kind : {AutopilotKind::kArduPilot, AutopilotKind::kPx4}) {
     EXPECT_THAT(Flagged(Check(GoodSetup(kind))), IsEmpty()) << ToString(kind);
     EXPECT_THAT(Flagged(Check(GoodGuidedSetup(kind))), IsEmpty()) << ToString(kind);
+    EXPECT_THAT(Flagged(Check(OnGimbal(GoodSetup(kind)))), IsEmpty()) << ToString(kind);
   }
 }
 
@@ -52,7 +53,7 @@ TEST(DoctorTest, ListsEveryCheck) {
   for (const ListedCheck& check : ListedChecks()) listed.emplace_back(check.name);
   for (const AutopilotKind kind : {AutopilotKind::kArduPilot, AutopilotKind::kPx4}) {
     for (const ListedCheck& check : CheckedParameters(kind)) listed.emplace_back(check.name);
-    for (const auto& setup : {GoodSetup(kind), GoodGuidedSetup(kind)}) {
+    for (const auto& setup : {GoodSetup(kind), GoodGuidedSetup(kind), OnGimbal(GoodSetup(kind))}) {
       for (const Finding& finding : Check(setup)) EXPECT_THAT(listed, Contains(finding.check));
     }
   }
@@ -232,12 +233,6 @@ std::vector<Fault> LinkFaults() {
        "921600"},
       {"position lost", Setup::kPx4, [](DoctorObservations* all) { all->link.position_age_s = 3; },
        "position", Verdict::kWrong, "3.0 s ago"},
-      {"a gimbal that is silent", Setup::kArduPilot,
-       [](DoctorObservations* all) { all->link.gimbal_reports = 0; }, "gimbal", Verdict::kWrong,
-       "MNT1_TYPE"},
-      {"a gimbal that reports seldom", Setup::kPx4,
-       [](DoctorObservations* all) { all->link.gimbal_reports = 20; }, "gimbal", Verdict::kDoubtful,
-       "10 or more"},
       {"position not trusted", Setup::kArduPilot,
        [](DoctorObservations* all) { all->link.has_good_position = false; }, "position estimate",
        Verdict::kWrong, "GNSS"},
@@ -265,6 +260,66 @@ std::vector<Fault> LinkFaults() {
       {"another source of targets", Setup::kArduPilot,
        [](DoctorObservations* all) { all->link.events = {"somebody else sends targets"}; },
        "others on the line", Verdict::kDoubtful, "targets"},
+  };
+}
+
+// A fault of a set-up with a gimbal.
+Break Gimbal(const Break& change, double echo_s = 0) {
+  return [=](DoctorObservations* all) {
+    *all = OnGimbal(*all, echo_s);
+    change(all);
+  };
+}
+
+std::vector<Fault> GimbalFaults() {
+  const auto each = [](const std::function<void(GimbalObservation*)>& change) {
+    return [=](DoctorObservations* all) {
+      for (GimbalObservation& report : all->gimbal.reports) change(&report);
+    };
+  };
+  return {
+      {"a gimbal that is silent", Setup::kArduPilot,
+       Gimbal([](DoctorObservations* all) { all->link.gimbal_reports = 0; }), "gimbal",
+       Verdict::kWrong, "MNT1_TYPE"},
+      {"a gimbal that reports seldom", Setup::kPx4,
+       Gimbal([](DoctorObservations* all) { all->link.gimbal_reports = 20; }), "gimbal",
+       Verdict::kDoubtful, "10 or more"},
+      {"a gimbal in another frame than its flags say", Setup::kArduPilot,
+       Gimbal(each([](auto* report) { report->sample.yaw_frame = YawFrame::kVehicle; })),
+       "gimbal against images", Verdict::kWrong, "against north"},
+      {"an echoed set-point", Setup::kPx4, Gimbal([](DoctorObservations*) {}, 0.15),
+       "gimbal against images", Verdict::kWrong, "0.15 s behind its reports"},
+      {"a set-point that jumps", Setup::kPx4, Gimbal([](DoctorObservations* all) {
+         auto& attitude = all->gimbal.reports[50].sample.level_from_platform;
+         attitude = attitude * Eigen::AngleAxisd(Radians(40), Eigen::Vector3d::UnitY());
+       }),
+       "gimbal's motors", Verdict::kWrong, "set-point"},
+      {"a gimbal that is locked", Setup::kArduPilot, Gimbal(each([](auto* report) {
+         report->sample.level_from_platform = report->world_from_body;
+       })),
+       "gimbal's motors", Verdict::kWrong, "locked to the UAV"},
+      {"a gimbal controlled by another", Setup::kPx4, Gimbal([](DoctorObservations* all) {
+         all->gimbal.controller = {255, 190};
+       }),
+       "gimbal's control", Verdict::kDoubtful, "system 255 component 190"},
+      {"a gimbal that cannot look down", Setup::kArduPilot,
+       Gimbal([](DoctorObservations* all) { all->gimbal.range->lowest = Radians(45); }),
+       "gimbal's range", Verdict::kWrong, "45 deg below the horizon"},
+      {"MNT1_TYPE of none", Setup::kArduPilot, Gimbal(Parameter("MNT1_TYPE", 0)), "MNT1_TYPE",
+       Verdict::kWrong, "no gimbal"},
+      {"MNT1_TYPE of servos", Setup::kArduPilot, Gimbal(Parameter("MNT1_TYPE", 1)), "MNT1_TYPE",
+       Verdict::kDoubtful, "set-point"},
+      {"MNT1_DEFLT_MODE retracted", Setup::kArduPilot, Gimbal(Parameter("MNT1_DEFLT_MODE", 0)),
+       "MNT1_DEFLT_MODE", Verdict::kDoubtful, "retracted"},
+      {"MNT_MODE_IN off", Setup::kPx4, Gimbal(Parameter("MNT_MODE_IN", -1)), "MNT_MODE_IN",
+       Verdict::kWrong, "ignored"},
+      {"MNT_MODE_OUT of servos", Setup::kPx4, Gimbal(Parameter("MNT_MODE_OUT", 0)), "MNT_MODE_OUT",
+       Verdict::kDoubtful, "set-point"},
+      {"MAV_1_FORWARD off", Setup::kPx4, Gimbal([](DoctorObservations* all) {
+         all->link.gimbal_reports = 0;
+         Parameter("MAV_1_FORWARD", 0)(all);
+       }),
+       "MAV_1_FORWARD", Verdict::kDoubtful, "forwarded"},
   };
 }
 
@@ -434,6 +489,7 @@ TEST_P(DoctorFaultTest, IsReported) {
 
 INSTANTIATE_TEST_SUITE_P(Camera, DoctorFaultTest, ::testing::ValuesIn(CameraFaults()));
 INSTANTIATE_TEST_SUITE_P(Mount, DoctorFaultTest, ::testing::ValuesIn(MountFaults()));
+INSTANTIATE_TEST_SUITE_P(Gimbal, DoctorFaultTest, ::testing::ValuesIn(GimbalFaults()));
 INSTANTIATE_TEST_SUITE_P(Link, DoctorFaultTest, ::testing::ValuesIn(LinkFaults()));
 INSTANTIATE_TEST_SUITE_P(Parameters, DoctorFaultTest, ::testing::ValuesIn(ParameterFaults()));
 INSTANTIATE_TEST_SUITE_P(Computer, DoctorFaultTest, ::testing::ValuesIn(ComputerFaults()));

@@ -12,6 +12,7 @@
 #include "kestrel/flight/doctor/calibration_checks.h"
 #include "kestrel/flight/doctor/camera_checks.h"
 #include "kestrel/flight/doctor/computer_checks.h"
+#include "kestrel/flight/doctor/gimbal_checks.h"
 #include "kestrel/flight/doctor/link_checks.h"
 #include "kestrel/flight/doctor/mount_checks.h"
 #include "kestrel/flight/doctor/parameter_checks.h"
@@ -44,6 +45,9 @@ Examination::Examination(const LandingPipelineOptions& options, const LiveEvents
       events_(events, ClockOffsetOf(parts.calibration)),
       poses_(kRememberedPoses, kLargestGap) {
   if (parts.source != nullptr) pipeline_.emplace(WithoutMount(parts.calibration), options);
+  if (const auto& gimbal = parts.calibration.gimbal; gimbal && parts.autopilot != nullptr) {
+    manager_.emplace(gimbal->device_id, parts.autopilot, parts.connection);
+  }
 }
 
 void Examination::Run(Duration duration, const std::function<bool()>& is_stopped,
@@ -130,8 +134,10 @@ void Examination::Communicate(Time now) {
   parts_.connection->Receive(kLinkPatience, [this](const mavlink::Packet& packet, Time received) {
     TakePacket(packet, received);
     parts_.autopilot->Handle(packet, received);
+    if (manager_) manager_->Handle(packet);
   });
   parts_.autopilot->Tick(now);
+  if (manager_) manager_->Tick(now);
   if (parts_.autopilot->is_here()) WantParameters();
 }
 
@@ -148,6 +154,18 @@ void Examination::TakePacket(const mavlink::Packet& packet, Time received) {
   if (!listening_) return;
   attitudes_ += is_attitude ? 1 : 0;
   positions_ += is_position ? 1 : 0;
+}
+
+void Examination::TakePose(const PoseSample& pose) {
+  events_.Push(pose);
+  world_from_body_ = pose.world_from_body.rotation;
+}
+
+void Examination::TakeGimbal(const GimbalSample& report) {
+  constexpr std::size_t kMost = 5000;
+  events_.Push(report);
+  gimbal_reports_ += listening_ ? 1 : 0;
+  if (world_from_body_ && gimbal_.size() < kMost) gimbal_.push_back({report, *world_from_body_});
 }
 
 void Examination::WantParameters() {
@@ -198,6 +216,7 @@ void Examination::Summarize(Time start, Time end, DoctorObservations* observatio
   observations->camera.is_on_ground =
       !parts_.autopilot->is_armed() && parts_.autopilot->landed_state() == LandedState::kOnGround;
   SummarizeLink(end, &observations->link);
+  SummarizeGimbal(&observations->gimbal);
   SummarizeParameters(&observations->parameters);
 }
 
@@ -250,6 +269,15 @@ void Examination::SummarizeLink(Time end, LinkObservations* link) const {
   link->events = reported_;
 }
 
+void Examination::SummarizeGimbal(GimbalObservations* gimbal) const {
+  if (!manager_) return;
+  gimbal->reports = gimbal_;
+  gimbal->range = manager_->range();
+  if (const auto& status = manager_->status()) {
+    gimbal->controller = {status->primary_control_sysid, status->primary_control_compid};
+  }
+}
+
 void Examination::SummarizeParameters(ParameterValues* values) const {
   const ParameterReader& reader = parts_.autopilot->parameters();
   for (const auto& [name, wants] : CheckedParameters(parts_.autopilot->kind())) {
@@ -280,6 +308,7 @@ std::vector<Finding> Check(const DoctorObservations& observations) {
   add(CheckCamera(observations.camera));
   add(CheckMount(observations));
   add(CheckLink(observations.link, observations.use));
+  add(CheckGimbal(observations));
   add(CheckParameters(observations));
   add(CheckComputer(observations));
   return findings;

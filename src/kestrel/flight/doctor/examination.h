@@ -9,6 +9,7 @@
 
 #include "kestrel/comms/mavlink/autopilot.h"
 #include "kestrel/comms/mavlink/connection.h"
+#include "kestrel/comms/mavlink/gimbal_manager.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/core/poses/pose_history.h"
@@ -38,11 +39,8 @@ class Examination {
 
   // Takes a pose of the autopilot, on the local clock, from its listener. Called by the thread that
   // calls Run.
-  void TakePose(const PoseSample& pose) { events_.Push(pose); }
-  void TakeGimbal(const GimbalSample& report) {
-    events_.Push(report);
-    gimbal_reports_ += listening_ ? 1 : 0;
-  }
+  void TakePose(const PoseSample& pose);
+  void TakeGimbal(const GimbalSample& report);
   // Takes an event from the autopilot's listener. Called by the same thread.
   void TakeEvent(const AutopilotEvent& event);
 
@@ -61,6 +59,7 @@ class Examination {
   void Summarize(Time start, Time end, DoctorObservations* observations) const;
   void SummarizeVision(VisionObservations* vision) const;
   void SummarizeLink(Time end, LinkObservations* link) const;
+  void SummarizeGimbal(GimbalObservations* gimbal) const;
   void SummarizeParameters(ParameterValues* values) const;
 
   ExaminationParts parts_;
@@ -87,6 +86,9 @@ class Examination {
   bool is_one_way_ = false;  // TIMESYNC is not answered
   int attitudes_ = 0;
   int gimbal_reports_ = 0;
+  std::optional<GimbalManager> manager_;  // of the camera's gimbal; it takes no control
+  std::vector<GimbalObservation> gimbal_;
+  std::optional<Eigen::Quaterniond> world_from_body_;  // by the newest pose
   int positions_ = 0;
   std::optional<Time> heard_;      // time of the first message
   std::optional<Time> listening_;  // time since which the streams are counted

@@ -187,24 +187,6 @@ Finding CheckPositions(const LinkObservations& link, const DoctorUse& use) {
                      "SR2_POSITION or MAV2_POSITION 50 (ArduPilot), MAV_1_MODE 2 (PX4)");
 }
 
-Finding CheckGimbal(const LinkObservations& link) {
-  constexpr double kLeast_hz = 10;
-  const std::string check = "gimbal";
-  if (link.listened_s <= 0) return NotChecked(check, "the autopilot was not heard for long enough");
-  const double rate_hz = *link.gimbal_reports / link.listened_s;
-  if (*link.gimbal_reports == 0) {
-    return Wrong(
-        check, "no report came",
-        "MNT1_TYPE (ArduPilot), MNT_MODE_OUT 2 and MAV_n_FORWARD 1 on both lines (PX4); is "
-        "gimbal.device_id in the camera's file right?");
-  }
-  const std::string measured = fmt::format("{:.0f} reports/s", rate_hz);
-  if (rate_hz >= kLeast_hz) return Good(check, measured);
-  return Doubtful(check, measured,
-                  "10 or more: between slow reports the attitude of a gimbal that turns is a guess "
-                  "(SR2_EXTRA3 or MAV2_EXTRA3 50, ArduPilot)");
-}
-
 Finding CheckEstimate(const LinkObservations& link) {
   const std::string check = "position estimate";
   if (!link.has_good_position) return NotChecked(check, "the autopilot does not report it");
@@ -273,7 +255,6 @@ std::vector<Finding> CheckLink(const LinkObservations& link, const DoctorUse& us
   findings.push_back(CheckVehicle(link));
   findings.push_back(CheckAttitudes(link, use));
   findings.push_back(CheckPositions(link, use));
-  if (link.gimbal_reports) findings.push_back(CheckGimbal(link));
   findings.push_back(CheckEstimate(link));
   findings.push_back(CheckAutopilotClock(link));
   findings.push_back(CheckRoundTrip(link, use));

@@ -16,7 +16,6 @@ Finding CheckVersion(const LinkObservations& link);
 Finding CheckVehicle(const LinkObservations& link);
 Finding CheckAttitudes(const LinkObservations& link, const DoctorUse& use);
 Finding CheckPositions(const LinkObservations& link, const DoctorUse& use);
-Finding CheckGimbal(const LinkObservations& link);
 Finding CheckEstimate(const LinkObservations& link);  // by the autopilot's own estimator
 Finding CheckAutopilotClock(const LinkObservations& link);
 Finding CheckRoundTrip(const LinkObservations& link, const DoctorUse& use);

@@ -13,6 +13,8 @@
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/core/poses/gimbal_angles.h"
+#include "kestrel/core/poses/gimbal_history.h"
 #include "kestrel/flight/doctor/image_quality.h"
 #include "kestrel/flight/doctor/parameter_values.h"
 #include "kestrel/flight/session/live_source.h"
@@ -27,6 +29,7 @@ namespace kestrel {
 struct DoctorUse {
   std::optional<LinkProfile> profile;  // nothing: chosen by the heartbeat
   bool guides = false;                 // Kestrel flies the UAV by set-points
+  bool points = false;                 // and points the gimbal, if there is one
   std::optional<double> target_mps;    // speed of a target that moves; nothing: it stands
   double tilt_deg = 30;                // by which guidance may lean
   bool sends_distance = false;         // DISTANCE_SENSOR too
@@ -115,6 +118,23 @@ struct LinkObservations {
   int autopilot_system = 0;
 };
 
+// A report of the gimbal, and the attitude of the UAV at that time.
+struct GimbalObservation {
+  GimbalSample sample;
+  Eigen::Quaterniond world_from_body = Eigen::Quaterniond::Identity();
+};
+
+struct GimbalObservations {
+  std::vector<GimbalObservation> reports;  // in order of time
+  std::optional<GimbalRange> range;        // as the autopilot reports it
+  // Who has primary control, by MAVLink's ids, 0: nobody; nothing: the autopilot does not say.
+  struct Controller {
+    int system = 0;
+    int component = 0;
+  };
+  std::optional<Controller> controller;
+};
+
 struct ComputerObservations {
   int cores = 1;
   double load = 0;                           // processes that run or wait, mean of a minute
@@ -137,6 +157,7 @@ struct DoctorObservations {
   CameraObservations camera;
   VisionObservations vision;
   LinkObservations link;
+  GimbalObservations gimbal;
   ParameterValues parameters;
   ComputerObservations computer;
 };

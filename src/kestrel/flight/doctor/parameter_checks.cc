@@ -17,7 +17,7 @@
 namespace kestrel {
 namespace {
 
-constexpr std::array<ListedCheck, 23> kOfArduPilot = {{
+constexpr std::array<ListedCheck, 25> kOfArduPilot = {{
     {"PLND_ENABLED", "1"},
     {"PLND_TYPE", "1, targets by MAVLink"},
     {"PLND_ORIENT", "25, down"},
@@ -41,9 +41,11 @@ constexpr std::array<ListedCheck, 23> kOfArduPilot = {{
     {"FS_GCS_ENABLE", "--guide: not 5, which lands on the spot"},
     {"WP_ACC", "--guide --moving: at least 4 m/s^2"},
     {"PSC_JERK_NE", "--guide --moving: at least 12 m/s^3"},
+    {"MNT1_TYPE", "with a gimbal: its type; 1, servos, reports the set-point"},
+    {"MNT1_DEFLT_MODE", "with a gimbal: not 0, retracted"},
 }};
 
-constexpr std::array<ListedCheck, 20> kOfPx4 = {{
+constexpr std::array<ListedCheck, 25> kOfPx4 = {{
     {"VTE_EN", "1 with the profile px4-vte, else 0; not with --guide"},
     {"VTE_AID_MASK", "bit 1, with the profile px4-vte"},
     {"LTEST_MODE", "--moving: 0"},
@@ -64,6 +66,11 @@ constexpr std::array<ListedCheck, 20> kOfPx4 = {{
     {"LNDMC_XY_VEL_MAX", "--guide: above the target's speed, else it does not disarm"},
     {"MPC_XY_VEL_MAX", "--guide: above the target's speed"},
     {"MPC_TILTMAX_AIR", "--guide: at least fly.guidance.limits.max_tilt_deg"},
+    {"MNT_MODE_IN", "with a gimbal: 0 or 4, MAVLink's gimbal protocol v2"},
+    {"MNT_MODE_OUT", "with a gimbal: 2; 0, servos, reports the set-point"},
+    {"MAV_0_FORWARD", "with a gimbal that is not heard: 1"},
+    {"MAV_1_FORWARD", "with a gimbal that is not heard: 1"},
+    {"MAV_2_FORWARD", "with a gimbal that is not heard: 1"},
 }};
 
 // Speed of a vehicle when none is given, from the paper: 15 km/h.
@@ -284,6 +291,29 @@ void CheckAgilityOfArduPilot(ParameterRules* rules) {
                      {kJerk, "changes its acceleration too slowly to follow a curve closely"});
 }
 
+// The type of a gimbal is not Kestrel's to choose.
+void CheckGimbalOfArduPilot(ParameterRules* rules) {
+  constexpr double kServo = 1, kMavlinkTargeting = 2;
+  const auto type = rules->Find("MNT1_TYPE");
+  const int device_id = rules->all().calibration.gimbal->device_id;
+  if (!type || device_id > 1) return;  // another mount
+  const std::string measured = fmt::format("{:g}", *type);
+  if (*type == 0) {
+    rules->Add(Wrong("MNT1_TYPE", measured + ": ArduPilot has no gimbal",
+                     "the type of the gimbal (6 Gremsy and MAVLink, 8 Siyi, 11 Viewpro, 12 "
+                     "Topotek), then reboot"));
+  } else if (*type == kServo) {
+    rules->Add(Doubtful("MNT1_TYPE", measured + ": servos; the reported attitude is the set-point",
+                        "a gimbal that reports its attitude; else kestrel calibrate mount --both "
+                        "finds the delay of the servos, and no more"));
+  } else {
+    rules->Add(Good("MNT1_TYPE", measured));
+  }
+  rules->Want("MNT1_DEFLT_MODE", Verdict::kDoubtful,
+              {kMavlinkTargeting, "it starts retracted, and stays so until it is sent elsewhere"},
+              [](double mode) { return mode != 0; });
+}
+
 void CheckArduPilot(ParameterRules* rules) {
   CheckPrecisionLandingOfArduPilot(rules);
   if (rules->moves()) CheckMovingTargetOfArduPilot(rules);
@@ -292,6 +322,7 @@ void CheckArduPilot(ParameterRules* rules) {
   CheckTrustOfArduPilot(rules);
   if (rules->all().use.guides) CheckGuidanceOfArduPilot(rules);
   if (rules->all().use.guides && rules->moves()) CheckAgilityOfArduPilot(rules);
+  if (rules->all().calibration.gimbal) CheckGimbalOfArduPilot(rules);
 }
 
 // --- PX4 ---
@@ -425,6 +456,26 @@ void CheckGuidanceOfPx4(ParameterRules* rules) {
   CheckTilt("MPC_TILTMAX_AIR", rules);
 }
 
+void CheckGimbalOfPx4(ParameterRules* rules) {
+  constexpr double kAutomatic = 0, kProtocol = 4, kMavlink = 2;
+  if (rules->all().use.points) {
+    rules->Want("MNT_MODE_IN", Verdict::kWrong,
+                {kProtocol, "set-points of MAVLink's gimbal protocol v2 are ignored", true},
+                [](double mode) { return mode == kAutomatic || mode == kProtocol; });
+  }
+  rules->WantExactly("MNT_MODE_OUT", Verdict::kDoubtful,
+                     {kMavlink,
+                      "PX4 reports the set-point as the attitude: where the camera looks is not "
+                      "known",
+                      true});
+  if (rules->all().link.gimbal_reports.value_or(0) > 0) return;
+  for (const std::string_view name : {"MAV_0_FORWARD", "MAV_1_FORWARD", "MAV_2_FORWARD"}) {
+    rules->WantExactly(
+        name, Verdict::kDoubtful,
+        {1, "reports of a gimbal on another line are not forwarded to this one", true});
+  }
+}
+
 void CheckPx4(ParameterRules* rules) {
   if (!rules->all().use.guides) {
     CheckTargetsOfPx4(rules);
@@ -433,6 +484,7 @@ void CheckPx4(ParameterRules* rules) {
   CheckLandingOfPx4(rules);
   CheckEstimatorOfPx4(rules);
   if (rules->all().use.guides) CheckGuidanceOfPx4(rules);
+  if (rules->all().calibration.gimbal) CheckGimbalOfPx4(rules);
 }
 
 double LinkDelayOf(const DoctorObservations& observations) {

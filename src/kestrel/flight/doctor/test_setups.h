@@ -134,6 +134,57 @@ inline DoctorObservations GoodSetup(AutopilotKind kind) {
   return all;
 }
 
+// A UAV that flies and turns beside the origin, and the attitude of a gimbal that looks about
+// there.
+inline RigidTransform TurningPose(double time_s) {
+  RigidTransform pose = HeldPose(time_s, 10);
+  pose.rotation =
+      RotationBy(0.8 * std::sin(0.9 * time_s) * Eigen::Vector3d::UnitZ()) * pose.rotation;
+  pose.translation += Eigen::Vector3d(1.5 + 0.5 * std::sin(time_s), std::cos(time_s), 0);
+  return pose;
+}
+inline Eigen::Quaterniond MovingGaze(double time_s) {
+  const Eigen::Vector3d ray = -TurningPose(time_s).translation;
+  return GimbalAngles{std::atan2(ray.y(), ray.x()) + 0.3 * std::sin(1.9 * time_s),
+                      std::atan2(-ray.z(), ray.head<2>().norm()) + 0.15 * std::sin(2.3 * time_s)}
+      .rotation();
+}
+
+// The same set-up with the camera on a gimbal, over which the UAV turns. 'echo_s': so much later
+// than its reports the gimbal is where they say.
+inline DoctorObservations OnGimbal(DoctorObservations all, double echo_s = 0) {
+  GimbalMount& mount = all.calibration.gimbal.emplace();
+  Eigen::Matrix3d axes;
+  axes << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  mount.platform_from_camera.rotation = Eigen::Quaterniond(axes);
+  all.vision.patterns.clear();
+  for (int i = 0; i < kFrames; ++i) {
+    const double time_s = kPeriod_s * i;
+    const RigidTransform body = TurningPose(time_s);
+    all.gimbal.reports.push_back(
+        {{FrameTime(i), MovingGaze(time_s), YawFrame::kEarth}, body.rotation});
+    PatternSample sample;
+    sample.time = FrameTime(i);
+    sample.world_from_body = body;
+    const RigidTransform platform{MovingGaze(time_s - echo_s), body.translation};
+    sample.camera_from_target = (platform * mount.platform_from_camera).Inverse();
+    sample.ring_px = 100;
+    sample.misfit_px = 0.2;
+    all.vision.patterns.push_back(sample);
+  }
+  all.link.gimbal_reports = 100;
+  all.gimbal.range = GimbalRange{};
+  all.gimbal.controller = {0, 0};
+  all.use.points = true;
+  const auto set = [&](const std::string& name, double value) {
+    if (all.parameters.contains(name)) all.parameters[name].value = value;
+  };
+  set("MNT1_TYPE", 6);
+  set("MNT_MODE_IN", 4);
+  set("MNT_MODE_OUT", 2);
+  return all;
+}
+
 // A set-up that is also right for guidance onto a car.
 inline DoctorObservations GoodGuidedSetup(AutopilotKind kind) {
   DoctorObservations all = GoodSetup(kind);

@@ -49,6 +49,9 @@ FlightProgram::FlightProgram(const FlightOptions& options, const FlightParts& pa
     guided_.emplace(options, pad_.tracker, !parts.source_has_poses, parts.autopilot,
                     parts.connection, report_);
   }
+  if (parts.pointed != nullptr) {
+    gimbal_.emplace(options, *parts.pointed, pad_, parts.autopilot, parts.connection, report_);
+  }
   if (parts.guard != nullptr) {
     guard_.emplace(parts.guard, parts.autopilot, parts.connection, options.guard, report_);
   }
@@ -270,11 +273,13 @@ void FlightProgram::Communicate() {
     link_life_.Give(Now());
     parts_.connection->Receive(kLinkPatience, [this](const mavlink::Packet& packet, Time received) {
       parts_.autopilot->Handle(packet, received);
+      if (gimbal_) gimbal_->Handle(packet);
     });
     if (parts_.source_has_poses) poses_.Add(source_pose_.Get());  // a repeated one is ignored
     const Time now = Now();
     parts_.autopilot->Tick(now);
     SendTarget(now);
+    if (gimbal_) gimbal_->Point(now, track_.Get(), poses_);
     WatchFlight(now);
     if (guard_ && !guard_->Watch(now, *guided_)) {
       End({FlightOutcome::kNotLanded, {}, guard_->reason()});
@@ -302,6 +307,11 @@ void FlightProgram::TakeAutopilotPose(const PoseSample& pose) {
   if (parts_.source_has_poses) return;
   poses_.Add(pose);
   TakePose(pose);
+}
+
+void FlightProgram::TakeAutopilotGimbal(const GimbalSample& report) {
+  if (gimbal_) gimbal_->TakeReport(report);
+  TakeGimbal(report);
 }
 
 void FlightProgram::WatchFlight(Time now) {

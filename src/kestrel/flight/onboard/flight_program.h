@@ -22,6 +22,7 @@
 #include "kestrel/flight/onboard/guided_flight.h"
 #include "kestrel/flight/onboard/landing_watch.h"
 #include "kestrel/flight/onboard/latency_statistics.h"
+#include "kestrel/flight/onboard/pointed_gimbal.h"
 #include "kestrel/flight/onboard/recording_switch.h"
 #include "kestrel/flight/onboard/sign_of_life.h"
 #include "kestrel/flight/onboard/target_sender.h"
@@ -47,10 +48,11 @@ struct FlightParts {
   RecordingSwitch* recording = nullptr;
   ObservationSink* tables = nullptr;
   ObservationSink* sink = nullptr;
-  bool guides = false;                 // flies by set-points when the pilot gives the mode
-  bool source_has_poses = false;       // the autopilot's poses are then not used
-  bool sees_repeated = false;          // processes images that equal the one before
-  std::optional<LinkProfile> profile;  // nothing: chosen by the heartbeat
+  const CameraCalibration* pointed = nullptr;  // with the gimbal to point; null: none is pointed
+  bool guides = false;                         // flies by set-points when the pilot gives the mode
+  bool source_has_poses = false;               // the autopilot's poses are then not used
+  bool sees_repeated = false;                  // processes images that equal the one before
+  std::optional<LinkProfile> profile;          // nothing: chosen by the heartbeat
   // Returns the true pattern at the time of a frame, in a simulation that knows it.
   std::function<std::optional<TruePattern>(const Frame&)> truth;
   // Returns the true offset of the touch-down, in a simulation that knows it, see FlightEnd.
@@ -87,8 +89,8 @@ class FlightProgram {
   // Takes a pose of the autopilot, on the local clock, from its listener. Called by the thread in
   // which Run lets the connection receive.
   void TakeAutopilotPose(const PoseSample& pose);
-  // Takes a report of the gimbal, as above.
-  void TakeGimbal(const GimbalSample& report);
+  // Takes a report of the gimbal by the autopilot, as above.
+  void TakeAutopilotGimbal(const GimbalSample& report);
 
  private:
   // The steps whose latency is measured.
@@ -105,6 +107,7 @@ class FlightProgram {
   void WarnOnce();
   void Take(Event event);
   void TakePose(const PoseSample& pose);
+  void TakeGimbal(const GimbalSample& report);
   void SendTarget(Time now);
   void WatchFlight(Time now);
   LandingWatchInput LandingInput(Time now);
@@ -137,6 +140,7 @@ class FlightProgram {
   PadInSight pad_;
   std::optional<TargetSender> sender_;
   std::optional<GuidedFlight> guided_;
+  std::optional<PointedGimbal> gimbal_;
   TurnNoise noise_;  // of the predicted track
   std::optional<GuardWatch> guard_;
   LandingWatch landing_;

@@ -100,6 +100,7 @@ class Flight : public LiveSession {
 
  private:
   FlightOptions& flight() { return options_.flight; }
+  bool Points() const;
   void OpenTables();
   void OpenExposure();
   void StayWithinSight(double range_m);
@@ -164,6 +165,13 @@ std::string Flight::Summary() const {
   return summary;
 }
 
+bool Flight::Points() const {
+  if (options_.points && !live_.calibration.gimbal) {
+    throw InputError("the camera's file has no gimbal to point (docs/mounts.md)");
+  }
+  return (options_.points || options_.guides) && live_.calibration.gimbal && vision().pad();
+}
+
 void Flight::OpenTables() {
   // That of an earlier flight would be taken for this one's, should this one not come to its end.
   end_file_ = OutputFolder(options_.output, options_.replace).NewFile("flight_end.csv");
@@ -223,7 +231,10 @@ AutopilotOptions Flight::WantedOfAutopilot() const {
   constexpr double kMode_hz = 20;
   if (options_.guides && wanted.mode_rate_hz == 0) wanted.mode_rate_hz = kMode_hz;
   if (live_.true_pose) wanted.wants_true_pose = true;
-  if (const auto& gimbal = live_.calibration.gimbal) wanted.gimbal_device_id = gimbal->device_id;
+  if (const auto& gimbal = live_.calibration.gimbal) {
+    wanted.gimbal_device_id = gimbal->device_id;
+    wanted.points_gimbal = Points();
+  }
   return wanted;
 }
 
@@ -247,7 +258,7 @@ void Flight::OpenAutopilot() {
           .text = [this](
                       std::uint8_t severity,
                       std::string_view text) { Notify(WordsOfAutopilot(text), LevelOf(severity)); },
-          .gimbal = [this](const GimbalSample& report) { program_->TakeGimbal(report); },
+          .gimbal = [this](const GimbalSample& report) { program_->TakeAutopilotGimbal(report); },
       });
 }
 
@@ -261,6 +272,7 @@ FlightParts Flight::ProgramParts() {
           .recording = &recording_,
           .tables = tables_ ? &*tables_ : nullptr,
           .sink = &sinks(),
+          .pointed = Points() ? &live_.calibration : nullptr,
           .guides = options_.guides,
           .source_has_poses = live_.has_poses,
           .sees_repeated = live_.sees_repeated,

@@ -41,6 +41,9 @@ struct SessionOptions {
   // Flies by set-points when the pilot gives the mode. A guard, a process of its own, then has the
   // line (docs/guard.md), unless flight.guard.enabled is false.
   bool guides = false;
+  // Points the camera's gimbal at the target; 'guides' does so, too. Needs a calibration with a
+  // gimbal.
+  bool points = false;
   std::string record = {};  // folder of a recording that begins at once; empty: none
 };
 

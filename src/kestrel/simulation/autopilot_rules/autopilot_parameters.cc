@@ -40,6 +40,10 @@ std::vector<AutopilotParameter> ArduPilotDefaults() {
           {"MAV_GCS_SYSID", 255, true},
           {"MAV_OPTIONS", 0, true},
           {"MAV_SYSID", 1, true},
+          {"MNT1_DEFLT_MODE", 3, true},
+          {"MNT1_PITCH_MAX", 20, true},
+          {"MNT1_PITCH_MIN", -90, true},
+          {"MNT1_TYPE", 0, true},
           {"PILOT_THR_BHV", 0, true},
           {"PLND_ALT_MAX", 8, false},
           {"PLND_ALT_MIN", 0.75, false},
@@ -100,9 +104,12 @@ std::vector<AutopilotParameter> Px4Defaults() {
           {"LTEST_MODE", 0, true},
           {"LTEST_SENS_ROT", 2, true},
           {"MAV_1_CONFIG", 102, true},
+          {"MAV_1_FORWARD", 1, true},
           {"MAV_1_MODE", 2, true},
           {"MAV_FWDEXTSP", 1, true},
           {"MAV_SYS_ID", 1, true},
+          {"MNT_MODE_IN", -1, true},
+          {"MNT_MODE_OUT", 0, true},
           {"MPC_ACC_HOR", 3, false},
           {"MPC_ACC_HOR_MAX", 5, false},
           {"MPC_LAND_ALT1", 10, false},
@@ -141,7 +148,13 @@ std::vector<AutopilotParameter> Px4Defaults() {
 }  // namespace
 
 AutopilotParameters::AutopilotParameters(AutopilotFirmware firmware)
-    : parameters_(firmware == AutopilotFirmware::kPx4 ? Px4Defaults() : ArduPilotDefaults()) {}
+    : parameters_(firmware == AutopilotFirmware::kPx4 ? Px4Defaults() : ArduPilotDefaults()) {
+  if (firmware == AutopilotFirmware::kPx4) return;
+  constexpr int kChannels = 16;  // of the transmitter
+  for (int i = 1; i <= kChannels; ++i) {
+    parameters_.push_back({fmt::format("RC{}_OPTION", i), 0, true});
+  }
+}
 
 double AutopilotParameters::operator[](std::string_view name) const {
   const auto index = Find(name);

@@ -103,6 +103,12 @@ void AutopilotModel::Receive(const mavlink::ParamSet& message, Time /*now*/) {
   send_(ParamValueOf(parameters_, *index, firmware_));
 }
 
+void AutopilotModel::Receive(const mavlink::GimbalManagerSetPitchyaw& message, Time now) {
+  if (mount_ && IsForIt(message.target_system)) {
+    mount_->Handle(message, {peer_system_, peer_component_}, now);
+  }
+}
+
 void AutopilotModel::Receive(const mavlink::SetMode& message, Time now) {
   if (message.target_system != options_.system_id) return;
   if ((message.base_mode & mavlink::kModeFlagCustom) != 0) {
@@ -133,6 +139,10 @@ std::uint8_t AutopilotModel::Execute(const mavlink::CommandLong& command, Time n
       return Arm(command.param1 == 1, command.param2 == mavlink::kArmByForce);
     case mavlink::kCommandTakeOff:
       return TakeOff(command.param7, now);
+    case mavlink::kCommandGimbalConfigure:
+    case mavlink::kCommandGimbalPitchyaw:
+      return mount_ ? mount_->Execute(command, {peer_system_, peer_component_}, now)
+                    : mavlink::kResultUnsupported;
     default:
       return mavlink::kResultUnsupported;
   }

@@ -25,14 +25,16 @@ using AutopilotMessage =
                  mavlink::HomePosition, mavlink::SimState, mavlink::ExtendedSysState,
                  mavlink::Timesync, mavlink::Statustext, mavlink::CurrentMode,
                  mavlink::AutopilotVersion, mavlink::ParamValue, mavlink::CommandAck,
-                 mavlink::SysStatus, mavlink::EkfStatusReport, mavlink::EstimatorStatus>;
+                 mavlink::SysStatus, mavlink::EkfStatusReport, mavlink::EstimatorStatus,
+                 mavlink::RcChannels, mavlink::GimbalManagerInformation,
+                 mavlink::GimbalManagerStatus, mavlink::GimbalDeviceAttitudeStatus>;
 
 // All messages that it handles.
 using CompanionMessage =
     std::variant<mavlink::Heartbeat, mavlink::CommandLong, mavlink::SetMode, mavlink::Timesync,
                  mavlink::LandingTarget, mavlink::TargetRelative, mavlink::ParamRequestRead,
                  mavlink::ParamRequestList, mavlink::ParamSet, mavlink::SetAttitudeTarget,
-                 mavlink::SetPositionTargetLocalNed>;
+                 mavlink::SetPositionTargetLocalNed, mavlink::GimbalManagerSetPitchyaw>;
 
 // Returns the message of a packet, if the autopilot handles it.
 std::optional<CompanionMessage> CompanionMessageOf(const mavlink::Packet& packet);

@@ -45,9 +45,17 @@ void SetParameters(const std::string& list, AutopilotParameters* parameters) {
   }
 }
 
-AutopilotParameters ParametersOf(AutopilotFirmware firmware, const std::string& list) {
+AutopilotParameters ParametersOf(AutopilotFirmware firmware, const AutopilotModelOptions& options) {
   AutopilotParameters parameters(firmware);
-  SetParameters(list, &parameters);
+  if (options.has_gimbal) {
+    SetParameters(
+        firmware == AutopilotFirmware::kPx4
+            ? "MNT_MODE_IN=4,MNT_MODE_OUT=2"
+            : fmt::format("MNT1_TYPE=6,MNT1_PITCH_MIN={},MNT1_PITCH_MAX={},RC7_OPTION=213",
+                          options.gimbal.pitch_min_deg, options.gimbal.pitch_max_deg),
+        &parameters);
+  }
+  SetParameters(options.parameters, &parameters);
   return parameters;
 }
 
@@ -81,14 +89,14 @@ AutopilotModel::AutopilotModel(AutopilotFirmware firmware, const AutopilotModelO
       world_(*world),
       send_(std::move(send)),
       random_(seed),
-      parameters_(ParametersOf(firmware, options.parameters)),
+      parameters_(ParametersOf(firmware, options)),
       uav_(MakeUav(WithTiltOf(firmware, parameters_, options.uav), options.pilot, *world, start,
                    &random_)),
       navigation_(options.navigation, NavigationErrors(), Random(random_.Bits())),
       pilot_(options.pilot, *world, start),
       detector_(firmware, parameters_),
       return_(firmware, parameters_),
-      streams_(firmware),
+      streams_(firmware, options.has_gimbal),
       start_(start),
       stepped_to_(start),
       booted_at_(start),
@@ -109,6 +117,10 @@ AutopilotModel::AutopilotModel(AutopilotFirmware firmware, const AutopilotModelO
   is_armed_ = pilot_flies_;
   ObserveFlight(start);
   hold_ = state_.position();
+  if (options.has_gimbal) {
+    mount_.emplace(firmware, options.gimbal, static_cast<std::uint8_t>(options.system_id), start,
+                   Random(random_.Bits()));
+  }
 }
 
 std::int64_t AutopilotModel::OwnTime(Time now) const {
@@ -140,7 +152,9 @@ void AutopilotModel::Step(Time now) {
 void AutopilotModel::StepOnce(Time now) {
   const FlightCommand command = Fly();
   uav_.Step(now, command, is_armed_);
-  world_.ReportPose(uav_.pose());
+  if (mount_) mount_->Step(now, uav_.pose().world_from_body);
+  world_.ReportPose(uav_.pose(),
+                    mount_ ? std::optional(mount_->world_from_platform()) : std::nullopt);
   ObserveFlight(now);
   landing_->Estimate(state_);
   detector_.Observe(state_, command);
@@ -332,7 +346,7 @@ void AutopilotModel::Reboot(Time now) {
   booted_at_ = now;
   boot_uptime_s_ = 0;
   clock_jump_ = Duration(0);
-  streams_ = MessageStreams(firmware_);
+  streams_ = MessageStreams(firmware_, options_.has_gimbal);
   px4_clock_ = Px4TimeSync();
   has_gcs_ = false;
 }

@@ -22,6 +22,7 @@
 #include "kestrel/simulation/autopilots/land_detector.h"
 #include "kestrel/simulation/autopilots/message_streams.h"
 #include "kestrel/simulation/autopilots/return_flight.h"
+#include "kestrel/simulation/autopilots/simulated_mount.h"
 #include "kestrel/simulation/autopilots/simulated_pilot.h"
 #include "kestrel/simulation/autopilots/simulated_uav.h"
 #include "kestrel/simulation/autopilots/sitl_result.h"
@@ -60,6 +61,10 @@ class AutopilotModel {
   std::int64_t OwnTime(Time now) const;
 
   const PoseSample& truth() const { return uav_.pose(); }  // at the last step
+  // Attitude of its gimbal in the world; level and ahead where it has none.
+  Eigen::Quaterniond world_from_platform() const {
+    return mount_ ? mount_->world_from_platform() : Eigen::Quaterniond::Identity();
+  }
   std::uint32_t custom_mode() const { return custom_mode_; }
   bool is_armed() const { return is_armed_; }
   const SitlResult& result() const { return result_; }
@@ -101,6 +106,7 @@ class AutopilotModel {
   bool SendMessage(std::uint32_t id, Time now);
   bool SendPose(std::uint32_t id, Time now);
   bool SendPlace(std::uint32_t id, Time now);
+  bool SendMount(std::uint32_t id) const;
   void SendText(Severity severity, const std::string& text) const;
   std::uint8_t LandedState() const;
   mavlink::Heartbeat HeartbeatOf() const;
@@ -120,6 +126,7 @@ class AutopilotModel {
   void Receive(const mavlink::ParamRequestRead& message, Time now);
   void Receive(const mavlink::ParamRequestList& message, Time now);
   void Receive(const mavlink::ParamSet& message, Time now);
+  void Receive(const mavlink::GimbalManagerSetPitchyaw& message, Time now);
   bool IsForIt(std::uint8_t target_system) const;
   std::uint8_t Execute(const mavlink::CommandLong& command, Time now);
   std::uint8_t SetModeBy(const mavlink::CommandLong& command, Time now);
@@ -141,6 +148,7 @@ class AutopilotModel {
   LandDetector detector_;
   ReturnFlight return_;
   MessageStreams streams_;
+  std::optional<SimulatedMount> mount_;  // nothing: it has no gimbal
 
   Time start_;
   Time stepped_to_;

@@ -5,6 +5,7 @@
 
 #include "kestrel/core/base/limits.h"
 #include "kestrel/simulation/autopilots/autopilot_messages.h"
+#include "kestrel/simulation/autopilots/simulated_mount.h"
 #include "kestrel/simulation/autopilots/simulated_pilot.h"
 #include "kestrel/simulation/autopilots/simulated_uav.h"
 #include "kestrel/simulation/vehicle/navigation_model.h"
@@ -50,6 +51,8 @@ struct AutopilotModelOptions {
   EstimateFaultOptions estimate;
   GlobalOrigin origin;
   PilotOptions pilot;
+  bool has_gimbal = false;  // set where the camera is on one
+  SimulatedMountOptions gimbal;
 
   static void Visit(auto& self, auto&& visit) {
     visit("system_id", self.system_id, Range{1, 255}, "MAVLink system of the autopilot");
@@ -64,6 +67,7 @@ struct AutopilotModelOptions {
     visit.Group("estimate", self.estimate);
     visit.Group("origin", self.origin);
     visit.Group("pilot", self.pilot);
+    visit.Group("gimbal", self.gimbal);
   }
 };
 

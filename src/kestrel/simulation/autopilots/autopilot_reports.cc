@@ -71,7 +71,7 @@ bool AutopilotModel::SendMessage(std::uint32_t id, Time now) {
       send_(VersionOf());
       return true;
     default:
-      return SendPose(id, now) || SendPlace(id, now);
+      return SendPose(id, now) || SendPlace(id, now) || SendMount(id);
   }
 }
 
@@ -108,6 +108,28 @@ bool AutopilotModel::SendPose(std::uint32_t id, Time now) {
       send_(mavlink::EstimatorStatus{.time_usec = static_cast<std::uint64_t>(state_.boot_us),
                                      .flags = EstimatorFlags(has_position)});
       return is_px4();
+    default:
+      return false;
+  }
+}
+
+// Sends messages of its gimbal, stamped at sending.
+bool AutopilotModel::SendMount(std::uint32_t id) const {
+  if (!mount_) return false;
+  const auto own_ms = static_cast<std::uint32_t>(state_.boot_us / 1000);
+  switch (id) {
+    case mavlink::GimbalDeviceAttitudeStatus::kId:
+      send_(mount_->AttitudeMessage(own_ms));
+      return true;
+    case mavlink::GimbalManagerStatus::kId:
+      send_(mount_->StatusMessage(own_ms));
+      return true;
+    case mavlink::GimbalManagerInformation::kId:
+      send_(mount_->InformationMessage(own_ms));
+      return true;
+    case mavlink::RcChannels::kId:
+      send_(mount_->ChannelsMessage(own_ms));
+      return true;
     default:
       return false;
   }

@@ -26,7 +26,7 @@ constexpr DefaultRate kDefaultRates[] = {
 
 }  // namespace
 
-MessageStreams::MessageStreams(AutopilotFirmware firmware) : firmware_(firmware) {
+MessageStreams::MessageStreams(AutopilotFirmware firmware, bool has_gimbal) : firmware_(firmware) {
   const bool is_px4 = firmware == AutopilotFirmware::kPx4;
   for (const DefaultRate& rate : kDefaultRates) {
     const double hz = is_px4 ? rate.px4_hz : rate.ardupilot_hz;
@@ -43,6 +43,15 @@ MessageStreams::MessageStreams(AutopilotFirmware firmware) : firmware_(firmware)
     // Only ArduPilot's simulator sends the truth.
     streams_.push_back({mavlink::SimState::kId, 0, 0});
   }
+  if (!has_gimbal) return;
+  constexpr std::int64_t kPx4Attitude_us = 200'000, kPx4Status_us = 2'000'000;
+  const auto add = [&](std::uint32_t id, std::int64_t px4_us) {
+    const std::int64_t interval_us = is_px4 ? px4_us : 0;
+    streams_.push_back({id, interval_us, interval_us});
+  };
+  add(mavlink::GimbalDeviceAttitudeStatus::kId, kPx4Attitude_us);
+  add(mavlink::GimbalManagerStatus::kId, kPx4Status_us);
+  add(mavlink::RcChannels::kId, 0);
 }
 
 bool MessageStreams::Has(std::uint32_t id) const {

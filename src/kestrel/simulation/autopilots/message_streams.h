@@ -11,8 +11,9 @@ namespace kestrel {
 // The messages that an autopilot sends periodically, and their rates.
 class MessageStreams {
  public:
-  // Default streams: ArduPilot only heartbeats, PX4 those of its onboard mode.
-  explicit MessageStreams(AutopilotFirmware firmware);
+  // Default streams: ArduPilot only heartbeats, PX4 those of its onboard mode; those of a gimbal
+  // where it has one.
+  explicit MessageStreams(AutopilotFirmware firmware, bool has_gimbal = false);
 
   // As MAV_CMD_SET_MESSAGE_INTERVAL: 'interval_us' -1 stops it, 0 is the default. Returns
   // MAV_RESULT.

@@ -23,8 +23,9 @@ constexpr std::size_t kCameraPoses = 1000;
 // Longest gap of the autopilot's link over which a pose is still interpolated.
 constexpr Duration kLongestPoseGap = std::chrono::milliseconds(500);
 
-// Returns the paper's camera with 'scale' times its pixels. The corners of the image stay.
-CameraCalibration ScaledCalibration(double scale) {
+// Returns the paper's camera with 'scale' times its pixels, on a gimbal if there is one. The
+// corners of the image stay.
+CameraCalibration ScaledCalibration(double scale, const std::optional<GimbalMount>& gimbal) {
   CameraCalibration calibration = PaperCalibration();
   CameraIntrinsics& lens = calibration.intrinsics;
   lens.width_px = static_cast<int>(std::lround(scale * lens.width_px));
@@ -33,6 +34,10 @@ CameraCalibration ScaledCalibration(double scale) {
   lens.fy_px *= scale;
   lens.cx_px = scale * (lens.cx_px + 0.5) - 0.5;
   lens.cy_px = scale * (lens.cy_px + 0.5) - 0.5;
+  if (gimbal) {
+    calibration.gimbal = gimbal;
+    calibration.body_from_camera = gimbal->body_from_pivot * gimbal->platform_from_camera;
+  }
   return calibration;
 }
 
@@ -42,14 +47,16 @@ CameraCalibration ScaledCalibration(double scale) {
 SimulatedCameraOptions::SimulatedCameraOptions() { shutter.rays_per_pixel = 3; }
 
 SimulatedCamera::SimulatedCamera(const SimulatedCameraOptions& options, VehicleWorld* world,
-                                 Time start, std::uint64_t seed)
+                                 Time start, std::uint64_t seed,
+                                 const std::optional<GimbalMount>& gimbal)
     : options_(Checked(options)),
       world_(*world),
       start_(start),
       seed_(seed),
-      calibration_(ScaledCalibration(options.scale)),
+      calibration_(ScaledCalibration(options.scale, gimbal)),
       drawn_(world->scene().world),
-      poses_(kCameraPoses, kLongestPoseGap) {
+      poses_(kCameraPoses, kLongestPoseGap),
+      platforms_(gimbal ? kCameraPoses : 0) {
   const SurroundingsOptions& surroundings = world->options().surroundings;
   if (surroundings.uav_shadow) {
     constexpr double kSize_m = 0.8;  // from rotor to rotor
@@ -60,24 +67,29 @@ SimulatedCamera::SimulatedCamera(const SimulatedCameraOptions& options, VehicleW
   lens.half_angle_deg = options.lens.half_angle_deg;
   lens.vignette = options.lens.vignette;
   if (surroundings.landing_legs) lens.airframe = LandingLegs(calibration_.intrinsics, true);
-  camera_ = std::make_unique<FlightCamera>(
-      CameraModel(calibration_.intrinsics), lens, options.shutter, options.sensor, drawn_,
-      [this](double time_s) { return BodyAt(time_s) * *calibration_.body_from_camera; });
-  world_.ListenToPoses([this](const PoseSample& pose) { Place(pose, true); });
+  camera_ = std::make_unique<FlightCamera>(CameraModel(calibration_.intrinsics), lens,
+                                           options.shutter, options.sensor, drawn_,
+                                           [this](double time_s) { return CameraAt(time_s); });
+  world_.ListenToPoses(
+      [this](const PoseSample& pose, const VehicleWorld::PlatformAttitude& platform) {
+        Place(pose, platform, true);
+      });
 }
 
 void SimulatedCamera::AddPose(const PoseSample& pose) {
-  Place(pose, false);
+  Place(pose, std::nullopt, false);
   world_.ObserveUav(pose.time, pose.world_from_body.translation);
 }
 
-void SimulatedCamera::Place(const PoseSample& pose, bool is_true) {
+void SimulatedCamera::Place(const PoseSample& pose, const VehicleWorld::PlatformAttitude& platform,
+                            bool is_true) {
   {
     const std::lock_guard lock(mutex_);
     if (has_true_poses_ && !is_true) return;
     has_true_poses_ = is_true;
     if (poses_.Add(pose) != PoseStatus::kOk) return;
     newest_pose_ = pose;
+    if (platform) platforms_.Add({pose.time, *platform, YawFrame::kEarth});
   }
   pose_came_.notify_one();
 }
@@ -175,6 +187,7 @@ std::optional<SimulatedCamera::Snapshot> SimulatedCamera::SnapshotAt(Time captur
   if (!newest_pose_ || capture - newest_pose_->time > kLongestPoseGap) return std::nullopt;
   Snapshot snapshot;
   snapshot.time_s = world_.SceneTime(capture);
+  if (calibration_.gimbal && !AddPlatform(capture, &snapshot)) return std::nullopt;
   if (const auto pose = poses_.Lookup(capture)) {
     snapshot.world_from_body = *pose;
     if (const auto before = poses_.Lookup(capture - kStep)) {
@@ -201,6 +214,30 @@ RigidTransform SimulatedCamera::BodyAt(double time_s) const {
   const RigidTransform& pose = snapshot_.world_from_body;
   return {(pose.rotation * RotationBy(since_s * snapshot_.motion.rate_in_body)).normalized(),
           pose.translation + since_s * snapshot_.motion.velocity_in_world};
+}
+
+// Sets the gimbal's attitude and its rate; false where it is not known.
+bool SimulatedCamera::AddPlatform(Time capture, Snapshot* snapshot) const {
+  constexpr Duration kStep = std::chrono::milliseconds(10);
+  const auto attitude = platforms_.At(capture, kStep);
+  const auto before = platforms_.At(capture - kStep, kStep);
+  if (!attitude || !before) return false;
+  snapshot->world_from_platform = attitude->level_from_platform;
+  snapshot->platform_rate =
+      RotationVector(before->level_from_platform.conjugate() * attitude->level_from_platform) /
+      ToSeconds(kStep);
+  return true;
+}
+
+RigidTransform SimulatedCamera::CameraAt(double time_s) const {
+  const RigidTransform body = BodyAt(time_s);
+  const auto& gimbal = calibration_.gimbal;
+  if (!gimbal) return body * *calibration_.body_from_camera;
+  const double since_s = time_s - snapshot_.time_s;
+  const GimbalAttitude attitude{
+      snapshot_.world_from_platform * RotationBy(since_s * snapshot_.platform_rate),
+      YawFrame::kEarth};
+  return WorldFromPlatform(body, gimbal->body_from_pivot, attitude) * gimbal->platform_from_camera;
 }
 
 Time SimulatedCamera::StampOf(Time capture) const {

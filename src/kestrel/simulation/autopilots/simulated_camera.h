@@ -14,6 +14,7 @@
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/core/poses/gimbal_history.h"
 #include "kestrel/core/poses/pose_history.h"
 #include "kestrel/io/recording/euroc/truth_rows.h"
 #include "kestrel/io/recording/frame.h"
@@ -56,10 +57,11 @@ struct SimulatedCameraOptions {
 // reported pose, extrapolated to the image.
 class SimulatedCamera {
  public:
-  // The world must outlive this. The first image is taken at 'start' on the local clock. Throws
+  // The world must outlive this. The first image is taken at 'start' on the local clock. 'gimbal':
+  // the camera is on one, of which the world's simulated autopilot reports the attitude. Throws
   // InputError when the options are not valid.
   SimulatedCamera(const SimulatedCameraOptions& options, VehicleWorld* world, Time start,
-                  std::uint64_t seed);
+                  std::uint64_t seed, const std::optional<GimbalMount>& gimbal = std::nullopt);
   ~SimulatedCamera() { world_.ListenToPoses(nullptr); }
   SimulatedCamera(const SimulatedCamera&) = delete;  // the renderer refers to it
   SimulatedCamera& operator=(const SimulatedCamera&) = delete;
@@ -94,15 +96,19 @@ class SimulatedCamera {
     double time_s = 0;  // time in the scene
     RigidTransform world_from_body;
     BodyMotion motion;
+    Eigen::Quaterniond world_from_platform = Eigen::Quaterniond::Identity();  // with a gimbal
+    Eigen::Vector3d platform_rate{0, 0, 0};                                   // in its own frame
   };
 
-  void Place(const PoseSample& pose, bool is_true);
+  void Place(const PoseSample& pose, const VehicleWorld::PlatformAttitude& platform, bool is_true);
   CameraFault FaultAt(Time capture) const;
   bool IsLeftOut(Time capture) const;
   Time NextCapture();
   Time KnownTime();
   void WaitForPose(Time capture, Time deadline);
   RigidTransform BodyAt(double time_s) const;
+  RigidTransform CameraAt(double time_s) const;
+  bool AddPlatform(Time capture, Snapshot* snapshot) const;
   std::optional<Snapshot> SnapshotAt(Time capture);
   Time StampOf(Time capture) const;
   Time CaptureOf(Time stamp) const;
@@ -122,6 +128,7 @@ class SimulatedCamera {
   std::mutex mutex_;  // guards what follows
   std::condition_variable pose_came_;
   PoseHistory poses_;
+  GimbalHistory platforms_;
   bool has_true_poses_ = false;
   std::optional<PoseSample> newest_pose_;
 };

@@ -14,6 +14,7 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/options.h"
 #include "kestrel/core/camera/camera_model.h"
+#include "kestrel/core/poses/gimbal_angles.h"
 #include "kestrel/vision/landing/landing_pattern_detector.h"
 
 namespace kestrel {
@@ -150,6 +151,37 @@ TEST_F(SimulatedCameraTest, UsesTruePosesWhenReportedOnesAreWrong) {
   const auto by_report = reported.Capture(kStart + 300ms);
   ASSERT_TRUE(by_truth && by_report);
   EXPECT_EQ(cv::countNonZero(by_truth->image != by_report->image), 0);
+}
+
+// A gimbal that looks down over the UAV's nose, while the UAV turns and tilts.
+TEST_F(SimulatedCameraTest, LooksWhereGimbalDoes) {
+  GimbalMount gimbal;
+  gimbal.body_from_pivot.translation = {0.1, 0, -0.05};
+  Eigen::Matrix3d axes;
+  axes << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  gimbal.platform_from_camera.rotation = Eigen::Quaterniond(axes);
+  SimulatedCamera camera({}, &world_, kStart, /*seed=*/5, gimbal);
+  const Vector3d start = world_.PatternAt(kStart).translation + Vector3d(-2, 0.3, 3);
+  const auto attitude = [](double time_s) { return GimbalAngles{0.3 * time_s, 0.9}.rotation(); };
+  for (int i = 0; i < 25; ++i) {
+    const PoseSample pose = PoseOver(start, kStart + i * 20ms);
+    world_.ReportPose(pose, attitude(0.02 * i));
+  }
+  const Time capture = kStart + 310ms;
+  const auto frame = camera.Capture(capture);
+  ASSERT_TRUE(frame);
+  const LandingPatternDetector detector(CameraModel(camera.calibration().intrinsics), {});
+  LandingWorkspace workspace;
+  const auto detection = detector.Detect(frame->image, {}, workspace).detection;
+  ASSERT_TRUE(detection);
+  const RigidTransform world_from_camera =
+      WorldFromPlatform(PoseOver(start, capture).world_from_body, gimbal.body_from_pivot,
+                        {attitude(0.31), YawFrame::kEarth}) *
+      gimbal.platform_from_camera;
+  Eigen::Vector2d pixel;
+  const CameraModel model(camera.calibration().intrinsics);
+  model.Project(world_from_camera.Inverse() * camera.PatternAt(capture).translation, &pixel);
+  EXPECT_LT((detection->center_px - pixel).norm(), 1);
 }
 
 TEST(VehicleWorldTest, VehicleMayWaitForUav) {

@@ -18,8 +18,8 @@ constexpr std::string_view kPrefix = "sim:";
 class RenderedSource : public LiveSource {
  public:
   RenderedSource(const SimulatedCameraOptions& options, VehicleWorld* world, Time start,
-                 std::uint64_t seed)
-      : camera_(options, world, start, seed) {}
+                 std::uint64_t seed, const std::optional<GimbalMount>& gimbal)
+      : camera_(options, world, start, seed, gimbal) {}
 
   std::optional<Event> Next(Duration timeout) override {
     Frame frame;
@@ -50,16 +50,10 @@ std::vector<std::string> Split(std::string_view text) {
   }
 }
 
-CameraCalibration CalibrationFor(const RecordingChoice& choice, const CameraCalibration& own) {
-  if (choice.camera.empty()) return own;
-  CameraCalibration calibration = ReadCalibration(choice.camera, "", choice.bag.notify);
-  CheckImageSize(calibration.intrinsics, own.intrinsics.width_px, own.intrinsics.height_px,
-                 choice.sources.front());
-  if (calibration.gimbal) {
-    throw InputError(choice.camera + ": has a gimbal, expected T_BS: a sim: camera is fixed");
-  }
-  if (!calibration.body_from_camera) calibration.body_from_camera = own.body_from_camera;
-  return calibration;
+// The user's calibration; nothing: there is none.
+std::optional<CameraCalibration> GivenCalibration(const RecordingChoice& choice) {
+  if (choice.camera.empty()) return std::nullopt;
+  return ReadCalibration(choice.camera, "", choice.bag.notify);
 }
 
 }  // namespace
@@ -77,9 +71,17 @@ OpenedLiveSource SimulatedSource::Open(const LiveSourceChoice& choice) {
   const Time start = Now();
   world_ =
       std::make_unique<VehicleWorld>(ReadVehicleWorld(scenario, settings, target_), start, seed_);
-  auto source = std::make_unique<RenderedSource>(options_, world_.get(), start, seed_);
+  const auto given = GivenCalibration(choice.recording);
+  auto source = std::make_unique<RenderedSource>(options_, world_.get(), start, seed_,
+                                                 given ? given->gimbal : std::nullopt);
+  const CameraCalibration& own = source->camera().calibration();
   OpenedLiveSource opened;
-  opened.calibration = CalibrationFor(choice.recording, source->camera().calibration());
+  opened.calibration = given.value_or(own);
+  CheckImageSize(opened.calibration.intrinsics, own.intrinsics.width_px, own.intrinsics.height_px,
+                 choice.uri());
+  if (!opened.calibration.body_from_camera) {
+    opened.calibration.body_from_camera = own.body_from_camera;
+  }
   opened.rate_hz = options_.rate_hz;
   camera_ = &source->camera();
   opened.source = std::move(source);

@@ -27,12 +27,16 @@ class SimulatedSource {
   static bool IsNamed(std::string_view uri);
 
   // The source has the simulated camera's calibration, or the one that the user gives; a file
-  // without a mount gets the simulated camera's. It throws InputError for a scenario or settings
-  // that do not exist, and for a calibration of another image size.
+  // without a mount gets the simulated camera's, one with a gimbal puts the camera on it. It throws
+  // InputError for a scenario or settings that do not exist, and for a calibration of another image
+  // size.
   SourceScheme Scheme();
 
   // The world; a standing vehicle if no source was opened.
   VehicleWorld* World();
+
+  // True when the camera is on a gimbal, which only a simulated autopilot has.
+  bool has_gimbal() const { return camera_ != nullptr && camera_->calibration().gimbal; }
 
   // Poses from the autopilot. They place the camera: the true poses, if there are any, else the
   // estimated ones.

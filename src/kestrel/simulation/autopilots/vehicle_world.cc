@@ -117,10 +117,10 @@ void VehicleWorld::ListenToPoses(PoseListener listener) {
   listener_ = std::move(listener);
 }
 
-void VehicleWorld::ReportPose(const PoseSample& pose) {
+void VehicleWorld::ReportPose(const PoseSample& pose, const PlatformAttitude& platform) {
   ObserveUav(pose.time, pose.world_from_body.translation);
   const std::lock_guard lock(listener_mutex_);
-  if (listener_) listener_(pose);
+  if (listener_) listener_(pose, platform);
 }
 
 // Returns how long it would have driven at full speed to be where it is.

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/time.h"
@@ -76,11 +76,14 @@ class VehicleWorld {
   // Reports the position of a UAV, for a vehicle that waits for it.
   void ObserveUav(Time time, const Eigen::Vector3d& position_in_world);
 
-  // The true poses of a UAV that is simulated beside this world, from the autopilot to the camera:
+  // The true poses of a UAV that is simulated beside this world, and the attitude of the platform
+  // of its gimbal (world_from_platform; nothing: it has none), from the autopilot to the camera:
   // they take no time. One listener at a time; nothing: none.
-  using PoseListener = std::function<void(const PoseSample& pose)>;
+  using PlatformAttitude = std::optional<Eigen::Quaterniond>;
+  using PoseListener =
+      std::function<void(const PoseSample& pose, const PlatformAttitude& platform)>;
   void ListenToPoses(PoseListener listener);
-  void ReportPose(const PoseSample& pose);
+  void ReportPose(const PoseSample& pose, const PlatformAttitude& platform = std::nullopt);
 
   const LandingScene& scene() const { return scene_; }
   const VehicleWorldOptions& options() const { return options_; }

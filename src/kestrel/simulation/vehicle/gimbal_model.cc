@@ -13,18 +13,13 @@ namespace {
 
 using Eigen::AngleAxisd;
 using Eigen::Quaterniond;
-using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kSteps_hz = 400;
 
-Quaterniond RotationOf(const Vector2d& angles) {
-  return AngleAxisd(angles.x(), Vector3d::UnitZ()) * AngleAxisd(angles.y(), Vector3d::UnitY());
-}
-
-// Returns yaw and pitch that look along 'ray'. Near the vertical the yaw is that of the body: it
+// Returns the angles that look along 'ray'. Near the vertical the yaw is that of the body: it
 // would turn around with every step aside.
-Vector2d AnglesTo(const Vector3d& ray, double heading) {
+GimbalAngles AnglesTo(const Vector3d& ray, double heading) {
   constexpr double kSteep = Radians(70.0);
   const double pitch = std::atan2(-ray.z(), ray.head<2>().norm());
   if (pitch > kSteep) return {heading, kPi / 2};
@@ -36,6 +31,22 @@ double Turn(double from, double to) { return std::remainder(to - from, 2 * kPi);
 
 }  // namespace
 
+GimbalAngles Turned(const GimbalMotorOptions& motors, const GimbalAngles& angles,
+                    const GimbalAngles& aim, double seconds) {
+  const double most = Radians(motors.max_turn_dps) * seconds;
+  const double part = seconds / (motors.lag_s + seconds);
+  return {angles.yaw + std::clamp(part * Turn(angles.yaw, aim.yaw), -most, most),
+          angles.pitch + std::clamp(part * (aim.pitch - angles.pitch), -most, most)};
+}
+
+Quaterniond WithNoise(const GimbalMotorOptions& motors, const Quaterniond& rotation,
+                      Random* random) {
+  const double x = random->Normal();
+  const double y = random->Normal();
+  const Vector3d noise = Radians(motors.noise_deg) * Vector3d(x, y, random->Normal());
+  return (rotation * RotationBy(noise)).normalized();
+}
+
 SimulatedGimbal::SimulatedGimbal(const GimbalOptions& options, Motion world_from_body,
                                  const RigidTransform& body_from_pivot, const Path& target,
                                  double begin_s, double end_s)
@@ -44,19 +55,15 @@ SimulatedGimbal::SimulatedGimbal(const GimbalOptions& options, Motion world_from
       body_from_pivot_(body_from_pivot),
       begin_s_(begin_s) {
   const double step_s = 1 / kSteps_hz;
-  const double most = Radians(options.max_turn_dps) * step_s;
   const auto wanted = [&](double time_s) {
     const RigidTransform world_from_pivot = world_from_body_(time_s) * body_from_pivot_;
     return AnglesTo(target(time_s) - world_from_pivot.translation,
                     HeadingOf(world_from_pivot.rotation));
   };
-  Vector2d angles = wanted(begin_s);
+  GimbalAngles angles = wanted(begin_s);
   for (double time_s = begin_s; time_s <= end_s + step_s; time_s += step_s) {
     angles_.push_back(angles);
-    const Vector2d aim = wanted(time_s);
-    const double part = step_s / (options.lag_s + step_s);
-    angles.x() += std::clamp(part * Turn(angles.x(), aim.x()), -most, most);
-    angles.y() += std::clamp(part * (aim.y() - angles.y()), -most, most);
+    angles = Turned(options, angles, wanted(time_s), step_s);
   }
 }
 
@@ -65,7 +72,11 @@ Quaterniond SimulatedGimbal::Attitude(double time_s) const {
       std::clamp((time_s - begin_s_) * kSteps_hz, 0.0, static_cast<double>(angles_.size() - 1));
   const auto before = std::min(static_cast<std::size_t>(at), angles_.size() - 2);
   const double part = at - static_cast<double>(before);
-  return RotationOf(angles_[before] + part * (angles_[before + 1] - angles_[before]));
+  const GimbalAngles& from = angles_[before];
+  const GimbalAngles& to = angles_[before + 1];
+  return GimbalAngles{from.yaw + part * (to.yaw - from.yaw),
+                      from.pitch + part * (to.pitch - from.pitch)}
+      .rotation();
 }
 
 RigidTransform SimulatedGimbal::WorldFromPlatform(double time_s) const {
@@ -92,12 +103,9 @@ std::vector<GimbalSample> SimulatedGimbal::Reports(double clock_offset_s, double
     const double turn = frame == YawFrame::kEarth
                             ? world_yaw_rad
                             : -HeadingOf((world_from_body_(time_s) * body_from_pivot_).rotation);
-    const double x = random.Normal();
-    const double y = random.Normal();
-    const Vector3d noise = Radians(options_.noise_deg) * Vector3d(x, y, random.Normal());
-    const Quaterniond attitude = AngleAxisd(turn, Vector3d::UnitZ()) * Attitude(time_s);
+    const Quaterniond attitude(AngleAxisd(turn, Vector3d::UnitZ()) * Attitude(time_s));
     reports.push_back({TimeOfFlight(time_s + clock_offset_s + options_.stamp_delay_s),
-                       (attitude * RotationBy(noise)).normalized(), frame});
+                       WithNoise(options_, attitude, &random), frame});
   }
   return reports;
 }

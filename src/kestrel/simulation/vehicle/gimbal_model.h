@@ -9,32 +9,48 @@
 #include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/random.h"
 #include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/core/poses/gimbal_angles.h"
 #include "kestrel/core/poses/gimbal_history.h"
 #include "kestrel/simulation/scene/motion.h"
 
 namespace kestrel {
 
-// A gimbal with two motors, and what it reports.
-struct GimbalOptions {
-  double rate_hz = 0;
+struct GimbalMotorOptions {
   double lag_s = 0.1;
   double max_turn_dps = 90;
   double noise_deg = 0.05;
+
+  static void Visit(auto& self, auto&& visit) {
+    visit("lag_s", self.lag_s, Range{0.01, 2}, "time constant with which it follows its target");
+    visit("max_turn_dps", self.max_turn_dps, Range{1, 1000}, "fastest turn of a motor");
+    visit("noise_deg", self.noise_deg, Range{0, 10}, "noise of the reported attitude, per axis");
+  }
+};
+
+// A gimbal with two motors, and what it reports.
+struct GimbalOptions : GimbalMotorOptions {
+  double rate_hz = 0;
   double stamp_delay_s = 0.02;
   std::string yaw_frame = "vehicle";
 
   static void Visit(auto& self, auto&& visit) {
     visit("rate_hz", self.rate_hz, Range{0, 200},
           "reports per second; 0: the camera is fixed to the UAV");
-    visit("lag_s", self.lag_s, Range{0.01, 2}, "time constant with which it follows its target");
-    visit("max_turn_dps", self.max_turn_dps, Range{1, 1000}, "fastest turn of a motor");
-    visit("noise_deg", self.noise_deg, Range{0, 10}, "noise of the reported attitude, per axis");
+    GimbalMotorOptions::Visit(self, visit);
     visit("stamp_delay_s", self.stamp_delay_s, Range{-1, 1},
           "time after the attitude at which its report is stamped");
     visit("yaw_frame", self.yaw_frame, OneOf{{"earth", "vehicle"}}, "frame of the reported yaw");
   }
   bool is_there() const { return rate_hz > 0; }
 };
+
+// Returns the angles 'seconds' later of motors that turn to 'aim'.
+GimbalAngles Turned(const GimbalMotorOptions& motors, const GimbalAngles& angles,
+                    const GimbalAngles& aim, double seconds);
+
+// Returns a rotation as it is reported.
+Eigen::Quaterniond WithNoise(const GimbalMotorOptions& motors, const Eigen::Quaterniond& rotation,
+                             Random* random);
 
 // A gimbal on a flight, which looks at a point of the world and straight down where that is nearly
 // below. Roll is 0. Thread-safe.
@@ -64,7 +80,7 @@ class SimulatedGimbal {
   Motion world_from_body_;
   RigidTransform body_from_pivot_;
   double begin_s_;
-  std::vector<Eigen::Vector2d> angles_;  // yaw from x to y and pitch down, rad, at kSteps_hz
+  std::vector<GimbalAngles> angles_;  // in the world, at kSteps_hz
 };
 
 }  // namespace kestrel

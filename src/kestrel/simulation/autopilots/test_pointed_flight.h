@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include <Eigen/Geometry>
+#include <opencv2/core.hpp>
+
+#include "kestrel/comms/mavlink/mavlink_enums.h"
+#include "kestrel/comms/mavlink/packet_parser.h"
+#include "kestrel/comms/mavlink/packet_writer.h"
+#include "kestrel/core/geometry/angles.h"
+#include "kestrel/flight/onboard/guided_flight.h"
+#include "kestrel/flight/onboard/pointed_gimbal.h"
+#include "kestrel/simulation/autopilots/test_autopilot.h"
+#include "kestrel/vision/pipeline/landing_pipeline.h"
+
+namespace kestrel {
+
+constexpr double kTestHalfView_deg = 20;
+constexpr double kTestSightRange_m = 30;
+
+// A camera that looks down, or one on a gimbal that looks along the platform's x axis.
+inline CameraCalibration TestCamera(bool has_gimbal, double half_view_deg) {
+  CameraCalibration camera;
+  const double f_px = 240 / std::tan(Radians(half_view_deg));
+  camera.intrinsics = {640, 480, f_px, f_px, 319.5, 239.5, DistortionModel::kNone, {}};
+  Eigen::Matrix3d axes;
+  axes << 0, -1, 0, -1, 0, 0, 0, 0, -1;
+  camera.body_from_camera.emplace().rotation = Eigen::Quaterniond(axes);
+  if (!has_gimbal) return camera;
+  axes << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  camera.gimbal.emplace().platform_from_camera.rotation = Eigen::Quaterniond(axes);
+  camera.body_from_camera = camera.gimbal->platform_from_camera;
+  return camera;
+}
+
+// Finds the pad where it truly is, with an error of 0.3 % of the distance.
+class TrueDetector : public TargetDetector {
+ public:
+  // 'seen': the true camera_from_target of the image; nothing: it is out of view.
+  TrueDetector(const CameraModel& camera, const std::optional<RigidTransform>* seen)
+      : camera_(camera), seen_(*seen) {}
+
+  TargetReport Detect(const cv::Mat& /*image*/, const TargetHint& /*hint*/,
+                      TargetWorkspace& /*workspace*/) const override {
+    constexpr double kError = 0.003, kTurn = 0.01;
+    TargetReport report;
+    if (!seen_) return report;
+    TargetDetection detection{};
+    detection.camera_from_target = *seen_;
+    Eigen::Vector3d& center = detection.camera_from_target.translation;
+    const double sigma_m = kError * center.norm();
+    for (double& axis : center) axis += sigma_m * random_.Normal();
+    detection.covariance.setZero();
+    detection.covariance.diagonal().head<3>().setConstant(sigma_m * sigma_m);
+    detection.covariance.diagonal().tail<3>().setConstant(kTurn * kTurn);
+    report.detection = detection;
+    return report;
+  }
+  std::unique_ptr<TargetWorkspace> MakeWorkspace() const override {
+    return std::make_unique<TargetWorkspace>();
+  }
+  const CameraModel& camera() const override { return camera_; }
+  const TargetShape& shape() const override { return shape_; }
+
+ private:
+  CameraModel camera_;
+  TargetShape shape_;
+  const std::optional<RigidTransform>& seen_;
+  mutable Random random_{1};
+};
+
+// Statistics of the angle between the camera's axis and the target, deg.
+struct PointingErrors {
+  double rms = 0;
+  double largest = 0;
+};
+
+// A simulated autopilot, and over MAVLink all of Kestrel that flies but for the images: the landing
+// pipeline, guidance where there is any, and the pointed gimbal where the camera is on one. In
+// simulated time.
+class PointedFlight : public TestAutopilot {
+ public:
+  struct Choice {
+    bool has_gimbal = true;  // the camera is on one
+    double half_view_deg = kTestHalfView_deg;
+    bool guides = false;
+    std::uint64_t seed = 1;
+  };
+
+  PointedFlight(AutopilotFirmware firmware, const AutopilotModelOptions& options,
+                const VehicleWorldOptions& vehicle)
+      : PointedFlight(firmware, options, vehicle, Choice()) {}
+  PointedFlight(AutopilotFirmware firmware, const AutopilotModelOptions& options,
+                const VehicleWorldOptions& vehicle, const Choice& choice)
+      : TestAutopilot(firmware, options, vehicle, choice.seed),
+        half_view_(Radians(choice.half_view_deg)),
+        camera_(TestCamera(choice.has_gimbal, choice.half_view_deg)),
+        pipeline_(camera_, std::make_unique<TrueDetector>(CameraModel(camera_.intrinsics), &seen_),
+                  PipelineOptions()),
+        connection_("udpout://127.0.0.1:9", {},
+                    [this](std::span<const std::uint8_t> frame, Time) { Carry(frame); }),
+        autopilot_(LinkOptions(choice.has_gimbal), &connection_, Listener()) {
+    const auto report = [this](const std::string& text) { reported += text + "\n"; };
+    const PadInSight pad{1.2, kTestSightRange_m, TargetTrackerOptions()};
+    if (choice.has_gimbal) {
+      pointed_.emplace(FlightOptions(), camera_, pad, &autopilot_, &connection_, report);
+    }
+    if (choice.guides) {
+      guided_.emplace(FlightOptions(), pad.tracker, true, &autopilot_, &connection_, report);
+    }
+  }
+
+  void Fly(double seconds) {
+    Run(seconds, [this] { Step(); });
+  }
+  PointingErrors FlyAndMeasure(double seconds) {
+    PointingErrors errors;
+    int steps = 0;
+    Run(seconds, [&] {
+      Step();
+      const double error = Error();
+      errors.rms += error * error;
+      errors.largest = std::max(errors.largest, error);
+      ++steps;
+    });
+    errors.rms = std::sqrt(errors.rms / steps);
+    return errors;
+  }
+  // Flies until there is a track; false when that takes longer.
+  bool FlyUntilFound(double longest_s) {
+    for (double s = 0; s < longest_s && !has_track(); ++s) Fly(1);
+    return has_track();
+  }
+  // Flies until it has disarmed; false when that takes longer.
+  bool Land(double longest_s) {
+    Run(longest_s, [this] {
+      if (model.is_armed()) Step();
+    });
+    return !model.is_armed();
+  }
+
+  // Angle between the camera's axis and the target, deg.
+  double Error() const {
+    return Degrees(AngleOff(WorldFromCamera().Inverse() * world.PatternAt(now)));
+  }
+  bool has_track() const { return track_.state == TrackState::kTracking; }
+
+  // A message of a ground station.
+  void SendFromGround(const CompanionMessage& message) { model.Handle(message, 255, 190, now); }
+  void GiveControl(std::uint8_t system, std::uint8_t component) {
+    mavlink::CommandLong command;
+    command.target_system = 1;
+    command.command = mavlink::kCommandGimbalConfigure;
+    command.param1 = system;
+    command.param2 = component;
+    SendFromGround(command);
+  }
+
+  int set_points = 0;  // sent to the gimbal
+  std::string reported;
+
+ private:
+  // An image waits for the vision.
+  struct Image {
+    Time captured;
+    std::optional<RigidTransform> camera_from_target;  // where the pad is in view
+  };
+
+  static LandingPipelineOptions PipelineOptions() {
+    LandingPipelineOptions options;
+    options.pose_extrapolation_s = 0.1;
+    return options;
+  }
+  static AutopilotOptions LinkOptions(bool has_gimbal) {
+    constexpr double kMode_hz = 20;
+    AutopilotOptions options;
+    options.mode_rate_hz = kMode_hz;
+    options.points_gimbal = has_gimbal;
+    if (has_gimbal) options.gimbal_device_id = 0;
+    return options;
+  }
+  AutopilotListener Listener() {
+    AutopilotListener listener;
+    listener.pose = [this](const PoseSample& pose) {
+      poses_.Add(pose);
+      pipeline_.AddPose(pose);
+    };
+    listener.gimbal = [this](const GimbalSample& report) {
+      pointed_->TakeReport(report);
+      pipeline_.AddGimbal(report);
+    };
+    return listener;
+  }
+
+  RigidTransform WorldFromCamera() const {
+    const RigidTransform& body = model.truth().world_from_body;
+    if (!camera_.gimbal) return body * *camera_.body_from_camera;
+    const GimbalAttitude attitude{model.world_from_platform(), YawFrame::kEarth};
+    return WorldFromPlatform(body, camera_.gimbal->body_from_pivot, attitude) *
+           camera_.gimbal->platform_from_camera;
+  }
+  static double AngleOff(const RigidTransform& camera_from_target) {
+    const Eigen::Vector3d& center = camera_from_target.translation;
+    return std::atan2(center.head<2>().norm(), center.z());
+  }
+
+  void Carry(std::span<const std::uint8_t> frame) {
+    companion_.Parse(frame, [this](const mavlink::Packet& packet) {
+      set_points += packet.id == mavlink::GimbalManagerSetPitchyaw::kId ? 1 : 0;
+      if (const auto message = CompanionMessageOf(packet)) Send(*message);
+    });
+  }
+  template <class Message>
+  void Deliver(const Message& message) {
+    from_autopilot_.Parse(writer_.Write(message), [this](const mavlink::Packet& packet) {
+      autopilot_.Handle(packet, now);
+      if (pointed_) pointed_->Handle(packet);
+    });
+  }
+
+  void Step() {
+    for (const AutopilotMessage& message : std::exchange(sent, {})) {
+      std::visit([this](const auto& typed) { Deliver(typed); }, message);
+    }
+    autopilot_.Tick(now);
+    Capture();
+    See();
+    if (guided_) guided_->Fly(now, track_, poses_);
+    if (pointed_) pointed_->Point(now, track_, poses_);
+  }
+  void Capture() {
+    constexpr Duration kPeriod = std::chrono::milliseconds(60);
+    constexpr double kNearest_m = 0.45;
+    if (now < capture_due_) return;
+    capture_due_ = now + kPeriod;
+    const RigidTransform camera_from_target = WorldFromCamera().Inverse() * world.PatternAt(now);
+    const double distance_m = camera_from_target.translation.norm();
+    Image image{now, std::nullopt};
+    if (AngleOff(camera_from_target) < half_view_ && distance_m < kTestSightRange_m &&
+        distance_m > kNearest_m) {
+      image.camera_from_target = camera_from_target;
+    }
+    images_.push_back(image);
+  }
+  // The vision is done some time after the exposure.
+  void See() {
+    constexpr Duration kLatency = std::chrono::milliseconds(40);
+    if (images_.empty() || now < images_.front().captured + kLatency) return;
+    const Image image = images_.front();
+    images_.pop_front();
+    seen_ = image.camera_from_target;
+    const LandingObservation seen = pipeline_.Process(cv::Mat(), image.captured);
+    track_.captured = image.captured;
+    track_.state = seen.track_state;
+    track_.target = seen.target;
+    track_.sighting.reset();
+    if (!seen.center_in_world) return;
+    if (seen.fate == MeasurementFate::kStarted || seen.fate == MeasurementFate::kAccepted) {
+      track_.seen = image.captured;
+    }
+    TargetState& sighting = track_.sighting.emplace();
+    sighting.time = image.captured;
+    sighting.position_in_world = *seen.center_in_world;
+    sighting.normal_in_world = Eigen::Vector3d::UnitZ();
+  }
+
+  double half_view_;
+  CameraCalibration camera_;
+  std::optional<RigidTransform> seen_;
+  LandingPipeline pipeline_;
+  mavlink::PacketParser companion_, from_autopilot_;
+  mavlink::PacketWriter writer_{1, 1};
+  PoseHistory poses_{512, std::chrono::milliseconds(500)};
+  Connection connection_;
+  Autopilot autopilot_;
+  std::optional<PointedGimbal> pointed_;
+  std::optional<GuidedFlight> guided_;
+  TrackSnapshot track_;
+  std::deque<Image> images_;
+  Time capture_due_{};
+};
+
+}  // namespace kestrel
