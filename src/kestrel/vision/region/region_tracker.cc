@@ -64,9 +64,12 @@ void RequireBox(const cv::Rect2d& box, const cv::Size& size) {
   }
 }
 
-// Probability that a region is what was marked, by the agreement of both filters: fitted to the
-// same sequences.
-double ProbabilityOf(double agreement) { return 1 / (1 + std::exp(-8 * (agreement - 0.45))); }
+// Returns how probably a region is what was marked, by the agreement of both filters: even where
+// half of the templates agree. Set by hand, not calibrated.
+double ProbabilityOf(double agreement) {
+  constexpr double kEven = 0.45, kSlope = 8;
+  return 1 / (1 + std::exp(-kSlope * (agreement - kEven)));
+}
 
 }  // namespace
 
