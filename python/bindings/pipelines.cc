@@ -90,6 +90,22 @@ class GuardedLanding : public Guarded<LandingPipeline> {
   PadViews views_;  // of each camera
 };
 
+class GuardedHunt : public Guarded<HuntPipeline> {
+ public:
+  GuardedHunt(HuntPipeline pipeline, std::shared_ptr<ObjectModel> model)
+      : Guarded(std::move(pipeline)), model_(std::move(model)) {}
+
+  SeenHunt Process(const py::handle& image, Time time) {
+    const cv::Mat pixels = ColorImage(image, pipeline().detector().camera().intrinsics());
+    return With([&](HuntPipeline& pipeline) {
+      return SeenHunt{pipeline.Process(pixels, time), model_};
+    });
+  }
+
+ private:
+  std::shared_ptr<ObjectModel> model_;
+};
+
 using OneOrSeveral = std::variant<CameraCalibration, std::vector<CameraCalibration>>;
 
 std::vector<CameraCalibration> CamerasOf(const OneOrSeveral& calibration) {
