@@ -905,6 +905,49 @@ class TargetTracker:
         oldest one and when the target is lost.
         """
 
+class RegionState(str, enum.Enum):
+    """Whether a region is seen in the image, was seen within the last 0.5 s, or is lost and looked
+    for.
+    """
+    FOLLOWING = "following"
+    COASTING = "coasting"
+    LOST = "lost"
+
+class RegionReport:
+    """A region in an image."""
+    @property
+    def state(self) -> RegionState:
+        """RegionState."""
+    @property
+    def box_px(self) -> list[float]:
+        """x, y, width, height, px: the pixel (x, y) is the upper left one. The last place when the region
+        is lost.
+        """
+    @property
+    def probability(self) -> float:
+        """That the box is on what was marked, 0 to 1."""
+
+class RegionTracker:
+    """Follows a region of an image that a person has marked, by its appearance: whatever it shows.
+
+        tracker = kestrel.RegionTracker()
+        tracker.mark(first, 0, (310, 200, 40, 60))
+        for i, image in enumerate(images):
+            report = tracker.track(image, i * 33_000_000)
+            print(report.state, report.box_px)
+    """
+    def __init__(self) -> None:
+        """Makes a tracker that follows nothing yet."""
+    def mark(self, image: NDArray[np.uint8], time_ns: int, box_px: list[float]) -> None:
+        """Starts on a region of an image, in place of any before. image: uint8, gray or BGR. box_px: x, y,
+        width, height, at least 4 px wide and high. Raises InputError for a box that is not in the
+        image.
+        """
+    def track(self, image: NDArray[np.uint8], time_ns: int, expected_px: NDArray[np.float64] | None = ..., sigma_px: float = ...) -> RegionReport:
+        """Returns a RegionReport of a later image of the same size and type. expected_px: where its middle
+        is expected (2), or None; sigma_px: standard deviation of that, for a lost region.
+        """
+
 class MappedObject:
     """What a map knows of an object."""
     def __init__(self, *, id: int = ..., shape: ObjectShape | str = ..., first_seen_ns: int = ..., last_seen_ns: int = ..., time_ns: int = ..., state: ArrayLike = ..., covariance: ArrayLike = ..., may_move: bool = ..., move_log_odds: float = ..., moves: bool = ..., detections: int = ..., log_odds: float = ..., color: Hsv = ..., color_log_likelihoods: list[float] = ..., digit_log_likelihoods: list[float] = ...) -> None: ...
