@@ -5,8 +5,8 @@
 //
 // Example:
 //   RegionTracker tracker;
-//   tracker.Mark(first_image, first_time, cv::Rect2d(310, 200, 40, 60));
-//   const RegionReport report = tracker.Track(next_image, next_time);
+//   tracker.Mark(image, time, cv::Rect2d(310, 200, 40, 60));
+//   const RegionReport report = tracker.Track(image, time + std::chrono::milliseconds(33));
 //   if (report.state == RegionState::kFollowing) std::cout << report.box_px << "\n";
 
 #include "kestrel/vision/region/region_tracker.h"  // IWYU pragma: export

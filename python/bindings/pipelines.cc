@@ -228,7 +228,7 @@ void BindLandingPipeline(py::module_& module) {
             self.With([&](LandingPipeline& pipeline) { pipeline.SetAltitude(altitude_m); });
           },
           py::arg("altitude_m"), kSetAltitude)
-      .def("process", &GuardedLanding::Process, py::arg("image"), py::arg("time_ns"),
+      .def("process", &GuardedLanding::Process, py::arg("image"), py::arg("time_ns"), py::kw_only(),
            py::arg("camera_index") = 0,
            "Processes a frame.\n\nimage: uint8 of shape (rows, columns), gray, of the camera's "
            "size; not copied.\ntime_ns: middle of the exposure, int, ns.\ncamera_index: of "

@@ -370,7 +370,7 @@ void BindSession(py::module_& module) {
            "Raises InputError when the source fails, and what a sink raises: at once over a "
            "recording, after its end in a flight, which goes on without the sink.")
       .def("stop", &Session::Stop, "Ends the run after the present frame. Any thread may call it.")
-      .def("__repr__", &Session::InWords);
+      .def("__repr__", [](const Session& self) { return self.InWords(); });
 }
 
 }  // namespace kestrel::python

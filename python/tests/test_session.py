@@ -75,7 +75,7 @@ def test_sinks_get_the_frames_of_all_cameras(tmp_path):
     second = {"second.fov_deg": 60, "second.rate_hz": 5}
     assert kestrel.simulate("calm", frames=8, rate_hz=10, **second).write(folder)
     seen = []
-    summary = kestrel.Session(folder, sinks=[seen.append], output=tmp_path / "result").run()
+    summary = kestrel.Session(folder, sinks=[seen.append], output=str(tmp_path / "result")).run()
     cameras = [observation.frame.camera for observation in seen]
     assert cameras.count(0) == 8 and cameras.count(1) == 4
     assert all(each.seen.camera == each.frame.camera for each in seen)
