@@ -1160,7 +1160,7 @@ class LandingPipeline:
         """Sets the height (m) of the camera above what it looks for, for frames without a pose; None: not
         known.
         """
-    def process(self, image: NDArray[np.uint8], time_ns: int, camera_index: int = ...) -> LandingObservation:
+    def process(self, image: NDArray[np.uint8], time_ns: int, *, camera_index: int = ...) -> LandingObservation:
         """Processes a frame.
 
         image: uint8 of shape (rows, columns), gray, of the camera's size; not copied.

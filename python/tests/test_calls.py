@@ -19,13 +19,15 @@ def pipeline(calibration):
     (lambda p: p.process(IMAGE, 1, 2), "LandingPipeline.process: got 3 by position, expected 2 at "
                                        "most (image, time_ns)"),
     (lambda p: p.process(IMAGE, time=1), "LandingPipeline.process: has no argument 'time', "
-                                         "expected image, time_ns"),
+                                         "expected image, time_ns, camera_index"),
     (lambda p: p.process(IMAGE, 2**80), "LandingPipeline.process: got (ndarray of shape (4, 4), "
-                                        f"{2**80}), expected (image, time_ns: int)"),
+                                        f"{2**80}), expected (image, time_ns: int, *, "
+                                        "camera_index: int = 0)"),
     (lambda p: p.set_altitude("3 m"), "LandingPipeline.set_altitude: 'altitude_m' is '3 m', "
                                       "expected float or None"),
     (lambda p: kestrel.LandingPipeline("a.yaml"), "LandingPipeline: 'calibration' is 'a.yaml', "
-                                                  "expected CameraCalibration"),
+                                                  "expected CameraCalibration or "
+                                                "List[CameraCalibration]"),
     (lambda p: kestrel.CameraModel("a.yaml"), "CameraModel: 'camera' is 'a.yaml', expected "
                                               "CameraModel, CameraIntrinsics or CameraCalibration"),
     (lambda p: kestrel.PoseSample(1), "PoseSample: got 1 by position, expected none"),

@@ -9,11 +9,12 @@ PERIOD_NS = 50_000_000
 
 
 def scene(x):
-    """A patch of noise at column x over smooth ground."""
+    """A patch of noise at column x, None: nowhere, over smooth ground."""
     random = np.random.default_rng(5)
     patch = np.kron(random.integers(0, 255, (10, 8, 3)), np.ones((5, 5, 1)))
     image = np.tile(np.linspace(80, 160, 320)[None, :, None], (240, 1, 3))
-    image[100:150, x:x + 40] = patch
+    if x is not None:
+        image[100:150, x:x + 40] = patch
     return image.astype(np.uint8)
 
 
@@ -26,7 +27,7 @@ def test_a_marked_region_is_followed_and_reported_as_lost():
         x, y, width, height = report.box_px
         assert x == pytest.approx(100 + 3 * i, abs=3) and y == pytest.approx(100, abs=3)
     for i in range(20, 40):
-        report = tracker.track(scene(320), i * PERIOD_NS)
+        report = tracker.track(scene(None), i * PERIOD_NS)
     assert report.state == "lost" and report.probability == 0
 
 
