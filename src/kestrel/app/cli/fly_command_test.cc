@@ -103,7 +103,7 @@ gimbal:
     EXPECT_LT(MissOf(outcome), 0.15) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("points the gimbal at the pattern")) << outcome.err;
   }
-  ExpectInputError("fly sim:standing --autopilot udpin://127.0.0.1:0 --camera " + camera,
+  ExpectInputError("fly sim:standing --autopilot udpin://127.0.0.1:0 --camera " + camera + kNear,
                    "expected sim:ardupilot or sim:px4");
 }
 
