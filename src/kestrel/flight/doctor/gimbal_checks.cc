@@ -19,7 +19,7 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
 constexpr Duration kAhead = std::chrono::milliseconds(300);
-constexpr double kCentimetres = 100;
+constexpr double kCmPerMetre = 100;
 
 // Reads the reports in one frame of the yaw, so much later than they claim.
 struct Reading {
@@ -157,7 +157,7 @@ Finding CheckGimbalByImages(const DoctorObservations& observations) {
     return NotChecked(check, fmt::format("the pattern in {} images", places.size()), advice);
   }
   const double spread_m = Spread(places);
-  std::string measured = fmt::format("the pattern wanders by {:.0f} cm", kCentimetres * spread_m);
+  std::string measured = fmt::format("the pattern wanders by {:.0f} cm", kCmPerMetre * spread_m);
   const auto is_better = [&](double other_m) {
     return spread_m - other_m > kLeast_m && other_m < kClear * spread_m;
   };
@@ -175,7 +175,7 @@ Finding CheckGimbalByImages(const DoctorObservations& observations) {
   if (is_better(other_m) && other_m < best_m) {
     return Wrong(check,
                  fmt::format("{} by its reports, by {:.0f} cm with their yaw against {}", measured,
-                             kCentimetres * other_m,
+                             kCmPerMetre * other_m,
                              other == YawFrame::kEarth ? "north" : "the UAV's heading"),
                  "the flags of its reports name another frame than they have: newer firmware of "
                  "the gimbal, or lock and follow mode changed in it");
