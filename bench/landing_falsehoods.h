@@ -39,7 +39,7 @@ LandingFrameSet RenderStills(int per_altitude, const PrintError& print, int thre
 // A hint of a caller about a frame with known pose, right or wrong.
 struct GivenHint {
   std::string_view name;
-  TargetHint (*notify)(const LandingFrame& frame);
+  TargetHint (*make)(const LandingFrame& frame);
 };
 std::span<const GivenHint> GivenHints();
 

@@ -91,10 +91,10 @@ void ReportHints(const Options& options, const LandingFrameSet& stills) {
   fmt::print("\n## What is told is wrong\n\n| told | {} |\n|---|---|---|---|---|---|---|---|\n",
              kStillHeader);
   LandingTally right;
-  for (const GivenHint& reported : GivenHints()) {
-    const LandingTally tally = Score(stills, stills.camera, reported.notify, options.verbose);
+  for (const GivenHint& given : GivenHints()) {
+    const LandingTally tally = Score(stills, stills.camera, given.make, options.verbose);
     if (right.frames == 0) right = tally;
-    fmt::print("| {} | {} |\n", reported.name, StillCells(tally, right));
+    fmt::print("| {} | {} |\n", given.name, StillCells(tally, right));
     std::fflush(stdout);
   }
 }

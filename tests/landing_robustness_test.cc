@@ -53,10 +53,10 @@ TEST(LandingRobustnessTest, WrongCalibrationCostsLittle) {
 TEST(LandingRobustnessTest, WrongHintCostsNothing) {
   const LandingFrameSet stills = RenderStills(kStillsPerAltitude, PrintErrors().front(), kThreads);
   LandingTally right;
-  for (const GivenHint& reported : GivenHints()) {
-    const LandingTally tally = Score(stills, stills.camera, reported.notify);
+  for (const GivenHint& given : GivenHints()) {
+    const LandingTally tally = Score(stills, stills.camera, given.make);
     if (right.frames == 0) right = tally;
-    ExpectAsGood(reported.name, tally, right);
+    ExpectAsGood(given.name, tally, right);
   }
 }
 

@@ -12,7 +12,7 @@ namespace kestrel {
 void DdsArguments::AddTo(CLI::App* command) {
   command
       ->add_option_function<std::string>(
-          "--dds", [this](const std::string& domain) { reported = domain; },
+          "--dds", [this](const std::string& domain) { given = domain; },
           "Publish the results as messages of ROS 2 in this DDS domain (default: ROS_DOMAIN_ID, "
           "else 0)")
       ->type_name("[DOMAIN]")
@@ -20,9 +20,9 @@ void DdsArguments::AddTo(CLI::App* command) {
 }
 
 int DdsArguments::Domain() const {
-  if (!reported || reported->empty()) return DdsDomain(std::nullopt);
-  const auto domain = ParseNumber<int>(*reported);
-  if (!domain) throw InputError(fmt::format("--dds '{}': expected a domain, 0 to 232", *reported));
+  if (!given || given->empty()) return DdsDomain(std::nullopt);
+  const auto domain = ParseNumber<int>(*given);
+  if (!domain) throw InputError(fmt::format("--dds '{}': expected a domain, 0 to 232", *given));
   return DdsDomain(*domain);
 }
 

@@ -17,11 +17,11 @@ namespace kestrel {
 
 // The option --dds. Must live until the command line is parsed.
 struct DdsArguments {
-  std::optional<std::string> reported;  // the domain; empty: that of ROS; nothing: not given
+  std::optional<std::string> given;  // the domain; empty: that of ROS; nothing: not given
 
   void AddTo(CLI::App* command);
 
-  bool is_given() const { return reported.has_value(); }
+  bool is_given() const { return given.has_value(); }
 
   // Returns a domain also where the option is not given. Throws InputError when the text is not
   // one.

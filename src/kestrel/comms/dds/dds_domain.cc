@@ -56,14 +56,14 @@ std::string WithPeers(const std::string& peers) {
 
 }  // namespace
 
-int DdsDomain(const std::optional<int>& reported) {
+int DdsDomain(const std::optional<int>& given) {
   constexpr int kLastDomain = 232;
   const std::string ros = Variable("ROS_DOMAIN_ID");
-  std::optional<int> domain = reported;
+  std::optional<int> domain = given;
   if (!domain) domain = ros.empty() ? 0 : ParseNumber<int>(ros);
   if (domain && *domain >= 0 && *domain <= kLastDomain) return *domain;
   const std::string name =
-      reported ? fmt::to_string(*reported) : fmt::format("ROS_DOMAIN_ID '{}'", Shown(ros));
+      given ? fmt::to_string(*given) : fmt::format("ROS_DOMAIN_ID '{}'", Shown(ros));
   throw InputError(fmt::format("{} is no DDS domain: expected 0 to {}", name, kLastDomain));
 }
 

@@ -6,9 +6,9 @@
 
 namespace kestrel {
 
-// Returns 'reported', or else ROS_DOMAIN_ID, or else 0. Throws InputError when that is not a domain
+// Returns 'given', or else ROS_DOMAIN_ID, or else 0. Throws InputError when that is not a domain
 // (0 to 232).
-int DdsDomain(const std::optional<int>& reported);
+int DdsDomain(const std::optional<int>& given);
 
 // Returns settings with which Cyclone DDS looks for others as ROS 2 does, from the environment:
 // ROS_AUTOMATIC_DISCOVERY_RANGE (SUBNET, LOCALHOST, OFF, SYSTEM_DEFAULT), ROS_LOCALHOST_ONLY (1

@@ -26,15 +26,15 @@ class Domain {
   explicit Domain(int domain) {
     dds_set_log_sink([](void* /*unused*/, const dds_log_data_t* /*data*/) {}, nullptr);
     const char* const variable = std::getenv("CYCLONEDDS_URI");
-    const std::string reported = variable == nullptr ? "" : variable;
+    const std::string given = variable == nullptr ? "" : variable;
     std::string settings = kOften;
-    for (const std::string& more : {DiscoverySettings(), reported}) {
+    for (const std::string& more : {DiscoverySettings(), given}) {
       if (!more.empty()) settings += "," + more;
     }
     entity_ = dds_create_domain(static_cast<dds_domainid_t>(domain), settings.c_str());
     if (entity_ >= 0) return;
     throw InputError(fmt::format("DDS domain {}: {} (CYCLONEDDS_URI '{}'; is there a network?)",
-                                 domain, dds_strretcode(-entity_), Shown(reported)));
+                                 domain, dds_strretcode(-entity_), Shown(given)));
   }
   ~Domain() { dds_delete(entity_); }
   Domain(const Domain&) = delete;

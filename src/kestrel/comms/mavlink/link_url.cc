@@ -42,13 +42,13 @@ std::string GuessedSocket(std::string_view scheme, std::string_view text) {
   constexpr int kUdp = 14000;
   const std::size_t colon = text.rfind(':');
   const bool has_port = colon != std::string_view::npos;
-  const std::string_view reported = has_port ? text.substr(colon + 1) : IsNumber(text) ? text : "";
+  const std::string_view given = has_port ? text.substr(colon + 1) : IsNumber(text) ? text : "";
   std::string host(has_port ? text.substr(0, colon) : IsNumber(text) ? "" : text);
   if (host.empty()) host = "0.0.0.0";
-  const bool is_tcp = scheme.empty() ? IsNumber(reported) && *ParseNumber<int>(reported) < kUdp
+  const bool is_tcp = scheme.empty() ? IsNumber(given) && *ParseNumber<int>(given) < kUdp
                                      : scheme.starts_with("tcp");
   const bool is_here = host == "0.0.0.0" || host == "127.0.0.1" || host == "localhost";
-  const std::string_view port = IsNumber(reported) ? reported : is_tcp ? "5760" : "14550";
+  const std::string_view port = IsNumber(given) ? given : is_tcp ? "5760" : "14550";
   if (is_tcp && host == "0.0.0.0" && scheme != "tcpin") host = "127.0.0.1";
   const std::string_view guess = is_tcp ? "tcpout" : is_here ? "udpin" : "udpout";
   return fmt::format("{}://{}:{}",

@@ -120,9 +120,9 @@ std::span<const std::uint8_t> Signing::Sign(std::span<const std::uint8_t> frame,
 Signing::Verdict Signing::Check(const Packet& packet, std::uint64_t unix_ns) {
   if (!packet.is_signed) return Verdict::kUnsigned;
   const auto frame = packet.frame();
-  const auto reported = frame.last<std::tuple_size_v<Signature>>();
-  const Signature signature = SignatureOf(frame.first(frame.size() - reported.size()));
-  if (nettle_memeql_sec(signature.data(), reported.data(), signature.size()) == 0) {
+  const auto received = frame.last<std::tuple_size_v<Signature>>();
+  const Signature signature = SignatureOf(frame.first(frame.size() - received.size()));
+  if (nettle_memeql_sec(signature.data(), received.data(), signature.size()) == 0) {
     return Verdict::kForged;
   }
   const auto stamp = frame.last<kSignatureSize>();

@@ -367,18 +367,18 @@ struct Teller {
   const std::function<void(const std::string&)>& notify;
 };
 
-void ReportUnusedKeys(const Entry& map, const Teller& teller) {
+void ReportUnusedKeys(const Entry& map, const Teller& reporter) {
   constexpr std::size_t kMost = 8;
   std::vector<std::string> unused = UnusedKeys(map);
-  if (unused.empty() || !teller.notify) return;
+  if (unused.empty() || !reporter.notify) return;
   const std::size_t more = unused.size() - std::min(unused.size(), kMost);
   unused.resize(unused.size() - more);
-  teller.notify(fmt::format("{}: not used, as not known here: {}{}", teller.file,
-                            fmt::join(unused, ", "),
-                            more == 0 ? "" : fmt::format(" and {} more", more)));
+  reporter.notify(fmt::format("{}: not used, as not known here: {}{}", reporter.file,
+                              fmt::join(unused, ", "),
+                              more == 0 ? "" : fmt::format(" and {} more", more)));
 }
 
-CameraCalibration ReadCamera(const Entry& camera, const Teller& teller) {
+CameraCalibration ReadCamera(const Entry& camera, const Teller& reporter) {
   std::optional<CameraCalibration> calibration = ReadLens(camera);
   if (!calibration) {
     camera.Fail(
@@ -390,7 +390,7 @@ CameraCalibration ReadCamera(const Entry& camera, const Teller& teller) {
   if (const std::optional<Entry> name = camera.Find({"camera_name"})) {
     calibration->name = name->Text();
   }
-  ReportUnusedKeys(camera, teller);
+  ReportUnusedKeys(camera, reporter);
   return *calibration;
 }
 
@@ -411,28 +411,28 @@ std::vector<std::string> ChainCameras(const Entry& root) {
 }
 
 CameraCalibration ReadChain(const Entry& root, const std::vector<std::string>& names,
-                            const std::string& camera, const Teller& teller) {
+                            const std::string& camera, const Teller& reporter) {
   const std::string& name = camera.empty() ? names.front() : camera;
   if (std::find(names.begin(), names.end(), name) == names.end()) {
     root.Fail(fmt::format("has no camera '{}', expected one of {}", name, fmt::join(names, ", ")));
   }
   CameraCalibration calibration =
-      ReadCamera(root.Get({name.c_str()}, "the camera's calibration"), teller);
+      ReadCamera(root.Get({name.c_str()}, "the camera's calibration"), reporter);
   calibration.name = name;
   // The other cameras' keys count as used.
   for (const std::string& other : names) root.Find({other.c_str()});
-  ReportUnusedKeys(root, teller);
+  ReportUnusedKeys(root, reporter);
   return calibration;
 }
 
-CameraCalibration ReadRoot(const Entry& root, const std::string& camera, const Teller& teller) {
+CameraCalibration ReadRoot(const Entry& root, const std::string& camera, const Teller& reporter) {
   if (!root.node().IsMap()) {
     root.Fail(
         "is not a camera calibration, expected EuRoC sensor.yaml, Kalibr camchain.yaml, ROS "
         "camera_info, OpenCV YAML or XML, or that of camodocal, VINS or ORB-SLAM");
   }
   const std::vector<std::string> chain = ChainCameras(root);
-  return chain.empty() ? ReadCamera(root, teller) : ReadChain(root, chain, camera, teller);
+  return chain.empty() ? ReadCamera(root, reporter) : ReadChain(root, chain, camera, reporter);
 }
 
 void RequireSmall(std::string_view text, const std::string& file) {

@@ -12,7 +12,7 @@
 
 namespace kestrel {
 
-// What a camera on a gimbal sees.
+// The view of a camera on a gimbal.
 struct GimbalView {
   double axis_pitch = 0;            // of the optical axis, down from the platform's x axis, rad
   double half_angle = Radians(30);  // of the image along its shorter side, rad

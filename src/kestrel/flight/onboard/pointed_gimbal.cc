@@ -116,8 +116,8 @@ void PointedGimbal::ReportControl(Time now) {
                      manager_.taken_by()));
 }
 
-// Where the track leads; before there is one, where the pad was just seen: a search that went on
-// would not see it again.
+// Returns the place to which the track leads, or, before there is a track, the place where the pad
+// was just seen: a search that went on would not see it again.
 std::optional<Vector3d> PointedGimbal::Target(Time then, const TrackSnapshot& track) {
   constexpr double kGlance_s = 1.5;
   if (track.sighting) sighting_ = track.sighting;

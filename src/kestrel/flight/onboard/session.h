@@ -30,11 +30,11 @@ struct SessionOptions {
   std::string output = {};  // folder of the tables; empty: none
   bool replace = false;     // files that are there, in 'output' and 'record'
 
-  // Of a recording.
+  // Options of a session over a recording.
   std::string annotate = {};  // frames with the results, in 'output': "video", "images" or empty
   std::ostream* table = nullptr;  // receives the table where there is no 'output'; null: nobody
 
-  // Of a flight.
+  // Options of a flight.
   FlightOptions flight = {};
   std::string autopilot = {};               // URL as of Connection; empty: none
   std::optional<LinkProfile> profile = {};  // nothing: by the autopilot's heartbeat

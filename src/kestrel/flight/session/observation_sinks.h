@@ -39,7 +39,7 @@ class ObservationSinks : public ObservationSink {
     return added;
   }
 
-  // What a sink that was left out has thrown last; empty: all work. By any thread.
+  // The last error of a sink that was left out; empty: all work. Any thread may call it.
   std::string failure() const {
     const std::lock_guard lock(mutex_);
     return failure_;

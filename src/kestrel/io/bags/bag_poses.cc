@@ -106,9 +106,8 @@ std::string NameOfTopic(const BagReader& bag, std::size_t topic, const std::stri
 }
 
 // Returns the frame whose poses are wanted.
-std::string FindBody(const FrameTree& tree, const std::string& reported,
-                     const std::string& camera) {
-  for (const std::string& body : {reported, std::string(kDefaultBody)}) {
+std::string FindBody(const FrameTree& tree, const std::string& given, const std::string& camera) {
+  for (const std::string& body : {given, std::string(kDefaultBody)}) {
     if (!body.empty() && tree.Has(body)) return body;
   }
   return tree.ChainToRoot(camera, /*only_fixed=*/true).back();

@@ -66,15 +66,15 @@ void Px4Target::Handle(const mavlink::TargetRelative& target, const FlightState&
 // Returns the target in the world, seen from the pose that the body had then.
 std::optional<Vector3d> Px4Target::InWorld(const mavlink::TargetRelative& target,
                                            const RigidTransform& world_from_body) const {
-  const Vector3d reported(target.x, target.y, target.z);
-  if (target.frame == mavlink::kTargetFrameBodyFrd) return world_from_body * FluFromFrd(reported);
+  const Vector3d sent(target.x, target.y, target.z);
+  if (target.frame == mavlink::kTargetFrameBodyFrd) return world_from_body * FluFromFrd(sent);
   if (target.frame == mavlink::kTargetFrameOther) {
     const Eigen::Quaterniond ned_from_sensor(target.q_sensor[0], target.q_sensor[1],
                                              target.q_sensor[2], target.q_sensor[3]);
     if (std::abs(ned_from_sensor.norm() - 1) > 0.01) return std::nullopt;
-    return world_from_body.translation + EnuFromNed(ned_from_sensor * reported);
+    return world_from_body.translation + EnuFromNed(ned_from_sensor * sent);
   }
-  return world_from_body.translation + EnuFromNed(reported);
+  return world_from_body.translation + EnuFromNed(sent);
 }
 
 void Px4Target::Fuse(const Vector3d& in_world, const Vector3d& sigma, const FlightState& state) {

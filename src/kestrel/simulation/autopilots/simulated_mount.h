@@ -77,7 +77,7 @@ class SimulatedMount {
   Eigen::Quaterniond world_from_platform() const { return angles_.rotation(); }
 
  private:
-  // What the motors are to do: angles, or rates. The yaw of angles is against the world's x axis,
+  // The command to the motors: angles, or rates. The yaw of angles is against the world's x axis,
   // or the vehicle's heading.
   struct SetPoint {
     GimbalAngles value;

@@ -62,7 +62,7 @@ TEST_F(LandingHintTest, HintSelectsOneOfTwoPatterns) {
 
 // However wrong the hint is, a pattern in plain view is found and located.
 TEST_F(LandingHintTest, WrongHintDoesNotHidePattern) {
-  struct Reported {
+  struct WrongHint {
     const char* what;
     TargetHint hint;
   };
@@ -93,7 +93,7 @@ TEST_F(LandingHintTest, WrongHintDoesNotHidePattern) {
     TargetHint all_wrong = center({-0.5 * distance, 0.1, 2 * distance});
     all_wrong.up_in_camera = -normal;
     all_wrong.altitude_m = distance + 500;
-    const Reported wrong[] = {
+    const WrongHint wrong[] = {
         {"altitude + 10 m", altitude(distance + 10)},
         {"altitude + 500 m", altitude(distance + 500)},
         {"altitude x 3", altitude(3 * distance)},
@@ -113,15 +113,14 @@ TEST_F(LandingHintTest, WrongHintDoesNotHidePattern) {
     const cv::Mat image = Draw(SpokedPrint(pattern_, 4), truth);
     Eigen::Vector2d center_px;
     camera_.Project(at, &center_px);
-    for (const Reported& reported : wrong) {
-      const TargetReport report = Detect(image, reported.hint);
-      ASSERT_TRUE(report.detection)
-          << reported.what << " at " << distance << " m: " << report.reason;
+    for (const WrongHint& given : wrong) {
+      const TargetReport report = Detect(image, given.hint);
+      ASSERT_TRUE(report.detection) << given.what << " at " << distance << " m: " << report.reason;
       EXPECT_LT((report.detection->center_px - center_px).norm(), 0.2)
-          << reported.what << " at " << distance << " m";
+          << given.what << " at " << distance << " m";
       // A wrong 'up' may choose the mirror pose, which agrees better with it.
       EXPECT_LT((report.detection->camera_from_target.translation - at).norm(), 0.1 * distance)
-          << reported.what << " at " << distance << " m";
+          << given.what << " at " << distance << " m";
     }
   }
 }

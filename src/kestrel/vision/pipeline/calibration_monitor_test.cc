@@ -32,12 +32,12 @@ struct Views {
     const bool is_outlier = random->Chance(outliers);
     for (int i = 0; i < 2; ++i) {
       const double sigma = random->Uniform(0.02, 0.1);
-      const Eigen::Vector4d reported(0.5, random->Uniform(-1, 1), random->Uniform(-1, 1),
-                                     random->Uniform(-0.3, 0.3));
+      const Eigen::Vector4d direction(0.5, random->Uniform(-1, 1), random->Uniform(-1, 1),
+                                      random->Uniform(-0.3, 0.3));
       const double seen =
-          is_outlier ? random->Uniform(-1, 1) : reported.dot(error) + sigma * random->Normal();
-      evidence.information += reported * reported.transpose() / (sigma * sigma);
-      evidence.pull += reported * seen / (sigma * sigma);
+          is_outlier ? random->Uniform(-1, 1) : direction.dot(error) + sigma * random->Normal();
+      evidence.information += direction * direction.transpose() / (sigma * sigma);
+      evidence.pull += direction * seen / (sigma * sigma);
     }
     return detection;
   }

@@ -54,7 +54,7 @@ void CameraWatch::AddSighting(std::size_t camera, Time time, SightingPlace place
   own.offsets_m[static_cast<std::size_t>(own.outside++ % kSightings)] = offset_m;
   if (own.outside < kSightings || own.confirmed_by_others < kConfirmations) return;
   auto offsets_m = own.offsets_m;
-  LeaveOut(Liar(camera, has_wrong_tilt), MedianInPlace(offsets_m), time);
+  LeaveOut(Contradicting(camera, has_wrong_tilt), MedianInPlace(offsets_m), time);
 }
 
 void CameraWatch::Confirm(std::size_t camera) {
@@ -64,8 +64,8 @@ void CameraWatch::Confirm(std::size_t camera) {
   confirmed_ = camera;
 }
 
-std::size_t CameraWatch::Liar(std::size_t camera,
-                              const std::function<bool(std::size_t)>& has_wrong_tilt) const {
+std::size_t CameraWatch::Contradicting(
+    std::size_t camera, const std::function<bool(std::size_t)>& has_wrong_tilt) const {
   const bool is_other =
       moved_by_ == confirmed_ || (has_wrong_tilt(confirmed_) && !has_wrong_tilt(camera));
   return is_other ? confirmed_ : camera;

@@ -15,7 +15,7 @@
 
 namespace kestrel {
 
-// Where a camera saw the target.
+// A sighting's place by the track.
 enum class SightingPlace {
   kStart,    // there was no track; it begins here
   kInside,   // where the track is, as far as mounts and clocks can be wrong
@@ -56,8 +56,8 @@ class CameraWatch {
 
   static void Set(Watched* camera, CameraHealth health, Time time);
   void Confirm(std::size_t camera);
-  std::size_t Liar(std::size_t camera,
-                   const std::function<bool(std::size_t)>& has_wrong_tilt) const;
+  std::size_t Contradicting(std::size_t camera,
+                            const std::function<bool(std::size_t)>& has_wrong_tilt) const;
   void LeaveOut(std::size_t camera, double offset_m, Time time);
 
   std::vector<Watched> cameras_;

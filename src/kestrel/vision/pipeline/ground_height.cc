@@ -14,10 +14,9 @@ bool Agree(const GroundHeight& a, const GroundHeight& b) {
 
 }  // namespace
 
-void GroundHeightEstimator::Update(const GroundHeight& reported,
-                                   std::span<const GroundHeight> seen) {
+void GroundHeightEstimator::Update(const GroundHeight& given, std::span<const GroundHeight> seen) {
   constexpr int kMinFrames = 5;
-  reported_ = reported;
+  given_ = given;
   bool is_seen = false;
   for (const GroundHeight& sighting : seen) {
     if (!std::isfinite(sighting.height_m) || !std::isfinite(sighting.sigma_m)) continue;
@@ -26,8 +25,8 @@ void GroundHeightEstimator::Update(const GroundHeight& reported,
     is_seen = true;
   }
   if (!is_seen) return;
-  double height_m = reported.height_m;
-  std::size_t most = CountNear(reported);
+  double height_m = given.height_m;
+  std::size_t most = CountNear(given);
   for (const GroundHeight& sighting : sightings_) {
     const std::size_t count = CountNear({sighting.height_m, 0});
     if (count <= most) continue;
@@ -35,7 +34,7 @@ void GroundHeightEstimator::Update(const GroundHeight& reported,
     height_m = sighting.height_m;
   }
   const GroundHeight mean = MeanNear(height_m);
-  const bool contradicts = 2 * most > sightings_.size() && !Agree(mean, reported);
+  const bool contradicts = 2 * most > sightings_.size() && !Agree(mean, given);
   contradicting_frames_ = contradicts ? contradicting_frames_ + 1 : 0;
   majority_ = contradicts ? std::optional(mean) : std::nullopt;
   contradiction_ = contradicting_frames_ >= kMinFrames ? majority_ : std::nullopt;
@@ -48,8 +47,8 @@ void GroundHeightEstimator::ForgetSightings() {
 
 std::optional<GroundHeight> GroundHeightEstimator::Contradiction() const {
   if (!contradiction_) return std::nullopt;
-  return GroundHeight{contradiction_->height_m - reported_.height_m,
-                      std::hypot(contradiction_->sigma_m, reported_.sigma_m)};
+  return GroundHeight{contradiction_->height_m - given_.height_m,
+                      std::hypot(contradiction_->sigma_m, given_.sigma_m)};
 }
 
 bool GroundHeightEstimator::Supports(const GroundHeight& sighting) const {

@@ -26,16 +26,14 @@ class GroundHeightEstimator {
 
   // Adds the sightings of one frame. A frame without a sighting changes nothing. Sightings that are
   // not finite are ignored.
-  void Update(const GroundHeight& reported, std::span<const GroundHeight> seen);
+  void Update(const GroundHeight& given, std::span<const GroundHeight> seen);
 
   // Forgets the sightings, but not a contradiction. For frames that each have a height of their
   // own.
   void ForgetSightings();
 
   // Returns the height that holds: the given one, or the seen one where that contradicts it.
-  GroundHeight Estimate(const GroundHeight& reported) const {
-    return contradiction_.value_or(reported);
-  }
+  GroundHeight Estimate(const GroundHeight& given) const { return contradiction_.value_or(given); }
 
   // Returns how much higher the ground is seen than given; nothing as long as they agree or too
   // little was seen.
@@ -52,7 +50,7 @@ class GroundHeightEstimator {
   GroundHeight MeanNear(double height_m) const;
 
   std::vector<GroundHeight> sightings_;  // the latest, oldest first
-  GroundHeight reported_;
+  GroundHeight given_;
   std::optional<GroundHeight> majority_;       // mean of most, where it contradicts
   int contradicting_frames_ = 0;               // in a row
   std::optional<GroundHeight> contradiction_;  // 'majority_' once it has held for enough frames

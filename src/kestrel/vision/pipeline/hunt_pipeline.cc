@@ -61,7 +61,7 @@ class HuntPipeline::Impl {
   std::optional<GivenHeights> FindGivenHeights() const;
 
   void Detect(const cv::Mat& image);
-  void UpdateGround(const GivenHeights& reported);
+  void UpdateGround(const GivenHeights& given);
   void LocateInWorld();
   void UpdateMap();
   void RememberForTracking();
@@ -126,19 +126,18 @@ std::optional<HuntPipeline::Impl::GivenHeights> HuntPipeline::Impl::FindGivenHei
 
 void HuntPipeline::Impl::Detect(const cv::Mat& image) {
   ObjectHint hint;
-  std::optional<GivenHeights> reported = FindGivenHeights();
+  std::optional<GivenHeights> given = FindGivenHeights();
   if (const auto& world_from_camera = observation_.world_from_camera) {
     hint.up_in_camera = world_from_camera->rotation.conjugate() * Eigen::Vector3d::UnitZ();
     hint.up_sigma_rad = Radians(options_.attitude_sigma_deg);
-    if (!options_.is_ground_flat) reported.reset();
-  } else if (reported) {
+    if (!options_.is_ground_flat) given.reset();
+  } else if (given) {
     hint.up_in_camera = -Eigen::Vector3d::UnitZ();
     hint.up_sigma_rad = Radians(kTilt_deg);
   }
-  if (reported) {
-    const GroundHeight ground =
-        options_.still ? reported->ground : ground_.Estimate(reported->ground);
-    hint.camera_height_m = reported->camera_m - ground.height_m;
+  if (given) {
+    const GroundHeight ground = options_.still ? given->ground : ground_.Estimate(given->ground);
+    hint.camera_height_m = given->camera_m - ground.height_m;
     hint.height_sigma_m = ground.sigma_m;
   }
   hint.track = track_;
@@ -152,14 +151,14 @@ void HuntPipeline::Impl::Detect(const cv::Mat& image) {
     detector_.Detect(image, hint, workspace_, &report);
   }
   observation_.detect_time = std::chrono::steady_clock::now() - start;
-  if (reported) UpdateGround(*reported);
+  if (given) UpdateGround(*given);
 }
 
 // Objects that agree on another height of the ground overrule the given height.
-void HuntPipeline::Impl::UpdateGround(const GivenHeights& reported) {
+void HuntPipeline::Impl::UpdateGround(const GivenHeights& given) {
   ObjectReport& report = observation_.report;
   const auto ground_by = [&](const HeightBySize& height, double share) {
-    return GroundHeight{reported.camera_m - height.camera_height_m,
+    return GroundHeight{given.camera_m - height.camera_height_m,
                         std::hypot(height.sigma_m, share * height.camera_height_m)};
   };
   ground_sightings_.clear();
@@ -171,7 +170,7 @@ void HuntPipeline::Impl::UpdateGround(const GivenHeights& reported) {
   }
   // For independent frames and for a flight with only a given altitude.
   if (options_.still || !observation_.world_from_camera) ground_.ForgetSightings();
-  ground_.Update(reported.ground, ground_sightings_);
+  ground_.Update(given.ground, ground_sightings_);
   const double tolerance = options_.detector.ground_tolerance / 3;
   std::erase_if(report.elsewhere, [&](const ObjectDetection& detection) {
     if (!ground_.Supports(ground_by(*detection.height, tolerance))) return false;

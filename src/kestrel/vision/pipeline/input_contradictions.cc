@@ -70,21 +70,21 @@ std::optional<Contradiction> InputContradictions::Latest::Median() const {
   return Contradiction{value, std::hypot(sigma, scatter / std::sqrt(count)), count};
 }
 
-void InputContradictions::Add(const GivenView& reported, const TargetDetection& seen) {
+void InputContradictions::Add(const GivenView& given, const TargetDetection& seen) {
   // Without an attitude the pattern is assumed to be level.
   const auto up_by = [&](const RigidTransform& pose) {
-    return reported.up_in_camera.value_or(Normal(pose));
+    return given.up_in_camera.value_or(Normal(pose));
   };
-  const double up_sigma = reported.up_in_camera ? kAttitudeSigma : AngleSigma(seen);
-  if (reported.up_in_camera) {
+  const double up_sigma = given.up_in_camera ? kAttitudeSigma : AngleSigma(seen);
+  if (given.up_in_camera) {
     const auto tilt = [&](const RigidTransform& pose) {
-      return AngleBetween(Normal(pose), *reported.up_in_camera);
+      return AngleBetween(Normal(pose), *given.up_in_camera);
     };
     tilts_.Add({LeastDifference(seen, tilt), std::hypot(AngleSigma(seen), kAttitudeSigma)});
   }
-  if (!reported.altitude_m) return;
+  if (!given.altitude_m) return;
   const auto excess_m = [&](const RigidTransform& pose) {
-    return *reported.altitude_m + up_by(pose).dot(pose.translation);
+    return *given.altitude_m + up_by(pose).dot(pose.translation);
   };
   const RigidTransform& pose = seen.camera_from_target;
   const double aside_m = up_by(pose).cross(pose.translation).norm();

@@ -28,7 +28,7 @@ struct Contradiction {
 // detection count: agreement with one of them is no contradiction.
 class InputContradictions {
  public:
-  void Add(const GivenView& reported, const TargetDetection& seen);
+  void Add(const GivenView& given, const TargetDetection& seen);
 
   // Returns by how much (m) the given altitude is larger than the seen one. Nothing where they
   // agree, where too little was seen, or where the attitude is wrong, because the altitude depends

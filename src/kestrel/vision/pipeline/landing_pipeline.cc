@@ -248,11 +248,11 @@ LandingObservation LandingPipeline::Impl::Process(const cv::Mat& image, Time tim
 
 void LandingPipeline::Impl::Detect(const cv::Mat& image, Eye* eye,
                                    LandingObservation* observation) const {
-  const GivenView reported = GivenViewOf(*observation);
+  const GivenView given = GivenViewOf(*observation);
   TargetHint hint;
   const double excess_m = AltitudeExcess(*eye);
-  if (reported.altitude_m > excess_m) hint.altitude_m = *reported.altitude_m - excess_m;
-  hint.up_in_camera = reported.up_in_camera;
+  if (given.altitude_m > excess_m) hint.altitude_m = *given.altitude_m - excess_m;
+  hint.up_in_camera = given.up_in_camera;
   if (!options_.still) {
     AddTrack(*eye, *observation, &hint);
     AddLastSighting(*eye, *observation, &hint);
@@ -266,7 +266,7 @@ void LandingPipeline::Impl::Detect(const cv::Mat& image, Eye* eye,
   auto& detection = observation->report.detection;
   if (!detection) return;
   if (IsUsed(observation->camera)) {
-    eye->contradictions.Add(reported, *detection);
+    eye->contradictions.Add(given, *detection);
     eye->calibration.Add(*detection);
   }
   if (!options_.still) AddErrorOfFocalLength(*eye, &*detection);
@@ -291,12 +291,12 @@ void LandingPipeline::Impl::AddErrorOfFocalLength(const Eye& eye, TargetDetectio
 GivenView LandingPipeline::Impl::GivenViewOf(const LandingObservation& observation) const {
   const auto& world_from_camera = observation.world_from_camera;
   if (!world_from_camera) return {altitude_m_, {}};
-  GivenView reported;
+  GivenView given;
   if (options_.altitude_hint) {
-    reported.altitude_m = world_from_camera->translation.z() - options_.target_height_m;
+    given.altitude_m = world_from_camera->translation.z() - options_.target_height_m;
   }
-  reported.up_in_camera = world_from_camera->rotation.conjugate() * Eigen::Vector3d::UnitZ();
-  return reported;
+  given.up_in_camera = world_from_camera->rotation.conjugate() * Eigen::Vector3d::UnitZ();
+  return given;
 }
 
 void LandingPipeline::Impl::AddTrack(const Eye& eye, const LandingObservation& observation,

@@ -104,10 +104,10 @@ void GstWatch::Poll(Duration timeout) {
 
 void GstWatch::Take(GstMessage* message) {
   if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_EOS) has_ended_ = true;
-  const GstStructure* reported = gst_message_get_structure(message);
+  const GstStructure* structure = gst_message_get_structure(message);
   if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ELEMENT &&
-      gst_structure_has_name(reported, "missing-plugin")) {
-    const char* missing = gst_structure_get_string(reported, "name");
+      gst_structure_has_name(structure, "missing-plugin")) {
+    const char* missing = gst_structure_get_string(structure, "name");
     if (missing != nullptr) missing_ = missing;
   }
   if (GST_MESSAGE_TYPE(message) != GST_MESSAGE_ERROR || !fault_.empty()) return;

@@ -81,7 +81,7 @@ bool DetectionChoice::Add(const PrintFinding& finding) {
   log_.Reach(LandingStage::kFound, {});
   if (!Replaces(finding)) return true;
   // A finding that contradicts the hint ends the search only when it is beyond doubt.
-  is_sure_ = finding.log_odds + finding.reported >= least_log_odds_ &&
+  is_sure_ = finding.log_odds + finding.by_hint >= least_log_odds_ &&
              (!finding.is_part() || finding.relative_sigma() <= kMaxSureSigma);
   return true;
 }
@@ -95,8 +95,7 @@ bool DetectionChoice::Replaces(const PrintFinding& finding) {
     if (is_better) best_ = finding;
     return is_better;
   }
-  if (best_ && finding.log_odds + finding.reported <= best_->log_odds + best_->reported)
-    return false;
+  if (best_ && finding.log_odds + finding.by_hint <= best_->log_odds + best_->by_hint) return false;
   mirror_.reset();
   best_ = finding;
   return true;

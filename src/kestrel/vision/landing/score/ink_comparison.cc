@@ -45,7 +45,7 @@ struct Ramp {
   }
 };
 constexpr Ramp kIsInk{0.2f, 0.6f}, kIsDark{0.35f, 0.85f}, kIsInkOnly{0.7f, 0.95f};
-// Of the darkness of another ring's stroke, of which noise makes some.
+// A dark place is a stroke of another ring; noise alone reaches the lower end.
 constexpr Ramp kIsStroke{0.3f, 0.8f};
 constexpr Ramp kInAnyLight{-1, 1};     // from white in a highlight to ink
 constexpr float kBeyondWhite = 0.15f;  // above lit white, share of the contrast

@@ -23,7 +23,7 @@ struct PrintFinding {
   Eigen::Vector2d diameters_px;   // diameters of the ring, the longer one first
   PrintDoubts doubts;
   double log_odds = 0;  // that it is the pattern, by the doubts alone
-  double reported = 0;  // log odds that the hint adds to that; at most 0
+  double by_hint = 0;   // log odds that the hint adds to that; at most 0
 
   bool is_part() const { return method == DetectionMethod::kPartial; }
   // Standard deviation of the position, as a share of the distance.

@@ -59,9 +59,9 @@ TEST_F(PriorKnowledgeTest, PartOfImageContainsBoard) {
     const RigidTransform truth = PrintPose(
         {random.Uniform(-0.6, 0.6) * distance, random.Uniform(-0.4, 0.4) * distance, distance},
         random.Uniform(0, 0.5), random.Uniform(0, 6), random.Uniform(0, 6));
-    Vector3d reported = truth.translation;
-    for (int k = 0; k < 2; ++k) reported(k) += random.Uniform(-1, 1) * sigma_m;
-    const TargetHint hint = CenterAt(reported);
+    Vector3d given = truth.translation;
+    for (int k = 0; k < 2; ++k) given(k) += random.Uniform(-1, 1) * sigma_m;
+    const TargetHint hint = CenterAt(given);
     const auto part = Of(hint).PartOfImage(sigma_m);
     ASSERT_TRUE(part);
     const cv::Rect image(0, 0, camera_.width_px(), camera_.height_px());

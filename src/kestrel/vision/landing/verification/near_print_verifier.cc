@@ -228,7 +228,7 @@ bool NearPrintVerifier::Locate(const PrintAlignment& alignment, const RigidTrans
   finding.doubts[PrintDoubt::kMisfit] = LogShare(location->edge_rms_px / MeanDiameter(finding));
   DoubtView(finding.diameters_px, finding.relative_sigma(), &finding.doubts);
   finding.log_odds = PrintLogOdds(finding.kind, finding.doubts);
-  finding.reported = search_.prior.LogOddsOfDistance(location->camera_from_target.translation);
+  finding.by_hint = search_.prior.LogOddsOfDistance(location->camera_from_target.translation);
   return search_.choice.Add(finding);
 }
 

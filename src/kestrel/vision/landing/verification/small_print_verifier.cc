@@ -127,7 +127,7 @@ std::optional<PrintFinding> SmallPrintVerifier::FindingOf(const SmallPatternFitt
   DoubtView(finding.diameters_px, finding.relative_sigma(), &finding.doubts);
   finding.doubts[PrintDoubt::kShadows] = light == Light::kShadows ? 1 : 0;
   finding.log_odds = PrintLogOdds(finding.kind, finding.doubts);
-  finding.reported = search_.prior.LogOddsOfDistance(pose.translation);
+  finding.by_hint = search_.prior.LogOddsOfDistance(pose.translation);
   return finding;
 }
 
