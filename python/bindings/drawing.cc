@@ -3,6 +3,7 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "enum_casters.h"
+#include "kestrel/io/recording/overlays/follow_overlay.h"
 #include "kestrel/landing_overlay.h"
 #include "kestrel/object_overlay.h"
 #include "seen.h"
@@ -45,6 +46,16 @@ py::array DrawHunt(const py::handle& image, const SeenHunt& seen) {
   return ArrayOf(drawn);
 }
 
+py::array DrawFollow(const py::handle& image, const FollowObservation& seen) {
+  const cv::Mat pixels = ColorImage(image);
+  cv::Mat drawn;
+  {
+    const py::gil_scoped_release release;
+    drawn = DrawFollowOverlay(pixels, seen);
+  }
+  return ArrayOf(drawn);
+}
+
 py::array DrawObjects(const py::handle& image, const SeenObjects& report) {
   SeenHunt seen{{}, report.model};
   seen.report = report;
@@ -58,10 +69,11 @@ void BindDrawing(py::module_& module) {
       "Returns a copy of an image with a result drawn in, uint8 BGR: of a pad its outlines, axes, "
       "distance and quality, or the stage at which the best candidate fell, and why; of objects "
       "their outlines, classes and distances.\n\nimage: the image that was searched.\nobservation: "
-      "TargetReport, LandingObservation, ObjectReport or HuntObservation.";
+      "TargetReport, LandingObservation, ObjectReport, HuntObservation or FollowObservation.";
   module.def("draw", &DrawLanding, py::arg("image"), py::arg("observation"), kDraw);
   module.def("draw", &DrawReport, py::arg("image"), py::arg("observation"));
   module.def("draw", &DrawHunt, py::arg("image"), py::arg("observation"));
+  module.def("draw", &DrawFollow, py::arg("image"), py::arg("observation"));
   module.def("draw", &DrawObjects, py::arg("image"), py::arg("observation"));
 }
 

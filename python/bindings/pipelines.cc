@@ -15,7 +15,9 @@
 #include "bindings.h"
 #include "detector.h"
 #include "enum_casters.h"
+#include "kestrel/follow_pipeline.h"
 #include "kestrel/hunt_pipeline.h"
+#include "kestrel/io/recording/overlays/follow_overlay.h"
 #include "kestrel/landing_pipeline.h"
 #include "kestrel/vision/pipeline/require_altitude.h"
 #include "option_values.h"
@@ -180,6 +182,28 @@ void BindHuntObservation(py::module_& module) {
       });
 }
 
+void BindFollowObservation(py::module_& module) {
+  using Seen = FollowObservation;
+  ValueClass<PlaceOnGround>(module, "PlaceOnGround", "A place on the ground, in the world (ENU).")
+      .Field("position", &PlaceOnGround::position, "float64 of 3, m.")
+      .Field("covariance", &PlaceOnGround::covariance, "float64 of (3, 3), m^2, of all errors.");
+  ValueClass<Seen>(module, "FollowObservation", "What was seen of a marked thing in a frame.")
+      .Field("time_ns", &Seen::time, "Of the frame, on the images' clock, int, ns.")
+      .Field("region", &Seen::region, "RegionReport, or None before something was marked.")
+      .Field("world_from_camera", &Seen::world_from_camera,
+             "RigidTransform, or None without a pose.")
+      .Field("bearing", &Seen::bearing,
+             "Direction to it in the world, float64 of 3, of length 1; or None.")
+      .Field("place", &Seen::place, "PlaceOnGround; None near and above the horizon.")
+      .Field("fate", &Seen::fate, "What the track made of the place, or None.")
+      .Field("track_state", &Seen::track_state, "'searching', 'tracking', 'predicting' or 'lost'.")
+      .Field("target", &Seen::target, "TargetEstimate at the time of the frame, or None.")
+      .Field("detect_time_s", &Seen::detect_time, "Time of the tracker alone, s.")
+      .Repr([](const Seen& self) {
+        return fmt::format("<FollowObservation: {}>", InWords(self));
+      });
+}
+
 constexpr char kAddPose[] =
     "Adds a PoseSample of the navigation, later than those before. Returns 'ok', 'out of order' or "
     "'invalid'.";
@@ -302,6 +326,7 @@ void BindHuntPipeline(py::module_& module) {
 void BindPipelines(py::module_& module) {
   BindLandingObservation(module);
   BindHuntObservation(module);
+  BindFollowObservation(module);
   BindLandingPipeline(module);
   BindHuntPipeline(module);
 }

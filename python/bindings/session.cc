@@ -2,7 +2,9 @@
 // Sessions: a source, the vision, and functions of Python that get the results.
 #include "kestrel/session.h"
 
+#include <array>
 #include <atomic>
+#include <cstddef>
 #include <exception>
 #include <functional>
 #include <memory>
@@ -22,6 +24,7 @@
 #include "kestrel/app/fly/fly_source.h"
 #include "kestrel/asynchronous_sink.h"
 #include "kestrel/comms/dds/dds_domain.h"
+#include "kestrel/io/recording/tables/follow_csv.h"
 #include "kestrel/io/recording/tables/landing_csv.h"
 #include "kestrel/io/recording/tables/object_csv.h"
 #include "kestrel/simulation/autopilots/sitl_result.h"
@@ -38,7 +41,7 @@ namespace py = pybind11;
 // A frame and what was seen in it, for functions of Python.
 struct SeenFrame {
   Frame frame;
-  std::variant<SeenLanding, SeenHunt> seen;
+  std::variant<SeenLanding, SeenHunt, FollowObservation> seen;
   std::optional<Duration> latency;
 };
 
@@ -51,6 +54,8 @@ struct Views {
     SeenFrame frame{observation.frame, {}, observation.latency};
     if (const auto* hunt = std::get_if<HuntObservation>(&observation.seen)) {
       frame.seen = SeenHunt{*hunt, model};
+    } else if (const auto* follow = std::get_if<FollowObservation>(&observation.seen)) {
+      frame.seen = *follow;
     } else {
       frame.seen = SeenLanding{std::get<LandingObservation>(observation.seen),
                                pads[observation.frame.camera]};
@@ -59,11 +64,19 @@ struct Views {
   }
 };
 
+using Box = std::array<double, 4>;
+
+// Throws InputError for two tasks at once.
+std::string TaskName(bool hunt, bool follow) {
+  if (hunt && follow) throw InputError("hunt, follow: expected one of them");
+  return follow ? "follow" : hunt ? "hunt" : "land";
+}
+
 // The settings of a session, as its constructor takes them.
 struct Choices {
   py::object source;  // a path, or a Recording
   py::object camera;
-  std::string task;    // "land" or "hunt"
+  std::string task;    // "land", "hunt" or "follow"
   py::object options;  // nothing, a dict or a path
   std::vector<py::function> sinks;
   py::object on_event;  // a function, or nothing
@@ -75,6 +88,7 @@ struct Choices {
   bool replace = false;
   std::string autopilot;
   bool guides = false;
+  std::optional<FollowMark> mark = {};
 };
 
 // Calls functions of Python with the frames and events of a session over a recording.
@@ -163,6 +177,7 @@ TaskOptions VisionOptions(const py::object& options) {
   const auto values = OptionsOf<TaskOptions>(vision, {}, [](const auto& file) { return file; });
   RequireValid(values.landing);
   RequireValid(values.hunt);
+  RequireValid(values.follow);
   return values;
 }
 
@@ -202,7 +217,7 @@ class Session {
     }
     WarnOf(options_.landing.target);
     if (!choices_.model) choices_.model = std::make_shared<ObjectModel>(DefaultObjectModel());
-    task_ = MakeTask(choices_.task, options_, {.model = *choices_.model});
+    task_ = MakeTask(choices_.task, options_, {.model = *choices_.model, .mark = choices_.mark});
   }
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -308,19 +323,23 @@ class Session {
 void BindSeenFrame(py::module_& module) {
   ValueClass<SeenFrame>(module, "Observation", "A frame and what was seen in it.")
       .Field("frame", &SeenFrame::frame, "Frame.")
-      .Field("seen", &SeenFrame::seen, "LandingObservation or HuntObservation.")
+      .Field("seen", &SeenFrame::seen, "LandingObservation, HuntObservation or FollowObservation.")
       .Field("latency_s", &SeenFrame::latency,
              "Time from the capture until it was processed, s; None for recordings.")
       .Derived(
           "csv_header",
           [](const SeenFrame& self) {
+            if (std::holds_alternative<FollowObservation>(self.seen)) return FollowCsvHeader();
             return std::holds_alternative<SeenHunt>(self.seen) ? ObjectCsvHeader()
                                                                : LandingCsvHeader();
           },
-          "First line of object_detections.csv or landing_detections.csv.")
+          "First line of object_detections.csv, landing_detections.csv or follow_track.csv.")
       .Derived(
           "csv_rows",
           [](const SeenFrame& self) {
+            if (const auto* follow = std::get_if<FollowObservation>(&self.seen)) {
+              return FollowCsvRow(self.frame.name, *follow);
+            }
             const auto* hunt = std::get_if<SeenHunt>(&self.seen);
             return hunt ? ObjectCsvRows(self.frame.name, *hunt, *hunt->model)
                         : LandingCsvRow(self.frame, std::get<SeenLanding>(self.seen), false);
@@ -335,23 +354,34 @@ void BindSession(py::module_& module) {
   py::class_<Session>(
       module, "Session",
       "A source, the vision, and functions that get the results: what `kestrel land`, `kestrel "
-      "hunt` and, live, `kestrel fly` run.")
+      "hunt`, `kestrel follow` and, live, `kestrel fly` run.")
       .def(
           py::init([](const py::object& source, const py::object& camera,
                       std::vector<py::function> sinks, bool hunt, const py::object& options,
                       std::optional<double> altitude_m, const std::shared_ptr<ObjectModel>& model,
                       const std::string& output, bool replace, bool live,
                       const std::string& autopilot, bool guide, const std::string& record,
-                      const py::object& on_event) {
-            return std::make_unique<Session>(
-                Choices{source, camera, hunt ? "hunt" : "land", options, std::move(sinks), on_event,
-                        altitude_m, live, model, output, record, replace, autopilot, guide});
+                      const py::object& on_event, const std::optional<Box>& follow,
+                      std::size_t follow_at) {
+            Choices choices{source,     camera, TaskName(hunt, follow.has_value()),
+                            options,    std::move(sinks),
+                            on_event,   altitude_m,
+                            live,       model,
+                            output,     record,
+                            replace,    autopilot,
+                            guide};
+            if (follow) {
+              const auto& [x, y, width, height] = *follow;
+              choices.mark = {cv::Rect2d(x, y, width, height), follow_at};
+            }
+            return std::make_unique<Session>(std::move(choices));
           }),
           py::arg("source"), py::arg("camera") = py::none(), py::arg("sinks") = py::list(),
           py::kw_only(), py::arg("hunt") = false, py::arg("options") = py::none(),
           py::arg("altitude_m") = py::none(), py::arg("model") = py::none(), py::arg("output") = "",
           py::arg("replace") = false, py::arg("live") = false, py::arg("autopilot") = "",
           py::arg("guide") = false, py::arg("record") = "", py::arg("on_event") = py::none(),
+          py::arg("follow") = py::none(), py::arg("follow_at") = 0,
           "source: a path (recording, bag, video, images), a Recording or SimulatedFlight; with "
           "live=True also '/dev/video0', 'rtsp://...', a GStreamer pipeline, "
           "'dds:/camera/image_raw' of ROS 2 or 'sim:standing', a simulated flight.\ncamera: path "
@@ -364,7 +394,8 @@ void BindSession(py::module_& module) {
           "replace: those that are there.\nlive: in real time, as it is flown; a sink that is slow "
           "misses frames.\nautopilot, guide, record: of live sessions, as of `kestrel fly`, also "
           "autopilot='sim:ardupilot' or 'sim:px4', a simulated one.\non_event: gets each message, "
-          "as a warning, as a text.")
+          "as a warning, as a text.\nfollow: box (x, y, width, height, px) around what is to be "
+          "followed in a recording, in its frame number 'follow_at'.")
       .def("run", &Session::Run,
            "Runs to the end of the source, until stop() or Ctrl-C. Returns a summary in words. "
            "Raises InputError when the source fails, and what a sink raises: at once over a "

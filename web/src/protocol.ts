@@ -63,7 +63,8 @@ export type CommandName =
   | "lens"
   | "lens-stop"
   | "lens-save"
-  | "settings";
+  | "settings"
+  | "mark";
 
 export interface Hello {
   kind: "hello";

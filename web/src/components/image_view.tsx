@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { useEffect, useRef, useState } from "preact/hooks";
-import { showView, toggleLayer, togglePlaying } from "../actions";
+import { isOffered, showView, toggleLayer, togglePlaying } from "../actions";
 import { connection, type Picture } from "../connection";
+import { boxShape, follow, markedBox, type Point } from "../marking";
 import { drawOverlay, layerColor, ofRun, together } from "../overlay";
 import type { FrameHeader, Layer, Shape } from "../protocol";
 import { store, type State } from "../store";
@@ -13,6 +14,12 @@ const lateMs = 500;
 
 const noLayers: Layer[] = [];
 const noViews: string[] = [];
+
+/** The picture that is drawn, and a shape that is drawn over it. */
+interface Drawn {
+  header: () => FrameHeader | null;
+  mark: (shape: Shape | null) => void;
+}
 
 interface Shown {
   header: FrameHeader;
@@ -27,14 +34,14 @@ export function ImageView() {
   const isBeside = useStore(hasTwoPictures);
   const isFresh = useFresh(["frames"]);
   const replay = useStore((state) => state.studyReplay);
-  usePictures(canvas, secondCanvas, setShown);
+  const marking = useMarking(usePictures(canvas, secondCanvas, setShown));
   return (
     <section class="image" aria-label="Image">
       <div class={isBeside ? "screens beside" : "screens"}>
         <div>
           {isBeside && <h2>{titleOf("First run", replay?.before)}</h2>}
           <div class="screen" data-stale={!isFresh}>
-            <canvas ref={canvas} role="img" aria-label={pictureInWords(shown, 1, isFresh)} />
+            <canvas ref={canvas} role="img" aria-label={pictureInWords(shown, 1, isFresh)} {...marking} />
             {shown !== null && !isFresh && <OldPicture shown={shown} />}
             {shown === null && <p class="empty">No image yet</p>}
           </div>
@@ -51,6 +58,7 @@ export function ImageView() {
         )}
       </div>
       <PictureAge shown={shown} />
+      <MarkHint />
     </section>
   );
 }
@@ -98,7 +106,8 @@ function usePictures(
   canvas: { current: HTMLCanvasElement | null },
   secondCanvas: { current: HTMLCanvasElement | null },
   setShown: (shown: Shown) => void,
-): void {
+): Drawn {
+  const marked = useRef<Shape | null>(null);
   const picture = useRef<Picture | null>(null);
   const isBeside = useStore(hasTwoPictures);
   const layers = useStore((state) => state.layers);
@@ -107,7 +116,8 @@ function usePictures(
     if (!picture.current) return;
     const { shapes } = picture.current.header;
     if (!isFresh) return drawPicture(canvas.current, picture.current, []);
-    if (!secondCanvas.current) return drawPicture(canvas.current, picture.current, together(shapes));
+    const more = marked.current ? [marked.current] : [];
+    if (!secondCanvas.current) return drawPicture(canvas.current, picture.current, [...together(shapes), ...more]);
     drawPicture(canvas.current, picture.current, ofRun(shapes, 1));
     drawPicture(secondCanvas.current, picture.current, ofRun(shapes, 2));
   };
@@ -132,6 +142,57 @@ function usePictures(
   const view = useStore((state) => state.view);
   const isFrozen = useStore((state) => state.isFrozen);
   useEffect(() => connection.wantImages({ view, isHeld: isFrozen }), [view, isFrozen]);
+  const mark = (shape: Shape | null) => {
+    marked.current = shape;
+    draw();
+  };
+  return { header: () => picture.current?.header ?? null, mark };
+}
+
+/** Pointer events that mark something in the picture; none where nothing can be followed. */
+function useMarking({ header, mark }: Drawn) {
+  const canMark = useStore((state) => state.hello !== null && isOffered("mark"));
+  const begun = useRef<{ at: Point; header: FrameHeader } | null>(null);
+  if (!canMark) return {};
+  const boxTo = (event: PointerEvent) => {
+    const { width, height } = begun.current!.header;
+    return markedBox(begun.current!.at, pointOf(event, width, height), width, height);
+  };
+  return {
+    class: "markable",
+    onPointerDown: (event: PointerEvent) => {
+      const shown = header();
+      if (event.button !== 0 || shown === null) return;
+      (event.currentTarget as HTMLElement).setPointerCapture(event.pointerId);
+      begun.current = { at: pointOf(event, shown.width, shown.height), header: shown };
+    },
+    onPointerMove: (event: PointerEvent) => {
+      if (begun.current) mark(boxShape(boxTo(event)));
+    },
+    onPointerUp: (event: PointerEvent) => {
+      if (begun.current) follow(begun.current.header, boxTo(event));
+      begun.current = null;
+      mark(null);
+    },
+    onPointerCancel: () => {
+      begun.current = null;
+      mark(null);
+    },
+  };
+}
+
+/** The pixel under a pointer. */
+function pointOf(event: PointerEvent, width: number, height: number): Point {
+  const box = (event.currentTarget as HTMLElement).getBoundingClientRect();
+  return [
+    ((event.clientX - box.left) / box.width) * width - 0.5,
+    ((event.clientY - box.top) / box.height) * height - 0.5,
+  ];
+}
+
+function MarkHint() {
+  const canMark = useStore((state) => state.hello !== null && isOffered("mark"));
+  return canMark ? <p class="hint">Click on what is to be followed, or drag a box around it.</p> : null;
 }
 
 // The canvas is at least so wide that lines and words over a small frame are fine.

@@ -89,9 +89,12 @@ void FlyArguments::AddTo(CLI::App* command) {
   command->add_option("--model", model, "Objects and their colours (YAML), with --hunt")
       ->type_name("FILE")
       ->needs(hunt_flag);
-  guide_flag->excludes(hunt_flag);
-  point_flag->excludes(hunt_flag);
-  hunt_flag->excludes("--target")->excludes("--target-id")->excludes("--target-size");
+  CLI::Option* follow_flag = command->get_option("--follow");
+  for (CLI::Option* other : {hunt_flag, follow_flag}) {
+    guide_flag->excludes(other);
+    point_flag->excludes(other);
+    other->excludes("--target")->excludes("--target-id")->excludes("--target-size");
+  }
   team.AddTo(command)->needs(hunt_flag);
   command->add_flag("--loop", loop, "Play a recording in a loop");
 }

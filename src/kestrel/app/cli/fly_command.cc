@@ -264,6 +264,12 @@ class Flight {
                 [this, logged](const cv::Mat& image, Time captured) {
                   return logged(keeper_->KeepSnapshot(image, captured));
                 },
+            .mark =
+                [this, logged](Time captured, const cv::Rect2d& box) {
+                  session_->Mark(captured, box);
+                  return logged(fmt::format("follows a box of {:.0f} x {:.0f} px", box.width,
+                                            box.height));
+                },
             .settings =
                 [this](const std::vector<std::string>& settings) {
                   if (settings.empty()) return settings_.State();

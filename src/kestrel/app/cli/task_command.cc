@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
@@ -27,9 +28,14 @@ struct TaskArguments {
   TeamArguments team;
   std::string model, grid;
   std::vector<double> origin;  // latitude, longitude, degrees; or empty
+  std::vector<double> box_px;  // x, y, width, height; or empty
+  std::size_t at = 0;          // number of the frame with that box
 
   TaskChoice Choice() const {
     TaskChoice choice{.predict_s = predict_s, .model = ReadModel(model), .origin = origin};
+    if (!box_px.empty()) {
+      choice.mark = {cv::Rect2d(box_px[0], box_px[1], box_px[2], box_px[3]), at};
+    }
     if (!grid.empty()) choice.grid = ColorGrid::Load(grid, choice.model.colors.colors.size());
     return choice;
   }
@@ -65,12 +71,27 @@ void AddHuntArguments(CLI::App* command, TaskArguments* arguments) {
       ->check(InRange(-180.0001, 180.0001, "degrees"));
 }
 
+void AddFollowArguments(CLI::App* command, TaskArguments* arguments) {
+  command
+      ->add_option("--box", arguments->box_px,
+                   "Box around what is to be followed, in pixels, as 310,200,40,60: the pixel (X, "
+                   "Y) is its upper left one")
+      ->type_name("X,Y,WIDTH,HEIGHT")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->required();
+  command
+      ->add_option("--at", arguments->at, "Number of the frame with that box, from 0")
+      ->type_name("FRAME");
+}
+
 // The arguments of one task, beside those that all tasks have.
 struct OwnArguments {
   std::string_view task;
   void (*add)(CLI::App* command, TaskArguments* arguments);
 };
-constexpr OwnArguments kOwnArguments[] = {{"land", AddLandArguments}, {"hunt", AddHuntArguments}};
+constexpr OwnArguments kOwnArguments[] = {
+    {"land", AddLandArguments}, {"hunt", AddHuntArguments}, {"follow", AddFollowArguments}};
 
 void RequireOrigin(const std::vector<double>& origin) {
   constexpr double kMaxLatitude_deg = 90;
@@ -106,8 +127,14 @@ std::unique_ptr<TeamLink> OpenTeam(const TaskArguments& arguments, const OpenedS
       [](const std::string& text) { fmt::print(stderr, "kestrel: {}\n", text); });
 }
 
+void RequireBox(const std::vector<double>& box) {
+  if (box.empty() || box.size() == 4) return;
+  throw CLI::ValidationError("--box", "expected x,y,width,height in pixels, as 310,200,40,60");
+}
+
 void RunTask(const TaskKind& kind, const TaskArguments& arguments) {
   RequireOrigin(arguments.origin);
+  RequireBox(arguments.box_px);
   const SourceArguments& source = arguments.source;
   KestrelOptions options = source.options.Read();
   if (source.still) options.landing.still = options.hunt.still = true;

@@ -24,7 +24,7 @@ constexpr int kNiceness = 10;
 std::vector<LiveChannel> ChannelsOf(const TaskView& view) {
   std::vector<LiveChannel> channels;
   for (const FoxgloveTopicInfo& topic : kObservationTopics) {
-    if (topic.name == kTargetTopic.name && !std::holds_alternative<LandingView>(view)) continue;
+    if (topic.name == kTargetTopic.name && std::holds_alternative<HuntView>(view)) continue;
     channels.push_back({.topic = std::string(topic.name),
                         .encoding = "protobuf",
                         .schema_name = std::string(topic.type),

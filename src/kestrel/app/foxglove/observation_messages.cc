@@ -205,6 +205,19 @@ foxglove::Target TargetMessage(const TargetEstimate& target) {
   return message;
 }
 
+// The track of the target: its position, its path, and a text above it.
+foxglove::SceneEntity& AddTrack(const TargetEstimate& target, const TurnNoise& noise, Time time,
+                                const char* state, foxglove::SceneUpdate* scene) {
+  const TurnState& motion = target.motion;
+  foxglove::SceneEntity& entity = scene->entities.emplace_back(EntityOf(time, "target"));
+  entity.spheres.push_back(
+      Ellipsoid(motion.position(), motion.covariance.topLeftCorner<3, 3>(), kGreen));
+  entity.lines.push_back(PathLine(motion, noise));
+  entity.texts.push_back(
+      TextAt(motion.position(), fmt::format("{} {:.1f} m/s", state, target.speed())));
+  return entity;
+}
+
 }  // namespace
 
 foxglove::CameraCalibration FoxgloveCalibration(Time time, const CameraIntrinsics& camera) {
@@ -252,15 +265,18 @@ foxglove::SceneUpdate FoxgloveScene(const LandingView& view,
                                     const LandingObservation& observation) {
   foxglove::SceneUpdate scene;
   if (!observation.target) return scene;
-  const TurnState& motion = observation.target->motion;
-  foxglove::SceneEntity& target = scene.entities.emplace_back(EntityOf(observation.time, "target"));
-  target.spheres.push_back(
-      Ellipsoid(motion.position(), motion.covariance.topLeftCorner<3, 3>(), kGreen));
-  target.lines.push_back(RingLine(motion.position(), view.shape.radius_m()));
-  target.lines.push_back(PathLine(motion, view.noise));
-  target.texts.push_back(
-      TextAt(motion.position(), fmt::format("{} {:.1f} m/s", ToString(observation.track_state),
-                                            observation.target->speed())));
+  foxglove::SceneEntity& target = AddTrack(*observation.target, view.noise, observation.time,
+                                           ToString(observation.track_state), &scene);
+  const Eigen::Vector3d center = observation.target->motion.position();
+  target.lines.insert(target.lines.begin(), RingLine(center, view.shape.radius_m()));
+  return scene;
+}
+
+foxglove::SceneUpdate FoxgloveScene(const FollowView& view, const FollowObservation& observation) {
+  foxglove::SceneUpdate scene;
+  if (!observation.target) return scene;
+  AddTrack(*observation.target, view.noise, observation.time, ToString(observation.track_state),
+           &scene);
   return scene;
 }
 
@@ -287,6 +303,28 @@ foxglove::FrameResult FoxgloveResult(const LandingObservation& observation) {
   result.reason = status.reason;
   if (const auto& found = observation.report.detection) {
     result.detections.push_back(DetectionMessage(*found, observation.center_in_world));
+  }
+  if (observation.target) result.target = TargetMessage(*observation.target);
+  return result;
+}
+
+foxglove::FrameResult FoxgloveResult(const FollowObservation& observation) {
+  const ViewStatus status = FollowStatus(observation);
+  foxglove::FrameResult result;
+  result.timestamp = observation.time;
+  result.detect_ms = 1e3 * ToSeconds(observation.detect_time);
+  result.state = status.state;
+  result.reason = status.reason;
+  if (const auto& region = observation.region; region && region->state != RegionState::kLost) {
+    const cv::Rect2d& box = region->box_px;
+    foxglove::Detection& found = result.detections.emplace_back();
+    found.name = ToString(region->state);
+    found.probability = region->probability;
+    found.center = PixelOf(box.x + 0.5 * (box.width - 1), box.y + 0.5 * (box.height - 1));
+    if (const auto& place = observation.place) {
+      found.position_in_world = VectorOf(place->position);
+      found.covariance_in_world = RowByRow(place->covariance);
+    }
   }
   if (observation.target) result.target = TargetMessage(*observation.target);
   return result;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "kestrel/app/foxglove/foxglove_messages.h"
+#include "kestrel/app/views/follow_view.h"
 #include "kestrel/app/views/hunt_view.h"
 #include "kestrel/app/views/landing_view.h"
 #include "kestrel/core/base/time.h"
@@ -33,12 +34,14 @@ foxglove::ImageAnnotations FoxgloveAnnotations(Time time, const std::vector<Over
 
 // Returns a scene in the world. For a landing: the target's ring, its position with two standard
 // deviations, and its path over the next 3 s. For a hunt: each object in view with its class and
-// two standard deviations. Entities last for a second.
+// two standard deviations. For what is followed: its position and its path. Entities last for a second.
 foxglove::SceneUpdate FoxgloveScene(const LandingView& view, const LandingObservation& observation);
 foxglove::SceneUpdate FoxgloveScene(const HuntView& view, const HuntObservation& observation);
+foxglove::SceneUpdate FoxgloveScene(const FollowView& view, const FollowObservation& observation);
 
 // The frame's name and the latency are left empty.
 foxglove::FrameResult FoxgloveResult(const LandingObservation& observation);
 foxglove::FrameResult FoxgloveResult(const HuntView& view, const HuntObservation& observation);
+foxglove::FrameResult FoxgloveResult(const FollowObservation& observation);
 
 }  // namespace kestrel

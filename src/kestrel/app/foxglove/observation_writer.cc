@@ -89,6 +89,22 @@ void ObservationWriter::Write(const Frame& frame, const HuntObservation& observa
   WriteResult(frame, time, latency, FoxgloveResult(view, observation));
 }
 
+void ObservationWriter::Write(const Frame& frame, const FollowObservation& observation,
+                              std::optional<Duration> latency) {
+  Camera& camera = cameras_[frame.camera];
+  const Time time = frame.time;
+  camera.images.Write(frame, time);
+  sink_->Offer(AnnotationsOf(camera.images), time,
+               [&] { return FoxgloveAnnotations(time, FollowShapes(observation)); });
+  if (const auto& pose = observation.world_from_camera) WriteCameraPose(camera, time, *pose);
+  if (observation.target) {
+    sink_->Write(kTargetTopic, time, PoseInWorld(time, PoseOf(*observation.target)));
+  }
+  sink_->Offer(kSceneTopic, time,
+               [&] { return FoxgloveScene(std::get<FollowView>(camera.view), observation); });
+  WriteResult(frame, time, latency, FoxgloveResult(observation));
+}
+
 void ObservationWriter::Write(const Observation& observation) {
   std::visit([&](const auto& seen) { Write(observation.frame, seen, observation.latency); },
              observation.seen);

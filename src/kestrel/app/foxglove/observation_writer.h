@@ -50,6 +50,8 @@ class ObservationWriter {
   // The observation must be of the view's kind. 'latency': from capture to the result, in flight.
   void Write(const Frame& frame, const LandingObservation& observation,
              std::optional<Duration> latency = std::nullopt);
+  void Write(const Frame& frame, const FollowObservation& observation,
+             std::optional<Duration> latency);
   void Write(const Frame& frame, const HuntObservation& observation,
              std::optional<Duration> latency = std::nullopt);
   void Write(const Observation& observation);

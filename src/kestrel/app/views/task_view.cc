@@ -2,6 +2,7 @@
 #include "kestrel/app/views/task_view.h"
 
 #include "kestrel/core/base/error.h"
+#include "kestrel/flight/session/follow_task.h"
 #include "kestrel/flight/session/hunt_task.h"
 #include "kestrel/flight/session/land_task.h"
 
@@ -22,12 +23,18 @@ ViewFrame ViewFrameOf(const HuntView& view, const HuntObservation& observation) 
           HuntMap(view, observation), HuntShapes(view, observation), HuntFacts(view, observation)};
 }
 
+ViewFrame ViewFrameOf(const FollowView& /*view*/, const FollowObservation& observation) {
+  return {observation.time,       FollowSample(observation), FollowStatus(observation),
+          FollowMap(observation), FollowShapes(observation), FollowFacts(observation)};
+}
+
 }  // namespace
 
 ViewParts PartsOf(const TaskView& view) {
   if (const auto* hunt = std::get_if<HuntView>(&view)) {
     return {HuntSeries(), HuntLayers(), HuntImageViews(*hunt)};
   }
+  if (std::holds_alternative<FollowView>(view)) return {FollowSeries(), FollowLayers(), {}};
   return {LandingSeries(), LandingLayers(), LandingImageViews()};
 }
 
@@ -37,6 +44,9 @@ TaskView ViewOf(const Task& task, const CameraCalibration& calibration) {
   }
   if (const auto* hunt = dynamic_cast<const HuntTask*>(&task)) {
     return HuntView{hunt->model(), hunt->options().detector};
+  }
+  if (const auto* follow = dynamic_cast<const FollowTask*>(&task)) {
+    return FollowView{follow->options().Tracker().Noise()};
   }
   throw InputError("this task has no view for a page or an MCAP file");
 }

@@ -5,6 +5,7 @@
 #include <variant>
 #include <vector>
 
+#include "kestrel/app/views/follow_view.h"
 #include "kestrel/app/views/hunt_view.h"
 #include "kestrel/app/views/landing_view.h"
 #include "kestrel/app/views/view_data.h"
@@ -17,7 +18,7 @@
 namespace kestrel {
 
 // The view of a task, which viewers make of a session's results.
-using TaskView = std::variant<LandingView, HuntView>;
+using TaskView = std::variant<LandingView, HuntView, FollowView>;
 
 // The parts of a view: series to plot, layers over the image, and images in its place.
 struct ViewParts {

@@ -91,6 +91,9 @@ class Flight : public LiveSession {
   void Change(const TaskOptions& options, std::optional<double> altitude_m) override {
     BetweenFrames([&] { mutable_vision().Change(options, altitude_m); });
   }
+  void Mark(Time frame, const cv::Rect2d& box_px) override {
+    BetweenFrames([&] { mutable_vision().Mark(frame, box_px); });
+  }
   void BetweenFrames(const std::function<void()>& action) override {
     program_->BetweenFrames(action);
   }

@@ -8,11 +8,14 @@
 #include <string>
 #include <utility>
 
+#include <opencv2/core.hpp>
+
 #include "kestrel/comms/mavlink/target_profile.h"
 #include "kestrel/flight/onboard/flight_options.h"
 #include "kestrel/flight/onboard/open_live_source.h"
 #include "kestrel/flight/session/flight_end.h"
 #include "kestrel/flight/session/flight_report.h"
+#include "kestrel/flight/session/follow_task.h"  // IWYU pragma: export
 #include "kestrel/flight/session/hunt_task.h"  // IWYU pragma: export
 #include "kestrel/flight/session/land_task.h"  // IWYU pragma: export
 #include "kestrel/flight/session/observation_sinks.h"
@@ -47,7 +50,7 @@ struct SessionOptions {
   std::string record = {};  // folder of a recording that begins at once; empty: none
 };
 
-// A source, the vision of a task, and sinks, put together: what `kestrel land`, `hunt` and, live,
+// A source, the vision of a task, and sinks, put together: what `kestrel land`, `hunt`, `follow` and, live,
 // `fly` run.
 class Session {
  public:
@@ -91,6 +94,8 @@ class LiveSession : public Session {
  public:
   // Continues with these options of the task, and the altitude, see Vision::Change.
   virtual void Change(const TaskOptions& options, std::optional<double> altitude_m) = 0;
+  // As Vision::Mark: a person's mark on a picture may be two seconds late.
+  virtual void Mark(Time frame, const cv::Rect2d& box_px) = 0;
   // Calls 'action' between two frames: the vision waits for it.
   virtual void BetweenFrames(const std::function<void()>& action) = 0;
   // Starts and stops recordings.

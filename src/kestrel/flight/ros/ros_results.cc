@@ -45,7 +45,8 @@ RosResults::RosResults(std::shared_ptr<ResultConnection> connection, const DdsOp
       camera_(calibration.intrinsics),
       connection_(std::move(connection)),
       landing_(ResultsOf(options, frames, landing), connection_.get()),
-      hunt_({frames.camera, frames.world, std::move(model)}, connection_.get()) {
+      hunt_({frames.camera, frames.world, std::move(model)}, connection_.get()),
+      follow_({frames.camera, frames.world, options.target_frame}, connection_.get()) {
   if (frames_.body && publish_tf_) PublishMount();
 }
 
@@ -113,6 +114,18 @@ void RosResults::Publish(const Frame& frame, const HuntObservation& observation)
   Count(!observation.report.detections.empty(), frame.time, observation.detect_time);
   hunt_.PublishMarkers(stamped);
   hunt_.PublishImage(frame.image, stamped);
+}
+
+void RosResults::Publish(const Frame& frame, const FollowObservation& observation) {
+  const std::lock_guard lock(mutex_);
+  FollowObservation stamped = observation;
+  stamped.time += frames_.to_stamps;
+  if (stamped.target) stamped.target->time += frames_.to_stamps;
+  PublishTransforms(stamped);
+  const auto& region = observation.region;
+  Count(region && region->state == RegionState::kFollowing, frame.time, observation.detect_time);
+  follow_.PublishTrack(stamped);
+  follow_.PublishImage(frame.image, stamped);
 }
 
 void RosResults::Publish(const TeamReport& team) {

@@ -12,12 +12,14 @@
 #include "kestrel/flight/onboard/latency_statistics.h"
 #include "kestrel/flight/ros/dds_options.h"
 #include "kestrel/flight/ros/flight_diagnostics.h"
+#include "kestrel/flight/ros/follow_results.h"
 #include "kestrel/flight/ros/hunt_results.h"
 #include "kestrel/flight/ros/landing_results.h"
 #include "kestrel/flight/session/flight_report.h"
 #include "kestrel/flight/session/result_connection.h"
 #include "kestrel/io/recording/frame.h"
 #include "kestrel/vision/objects/object_model.h"
+#include "kestrel/vision/pipeline/follow_pipeline.h"
 #include "kestrel/vision/pipeline/hunt_pipeline.h"
 #include "kestrel/vision/pipeline/landing_pipeline.h"
 
@@ -48,6 +50,7 @@ class RosResults {
 
   void Publish(const Frame& frame, const LandingObservation& observation);
   void Publish(const Frame& frame, const HuntObservation& observation);
+  void Publish(const Frame& frame, const FollowObservation& observation);
   // The team's map, if the frames have a world; kept for later subscribers.
   void Publish(const TeamReport& team);
   // Publishes the rates since the last call.
@@ -74,6 +77,7 @@ class RosResults {
   std::shared_ptr<ResultConnection> connection_;
   LandingResults landing_;
   HuntResults hunt_;
+  FollowResults follow_;
   Rate rate_;
   std::uint64_t found_ = 0;
   LatencyHistogram latency_, beyond_detect_, detect_;

@@ -7,15 +7,17 @@
 
 #include "kestrel/core/base/time.h"
 #include "kestrel/io/recording/frame.h"
+#include "kestrel/vision/pipeline/follow_pipeline.h"
 #include "kestrel/vision/pipeline/hunt_pipeline.h"
 #include "kestrel/vision/pipeline/landing_pipeline.h"
 
 namespace kestrel {
 
-// A frame and a pipeline's result for it: a landing pattern, or coloured objects.
+// A frame and a pipeline's result for it: a landing pattern, coloured objects, or
+// what is followed.
 struct Observation {
   Frame frame;  // its pixels do not change any more
-  std::variant<LandingObservation, HuntObservation> seen;
+  std::variant<LandingObservation, HuntObservation, FollowObservation> seen;
   std::optional<Duration> latency = {};  // from capture until it was processed; live only
 };
 

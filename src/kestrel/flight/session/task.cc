@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/core/base/error.h"
+#include "kestrel/flight/session/follow_task.h"
 #include "kestrel/flight/session/hunt_task.h"
 #include "kestrel/flight/session/land_task.h"
 
@@ -21,10 +22,16 @@ std::unique_ptr<Task> MakeHunt(const TaskOptions& options, const TaskChoice& cho
   return std::make_unique<HuntTask>(options.hunt, choice.model, choice.grid, choice.origin);
 }
 
+std::unique_ptr<Task> MakeFollow(const TaskOptions& options, const TaskChoice& choice) {
+  return std::make_unique<FollowTask>(options.follow, choice.mark);
+}
+
 constexpr TaskKind kKinds[] = {
     {"land", "Run the landing pipeline over a source", "Land on the pattern", MakeLand},
     {"hunt", "Run the coloured-object pipeline over a source",
      "Search for coloured objects instead of the landing pattern", MakeHunt},
+    {"follow", "Follow what is marked in an image of a source",
+     "Follow what is marked instead of the landing pattern", MakeFollow},
 };
 
 }  // namespace

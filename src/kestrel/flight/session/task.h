@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <span>
@@ -8,12 +9,15 @@
 #include <string_view>
 #include <vector>
 
+#include <opencv2/core.hpp>
+
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/flight/session/result_connection.h"
 #include "kestrel/flight/session/vision.h"
 #include "kestrel/io/recording/frame_source.h"
 #include "kestrel/vision/objects/color/color_grid.h"
 #include "kestrel/vision/objects/object_model.h"
+#include "kestrel/vision/pipeline/follow_pipeline.h"
 #include "kestrel/vision/pipeline/hunt_pipeline.h"
 #include "kestrel/vision/pipeline/landing_pipeline.h"
 
@@ -41,8 +45,8 @@ Options InFlight(Options options, bool is_live) {
   return options;
 }
 
-// The task of a session: to land on a pad, or to hunt for coloured objects. A new kind is a class,
-// and a line in task.cc.
+// The task of a session: to land on a pad, to hunt for coloured objects, or to follow what a person
+// has marked. A new kind is a class, and a line in task.cc.
 class Task {
  public:
   virtual ~Task() = default;
@@ -63,11 +67,19 @@ class Task {
 struct TaskOptions {
   LandingPipelineOptions landing;
   HuntPipelineOptions hunt;
+  FollowPipelineOptions follow;
 
   static void Visit(auto& self, auto&& visit) {
     visit.Group("landing", self.landing);
     visit.Group("hunt", self.hunt);
+    visit.Group("follow", self.follow);
   }
+};
+
+// What a person has marked in a recording.
+struct FollowMark {
+  cv::Rect2d box_px;      // as RegionTracker::Mark
+  std::size_t frame = 0;  // number of the frame, from 0
 };
 
 // The choices of a session, beside the options.
@@ -76,6 +88,7 @@ struct TaskChoice {
   ObjectModel model = DefaultObjectModel();
   std::optional<ColorGrid> grid = {};  // nothing: the model's own
   std::vector<double> origin = {};     // as HuntTask's
+  std::optional<FollowMark> mark = {};  // what to follow
 };
 
 // A kind of task. The first one is what a flight does without a flag.

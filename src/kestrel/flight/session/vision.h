@@ -5,6 +5,9 @@
 #include <optional>
 #include <string>
 
+#include <opencv2/core.hpp>
+
+#include "kestrel/core/base/error.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/poses/gimbal_history.h"
 #include "kestrel/core/poses/pose_history.h"
@@ -48,6 +51,12 @@ class Vision {
   // Continues with other options and another altitude. Track and map stay. Throws InputError and
   // changes nothing when the options are not valid.
   virtual void Change(const TaskOptions& /*options*/, std::optional<double> /*altitude_m*/) {}
+
+  // Follows from now on what a person has marked in the frame of this time. Throws InputError when
+  // that frame is not kept any more, or this task follows nothing.
+  virtual void Mark(Time /*frame*/, const cv::Rect2d& /*box_px*/) {
+    throw InputError("this task follows nothing that is marked");
+  }
 
   // Called after the source's last frame. Throws InputError when there are results of more frames.
   virtual void Finish() {}

@@ -21,6 +21,20 @@ std::optional<Eigen::Vector3d> LocateByAltitude(const Eigen::Vector3d& ray_in_ca
                                                 const RigidTransform& world_from_camera,
                                                 double target_height_m);
 
+// Standard deviations of the errors of a line of sight to the ground.
+struct SightErrors {
+  double direction_rad = 0;  // of the line, per axis
+  double position_m = 0;     // of the camera, per axis
+  double ground_m = 0;       // of the ground's height
+};
+
+// Returns the covariance (m^2) of a place on level ground that is seen along 'sight', the vector
+// from the camera to it in the world (z up, m, not level). With v = 'sight', g = u + v, and
+// P = I - v e_z^T / v_z, which slides an error along the line back to the ground,
+// dg = P (du + theta x v) + v / v_z dt_z. The errors are linear: right as long as that of the
+// direction is small against the depression of the line.
+Eigen::Matrix3d GroundCovariance(const Eigen::Vector3d& sight, const SightErrors& errors);
+
 // Returns the yaw of the pad's x axis in the world (rad) for a pad that looks the same under
 // 'symmetry' headings (1 or more): in (-pi/symmetry, pi/symmetry], as it is known only up to
 // multiples of 2 pi/symmetry.

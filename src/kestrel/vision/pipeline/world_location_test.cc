@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "kestrel/core/base/random.h"
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/core/geometry/test_rotation.h"
 
@@ -53,6 +54,29 @@ TEST(PatternYaw, IsUniqueUpToSymmetryOfPad) {
       }
     }
   }
+}
+
+// Monte Carlo: lines of sight with errors, cut with a ground with an error.
+TEST(WorldLocation, GroundCovarianceIsThatOfManySights) {
+  constexpr int kSamples = 20000;
+  const Eigen::Vector3d camera(1, 2, 20), ground(13, 18, 0);
+  const SightErrors errors{0.01, 0.2, 0.1};
+  Random random(1);
+  const auto normal3 = [&] {
+    return Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal());
+  };
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (int i = 0; i < kSamples; ++i) {
+    const Eigen::Vector3d turn = errors.direction_rad * normal3();
+    const Eigen::Vector3d sight = ground - camera;
+    const RigidTransform pose{Eigen::Quaterniond::Identity(), camera + errors.position_m * normal3()};
+    const auto at = LocateByAltitude(sight + turn.cross(sight), pose,
+                                     errors.ground_m * random.Normal());
+    ASSERT_TRUE(at);
+    sum += (*at - ground) * (*at - ground).transpose();
+  }
+  const Eigen::Matrix3d expected = GroundCovariance(ground - camera, errors);
+  EXPECT_LT((sum / kSamples - expected).norm(), 0.05 * expected.norm());
 }
 
 }  // namespace

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/app/console/flight/flight_console.h"
 
+#include <array>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <utility>
 
 #include "kestrel/app/console/console_page.h"
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/base/parse_number.h"
 #include "kestrel/core/base/thread_setup.h"
 
 namespace kestrel {
@@ -34,6 +37,9 @@ ConsoleFeed::Description DescriptionOf(const std::string& title, const TaskView&
       .offers = {ConsoleCommandKind::kRecord, ConsoleCommandKind::kSnapshot,
                  ConsoleCommandKind::kSettings},
       .has_colors = has_colors};
+  if (std::holds_alternative<FollowView>(view)) {
+    description.offers.push_back(ConsoleCommandKind::kMark);
+  }
   description.series.push_back({"latency", "ms", "Capture to result", {ValueSource::kFrames}});
   description.series.push_back({"link", "1/s", "Packets", {ValueSource::kAutopilot}});
   return description;
@@ -216,10 +222,26 @@ void FlightConsole::Answer(const FlightRequests& requests, const ConsoleCommand&
       KeepSnapshot(requests);
     } else if (command.kind == ConsoleCommandKind::kSettings) {
       feed_.Add(requests.settings(command.settings));
+    } else if (command.kind == ConsoleCommandKind::kMark) {
+      Mark(requests, command.settings);
     }
   } catch (const InputError& error) {
     Report(EventLevel::kError, error.what());
   }
+}
+
+// 'mark': the time of the picture (ns), and x, y, width and height (px) in it.
+void FlightConsole::Mark(const FlightRequests& requests, const std::vector<std::string>& mark) {
+  const auto time = mark.size() == 5 ? ParseNumber<std::int64_t>(mark[0]) : std::nullopt;
+  std::array<double, 4> box{};
+  for (std::size_t i = 0; time && i < box.size(); ++i) {
+    const auto value = ParseNumber<double>(mark[i + 1]);
+    if (!value) throw InputError("mark: expected numbers");
+    box[i] = *value;
+  }
+  if (!time) throw InputError("mark: expected the time of a picture and a box");
+  Report(EventLevel::kInfo,
+         requests.mark(TimeFromNanoseconds(*time), {box[0], box[1], box[2], box[3]}));
 }
 
 void FlightConsole::KeepSnapshot(const FlightRequests& requests) {

@@ -29,6 +29,8 @@ namespace kestrel {
 struct FlightRequests {
   std::function<std::string(bool is_on)> record;  // switches recording on or off
   std::function<std::string(const cv::Mat& image, Time captured)> keep_snapshot;
+  // Follows what was marked in the picture of this time.
+  std::function<std::string(Time captured, const cv::Rect2d& box_px)> mark;
   // Saves settings, each as "key=value", and returns the state of all that can be changed, with
   // what was saved or why not; none: only returns it. Does not throw InputError.
   std::function<ConsoleSettings(const std::vector<std::string>& settings)> settings;
@@ -86,6 +88,7 @@ class FlightConsole : public ObservationSink {
   Image Newest();
   void Answer(const FlightRequests& requests, const ConsoleCommand& command);
   void KeepSnapshot(const FlightRequests& requests);
+  void Mark(const FlightRequests& requests, const std::vector<std::string>& mark);
   void Report(EventLevel level, const std::string& text) {
     feed_.Add(SessionEvent{Now(), level, text});
   }

@@ -27,14 +27,16 @@ constexpr std::array kCommands = {ConsoleCommandKind::kRecord,
                                   ConsoleCommandKind::kLens,
                                   ConsoleCommandKind::kLensStop,
                                   ConsoleCommandKind::kLensSave,
-                                  ConsoleCommandKind::kSettings};
+                                  ConsoleCommandKind::kSettings,
+                                  ConsoleCommandKind::kMark};
 // A list in an object. Deeper text would use up the parser's stack.
 constexpr int kMaxDepth = 2;
 // True for the commands with a list of settings.
 bool HasSettings(ConsoleCommandKind kind) {
   return kind == ConsoleCommandKind::kDetect || kind == ConsoleCommandKind::kCalibrate ||
          kind == ConsoleCommandKind::kCompare || kind == ConsoleCommandKind::kLens ||
-         kind == ConsoleCommandKind::kLensSave || kind == ConsoleCommandKind::kSettings;
+         kind == ConsoleCommandKind::kLensSave || kind == ConsoleCommandKind::kSettings ||
+         kind == ConsoleCommandKind::kMark;
 }
 constexpr std::size_t kMaxSettings = 32, kMaxSettingBytes = 512;
 
@@ -128,6 +130,8 @@ const char* ToString(ConsoleCommandKind kind) {
       return "lens-save";
     case ConsoleCommandKind::kSettings:
       return "settings";
+    case ConsoleCommandKind::kMark:
+      return "mark";
   }
   return "";
 }

@@ -44,10 +44,11 @@ enum class ConsoleCommandKind {
   kLensStop,         // stop that
   kLensSave,         // save its result: a name, and "replace" to replace a file
   kSettings,         // save these settings for the next start
+  kMark,             // follow what is marked: the picture's time (ns), x, y, width, height (px)
 };
 // Returns "record", "snapshot", "play", "seek", "step", "detect", "cancel", "calibrate",
-// "calibrate-cancel", "calibrate-save", "compare", "open", "lens", "lens-stop", "lens-save" or
-// "settings".
+// "calibrate-cancel", "calibrate-save", "compare", "open", "lens", "lens-stop", "lens-save",
+// "settings" or "mark".
 const char* ToString(ConsoleCommandKind kind);
 struct ConsoleCommand {
   ConsoleCommandKind kind = ConsoleCommandKind::kSnapshot;

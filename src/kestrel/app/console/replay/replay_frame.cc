@@ -18,6 +18,12 @@ FrameMark MarkOf(const HuntObservation& observation) {
   return observation.report.detections.empty() ? FrameMark::kNothing : FrameMark::kFound;
 }
 
+FrameMark MarkOf(const FollowObservation& observation) {
+  const auto& region = observation.region;
+  const bool is_seen = region && region->state == RegionState::kFollowing;
+  return is_seen ? FrameMark::kFound : FrameMark::kNothing;
+}
+
 }  // namespace
 
 ReplayFrame ReplayFrameOf(const TaskView& view, const Observation& observation) {

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/session/follow_task.h"
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "kestrel/core/base/error.h"
+#include "kestrel/flight/session/result_files.h"
+#include "kestrel/io/recording/overlays/follow_overlay.h"
+
+namespace kestrel {
+namespace {
+
+// Writes the table and the annotated frames. Waits for the disk. Throws InputError when it cannot
+// write.
+class FollowFiles : public ObservationSink {
+ public:
+  explicit FollowFiles(const OutputOptions& output)
+      : results_(output, kFollowTable, FollowCsvHeader()) {}
+
+  void Take(const Observation& observation) override {
+    const auto& seen = std::get<FollowObservation>(observation.seen);
+    results_.WriteRows(FollowCsvRow(observation.frame.name, seen));
+    if (!results_.wants_pictures()) return;
+    results_.WritePicture(observation.frame.name, DrawFollowOverlay(observation.frame.image, seen));
+  }
+  void Take(const BrokenFrame& frame) override {
+    results_.WriteRows(UnreadableFollowCsvRow(frame.name, frame.time));
+  }
+
+ private:
+  ResultFiles results_;
+};
+
+// Copies of the newest images, for a mark on a picture that a person saw some time ago.
+class KeptImages {
+ public:
+  static constexpr std::size_t kMost = 64;  // two seconds at 30 images/s
+
+  struct Image {
+    Time time;
+    cv::Mat pixels;
+  };
+
+  // Does not allocate once it is full.
+  void Add(const cv::Mat& image, Time time) {
+    if (images_.size() < kMost) images_.emplace_back();
+    Image& oldest = images_[next_];
+    image.copyTo(oldest.pixels);
+    oldest.time = time;
+    next_ = (next_ + 1) % kMost;
+  }
+
+  // From the one of this time on, oldest first; none when it is not kept any more.
+  std::vector<const Image*> From(Time time) const {
+    std::vector<const Image*> from;
+    for (std::size_t i = 0; i < images_.size(); ++i) {
+      const Image& image = images_[(next_ + i) % images_.size()];
+      if (!from.empty() || image.time == time) from.push_back(&image);
+    }
+    return from;
+  }
+
+ private:
+  std::vector<Image> images_;
+  std::size_t next_ = 0;
+};
+
+// The pipeline of a marked thing in a session. No target for the autopilot is in its snapshot: what
+// a person marks is nothing to land on.
+class FollowVision : public Vision {
+ public:
+  FollowVision(const SessionCamera& camera, const FollowPipelineOptions& options,
+               const std::optional<FollowMark>& mark)
+      : pipeline_(camera.calibration, InFlight(options, camera.is_live)),
+        clock_offset_(camera.calibration.clock_offset.value_or(Duration::zero())),
+        has_world_(camera.has_world),
+        is_live_(camera.is_live),
+        mark_(mark) {}
+
+  void AddPose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
+  void AddGimbal(const GimbalSample& sample) override { pipeline_.AddGimbal(sample); }
+  Duration pose_lead() const override { return clock_offset_; }
+  Observation Process(const Frame& frame) override;
+  TrackSnapshot snapshot() const override { return snapshot_; }
+  bool has_world() const override { return has_world_; }
+  void Change(const TaskOptions& options, std::optional<double> /*altitude_m*/) override {
+    pipeline_.ChangeOptions(InFlight(options.follow, is_live_));
+  }
+  void Mark(Time frame, const cv::Rect2d& box_px) override;
+  std::unique_ptr<ObservationSink> MakeTables(const OutputOptions& output) const override {
+    return std::make_unique<FollowFiles>(output);
+  }
+  // Throws InputError where the recording ends before the marked frame.
+  void Finish() override;
+  std::string Found() const override;
+
+ private:
+  FollowObservation Follow(const Frame& frame);
+
+  FollowPipeline pipeline_;
+  Duration clock_offset_;
+  bool has_world_, is_live_;
+  std::optional<FollowMark> mark_;
+  KeptImages kept_;  // in flight
+  TrackSnapshot snapshot_;
+  std::array<int, 3> frames_{};  // by RegionState
+};
+
+Observation FollowVision::Process(const Frame& frame) {
+  FollowObservation seen = Follow(frame);
+  if (is_live_) kept_.Add(frame.image, frame.time);
+  ++snapshot_.frames;
+  snapshot_.captured = frame.time + clock_offset_;
+  snapshot_.detect_time = seen.detect_time;
+  if (seen.region) {
+    ++frames_[static_cast<std::size_t>(seen.region->state)];
+    snapshot_.detections += seen.region->state == RegionState::kFollowing;
+  }
+  return {frame, std::move(seen)};
+}
+
+FollowObservation FollowVision::Follow(const Frame& frame) {
+  const auto number = static_cast<std::size_t>(snapshot_.frames);
+  if (!mark_ || mark_->frame != number) return pipeline_.Process(frame.image, frame.time);
+  try {
+    return pipeline_.Mark(frame.image, frame.time, mark_->box_px);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", frame.name, error.what()));
+  }
+}
+
+// The images since then are followed at once, so that the next one finds the region where it is.
+void FollowVision::Mark(Time frame, const cv::Rect2d& box_px) {
+  const std::vector<const KeptImages::Image*> since = kept_.From(frame);
+  if (since.empty()) {
+    throw InputError(fmt::format("the marked picture is older than {} images: mark a newer one",
+                                 KeptImages::kMost));
+  }
+  pipeline_.Mark(since.front()->pixels, frame, box_px);
+  for (std::size_t i = 1; i < since.size(); ++i) {
+    pipeline_.Process(since[i]->pixels, since[i]->time);
+  }
+}
+
+void FollowVision::Finish() {
+  const auto frames = static_cast<std::size_t>(snapshot_.frames);
+  if (!mark_ || frames > mark_->frame) return;
+  throw InputError(fmt::format("--at {}: the source has {} frames, expected a number below that",
+                               mark_->frame, frames));
+}
+
+std::string FollowVision::Found() const {
+  return fmt::format("followed in {}, coasted in {}, lost in {}", frames_[0], frames_[1],
+                     frames_[2]);
+}
+
+}  // namespace
+
+FollowTask::FollowTask(const FollowPipelineOptions& options, const std::optional<FollowMark>& mark)
+    : options_(options), mark_(mark) {}
+
+std::unique_ptr<Vision> FollowTask::MakeVision(const SessionCamera& camera) const {
+  if (!mark_ && !camera.is_live) throw InputError("expected a box around what is to be followed");
+  return std::make_unique<FollowVision>(camera, options_, mark_);
+}
+
+}  // namespace kestrel

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/session/follow_task.h"
+
+#include <cmath>
+#include <memory>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kestrel/core/base/test_folder.h"
+#include "kestrel/vision/region/test_region_scene.h"
+
+namespace kestrel {
+namespace {
+
+using ::testing::HasSubstr;
+
+CameraIntrinsics Intrinsics() {
+  return {kRegionImageWidth, kRegionImageHeight, 500, 500, 319.5, 239.5, DistortionModel::kNone, {}};
+}
+
+std::unique_ptr<Vision> VisionWith(const FollowMark& mark) {
+  SessionCamera camera;
+  camera.calibration.intrinsics = Intrinsics();
+  return FollowTask({}, mark).MakeVision(camera);
+}
+
+TEST(FollowTaskTest, FollowsFromTheMarkedFrameOn) {
+  RegionScene scene(1);
+  std::unique_ptr<Vision> vision = VisionWith({scene.Box(), 2});
+  for (int i = 0; i < 6; ++i) {
+    const cv::Mat image = scene.Take();
+    const Observation seen = vision->Process({"image", scene.time, image});
+    EXPECT_EQ(std::get<FollowObservation>(seen.seen).region.has_value(), i >= 2) << i;
+  }
+  vision->Finish();
+  EXPECT_EQ(vision->Found(), "followed in 4, coasted in 0, lost in 0");
+}
+
+TEST(FollowTaskTest, BoxOutsideOfTheImageNamesTheFrame) {
+  RegionScene scene(1);
+  const auto vision = VisionWith({{900, 10, 20, 20}, 0});
+  EXPECT_THAT(
+      InputErrorOf([&] {
+        const cv::Mat image = scene.Take();
+        vision->Process({"image_7", scene.time, image});
+      }),
+      HasSubstr("image_7: box 900,10,20,20: expected one within the image of 640 x 480"));
+}
+
+TEST(FollowTaskTest, RecordingThatEndsBeforeTheMarkIsAnError) {
+  RegionScene scene(1);
+  const auto vision = VisionWith({scene.Box(), 5});
+  vision->Process({"image", scene.time, scene.Take()});
+  EXPECT_THAT(InputErrorOf([&] { vision->Finish(); }), HasSubstr("--at 5: the source has 1 frames"));
+}
+
+TEST(FollowTaskTest, RecordingNeedsAMark) {
+  EXPECT_THAT(InputErrorOf([] { FollowTask({}).MakeVision({}); }), HasSubstr("expected a box"));
+}
+
+// What a person marks in a picture that is 0.3 s old is followed in the newest one, though it has
+// left that place and the camera turns.
+TEST(FollowTaskTest, MarkOnALatePictureIsAppliedToThatPicture) {
+  RegionScene scene(3);
+  SessionCamera camera;
+  camera.calibration.intrinsics = Intrinsics();
+  camera.is_live = true;
+  const auto vision = FollowTask({}).MakeVision(camera);
+  Time marked;
+  cv::Rect2d box;
+  for (int i = 0; i < 20; ++i) {
+    scene.target.center_px += Eigen::Vector2d(5, 0);
+    scene.camera_px += Eigen::Vector2d(-9, 4);
+    const cv::Mat image = scene.Take();
+    if (i == 13) marked = scene.time;
+    if (i == 13) box = scene.Box();
+    const Observation seen = vision->Process({"", scene.time, image});
+    EXPECT_FALSE(std::get<FollowObservation>(seen.seen).region);
+  }
+  ASSERT_GT(std::abs(box.x - scene.Box().x), box.width) << "somewhere else by now";
+  vision->Mark(marked, box);
+  const cv::Mat image = scene.Take();
+  const Observation seen = vision->Process({"", scene.time, image});
+  const auto& region = std::get<FollowObservation>(seen.seen).region;
+  ASSERT_TRUE(region);
+  EXPECT_EQ(region->state, RegionState::kFollowing);
+  EXPECT_GT((region->box_px & scene.Box()).area(), 0.6 * scene.Box().area());
+  EXPECT_THAT(InputErrorOf([&] { vision->Mark(Time(), box); }), HasSubstr("mark a newer one"));
+  EXPECT_THAT(InputErrorOf([&] { vision->Mark(marked, {-90, 0, 9, 9}); }),
+              HasSubstr("expected one within the image"));
+}
+
+}  // namespace
+}  // namespace kestrel

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/pipeline/follow_pipeline.h"
+
+#include <chrono>
+#include <cmath>
+
+#include "kestrel/core/base/options.h"
+#include "kestrel/core/camera/camera_model.h"
+#include "kestrel/core/geometry/angles.h"
+#include "kestrel/vision/pipeline/camera_poses.h"
+#include "kestrel/vision/pipeline/measurement_noise.h"
+#include "kestrel/vision/pipeline/world_location.h"
+
+namespace kestrel {
+namespace {
+
+constexpr Duration kPoseGap = std::chrono::milliseconds(500);
+
+// Errors of the place of a box, as shares of its size: from image to image, and those that stay.
+constexpr double kBoxNoise = 0.03, kBoxDrift = 0.05;
+// The same of the foot of the thing, which depends on its shape: seen level, it may be there or
+// half way up to its middle.
+constexpr double kFootShare = 0.15;
+// Beyond it (and above the horizon) the errors of a place are not linear any more.
+constexpr double kMostOfDepression = 0.3;
+// A prediction that is less certain, in sizes of the region, is worth less than the image before.
+constexpr double kMostOfSize = 1;
+
+Eigen::Vector2d CenterOf(const cv::Rect2d& box) {
+  return {box.x + 0.5 * (box.width - 1), box.y + 0.5 * (box.height - 1)};
+}
+
+double SizeOf(const cv::Rect2d& box) { return std::sqrt(box.width * box.height); }
+
+// Returns where the thing in a box stands on the ground. A sphere of radius r on the ground is seen
+// from above by the depression d: its foot is r cos(d) below its middle, across the line of sight.
+// 'down_px': direction of the world's down in the image, of length 1.
+Eigen::Vector2d FootOf(const cv::Rect2d& box, const Eigen::Vector2d& down_px, double cosine) {
+  const Eigen::Vector2d half(0.5 * box.width, 0.5 * box.height);
+  return CenterOf(box) + cosine * half.cwiseProduct(down_px).norm() * down_px;
+}
+
+}  // namespace
+
+TargetTrackerOptions FollowPipelineOptions::Tracker() const {
+  TargetTrackerOptions tracker;
+  tracker.acceleration_noise = 1;  // people and cars start and stop
+  tracker.sway_sigma_m = 0;
+  tracker.max_speed_mps = max_speed_mps;
+  return tracker;
+}
+
+class FollowPipeline::Impl {
+ public:
+  Impl(const CameraCalibration& calibration, const FollowPipelineOptions& options)
+      : options_(Checked(options)),
+        camera_(calibration.intrinsics),
+        poses_(calibration, FollowPipelineOptions::kPoseCapacity, kPoseGap, Duration::zero(),
+               DurationFromSeconds(options.pose_extrapolation_s)),
+        tracker_(options.Tracker()) {}
+
+  PoseStatus AddPose(const PoseSample& sample) { return poses_.Add(sample); }
+  PoseStatus AddGimbal(const GimbalSample& sample) { return poses_.Add(sample); }
+  void ChangeOptions(const FollowPipelineOptions& options) { options_ = Checked(options); }
+
+  FollowObservation Mark(const cv::Mat& image, Time time, const cv::Rect2d& box) {
+    const auto start = std::chrono::steady_clock::now();
+    region_.Mark(image, time, box);
+    is_marked_ = true;
+    tracker_ = TargetTracker(options_.Tracker());
+    FollowObservation seen = Begin(time);
+    seen.region = RegionReport{RegionState::kFollowing, box, 1};
+    seen.detect_time = std::chrono::steady_clock::now() - start;
+    Locate(&seen);
+    return seen;
+  }
+
+  FollowObservation Process(const cv::Mat& image, Time time) {
+    FollowObservation seen = Begin(time);
+    if (!is_marked_) return seen;
+    const auto hint = HintFor(seen);
+    const auto start = std::chrono::steady_clock::now();
+    seen.region = region_.Track(image, time, hint);
+    seen.detect_time = std::chrono::steady_clock::now() - start;
+    Locate(&seen);
+    return seen;
+  }
+
+  const TargetTracker& tracker() const { return tracker_; }
+  const FollowPipelineOptions& options() const { return options_; }
+
+ private:
+  FollowObservation Begin(Time time) const;
+  std::optional<RegionHint> HintFor(const FollowObservation& seen) const;
+  void Locate(FollowObservation* seen);
+  std::optional<Eigen::Vector3d> FootRay(const RigidTransform& world_from_camera,
+                                         const cv::Rect2d& box);
+  double AnglePerPixel(const Eigen::Vector2d& pixel) const;
+  void Place(double angle_per_px, double size_px, FollowObservation* seen);
+
+  FollowPipelineOptions options_;
+  CameraModel camera_;
+  CameraPoses poses_;
+  RegionTracker region_;
+  bool is_marked_ = false;
+  TargetTracker tracker_;
+  Eigen::Vector2d foot_px_ = Eigen::Vector2d::Zero();  // from the middle of the box, last seen
+  double size_px_ = 0;                                 // of the box, last seen
+};
+
+FollowObservation FollowPipeline::Impl::Begin(Time time) const {
+  FollowObservation seen;
+  seen.time = time;
+  if (const auto camera = poses_.At(time)) {
+    seen.world_from_camera = camera->world_from_camera;
+    seen.camera_from_body = camera->camera_from_body;
+  }
+  return seen;
+}
+
+// The place in the image that the track predicts. The errors that all places share are in its
+// covariance, too, though they cancel here: the search becomes wider than it must be.
+std::optional<RegionHint> FollowPipeline::Impl::HintFor(const FollowObservation& seen) const {
+  const auto target = tracker_.Predict(seen.time);
+  if (!target || !seen.world_from_camera) return std::nullopt;
+  const RigidTransform camera_from_world = seen.world_from_camera->Inverse();
+  const Eigen::Vector3d in_camera = camera_from_world * target->motion.position();
+  Eigen::Vector2d foot;
+  Eigen::Matrix<double, 2, 3> by_point;
+  if (camera_.Project(in_camera, &foot, &by_point) == ProjectionStatus::kOutsideModel) {
+    return std::nullopt;
+  }
+  const Eigen::Matrix<double, 2, 3> by_world =
+      by_point * camera_from_world.rotation.toRotationMatrix();
+  RegionHint hint{foot - foot_px_, by_world * target->motion.covariance.topLeftCorner<3, 3>() *
+                                       by_world.transpose()};
+  hint.covariance_px2.diagonal().array() += kBoxDrift * kBoxDrift * size_px_ * size_px_;
+  const bool is_seen = tracker_.StateAt(seen.time) == TrackState::kTracking;
+  const double sigma_px = std::sqrt(0.5 * hint.covariance_px2.trace());
+  if (is_seen && sigma_px > kMostOfSize * size_px_) return std::nullopt;
+  return hint;
+}
+
+void FollowPipeline::Impl::Locate(FollowObservation* seen) {
+  const RegionReport& region = *seen->region;
+  if (region.state == RegionState::kFollowing && seen->world_from_camera) {
+    seen->bearing = FootRay(*seen->world_from_camera, region.box_px);
+    if (seen->bearing) {
+      size_px_ = SizeOf(region.box_px);
+      Place(AnglePerPixel(CenterOf(region.box_px)), size_px_, seen);
+    }
+  }
+  seen->track_state = tracker_.StateAt(seen->time);
+  seen->target = tracker_.Predict(seen->time);
+}
+
+// Returns the direction in the world to where the thing in a box stands.
+std::optional<Eigen::Vector3d> FollowPipeline::Impl::FootRay(
+    const RigidTransform& world_from_camera, const cv::Rect2d& box) {
+  Eigen::Vector3d ray;
+  if (camera_.Unproject(CenterOf(box), &ray) == ProjectionStatus::kOutsideModel) {
+    return std::nullopt;
+  }
+  Eigen::Vector2d center;
+  Eigen::Matrix<double, 2, 3> by_point;
+  if (camera_.Project(ray, &center, &by_point) == ProjectionStatus::kOutsideModel) {
+    return std::nullopt;
+  }
+  const Eigen::Vector3d down = world_from_camera.rotation.conjugate() * -Eigen::Vector3d::UnitZ();
+  const Eigen::Vector2d down_px = by_point * down;
+  const double cosine = ray.cross(down).norm();
+  Eigen::Vector2d foot = center;
+  constexpr double kLeastCosine = 1e-3;  // straight below there is no direction down
+  if (cosine > kLeastCosine) foot = FootOf(box, down_px.normalized(), cosine);
+  foot_px_ = foot - center;
+  if (camera_.Unproject(foot, &ray) == ProjectionStatus::kOutsideModel) return std::nullopt;
+  return world_from_camera.rotation * ray;
+}
+
+double FollowPipeline::Impl::AnglePerPixel(const Eigen::Vector2d& pixel) const {
+  Eigen::Vector3d ray, beside;
+  if (camera_.Unproject(pixel, &ray) == ProjectionStatus::kOutsideModel ||
+      camera_.Unproject(pixel + Eigen::Vector2d::UnitX(), &beside) ==
+          ProjectionStatus::kOutsideModel) {
+    return 1 / camera_.intrinsics().fx_px;
+  }
+  return ray.cross(beside).norm();
+}
+
+void FollowPipeline::Impl::Place(double angle_per_px, double size_px, FollowObservation* seen) {
+  const RigidTransform& world_from_camera = *seen->world_from_camera;
+  const auto ground =
+      LocateByAltitude(world_from_camera.rotation.conjugate() * *seen->bearing, world_from_camera,
+                       options_.ground_height_m);
+  if (!ground) return;
+  const Eigen::Vector3d sight = *ground - world_from_camera.translation;
+  MeasurementNoise noise;
+  if (const auto camera = poses_.At(seen->time)) noise = WithPose(noise, camera->uncertainty);
+  const double size_rad = angle_per_px * size_px;
+  const double level = seen->bearing->head<2>().norm();
+  const double stays_rad = std::hypot(kBoxDrift, kFootShare * level) * size_rad;
+  constexpr double kUnevenness_m = 0.05;
+  const SightErrors own{std::hypot(Radians(noise.attitude_sigma_deg), kBoxNoise * size_rad),
+                        noise.pose_sigma_m, kUnevenness_m};
+  const SightErrors shared{std::hypot(Radians(noise.attitude_bias_deg), stays_rad),
+                           noise.pose_bias_m, options_.ground_sigma_m};
+  const double depression = std::asin(std::abs(seen->bearing->z()));
+  if (std::hypot(own.direction_rad, shared.direction_rad) > kMostOfDepression * depression) return;
+  const TargetMeasurement measurement{.time = seen->time,
+                                      .position_in_world = *ground,
+                                      .covariance = GroundCovariance(sight, own),
+                                      .shared_covariance = GroundCovariance(sight, shared)};
+  seen->place = PlaceOnGround{*ground, measurement.covariance + measurement.shared_covariance};
+  seen->fate = tracker_.Add(measurement);
+}
+
+FollowPipeline::FollowPipeline(const CameraCalibration& calibration,
+                               const FollowPipelineOptions& options)
+    : impl_(std::make_unique<Impl>(calibration, options)) {}
+FollowPipeline::~FollowPipeline() = default;
+FollowPipeline::FollowPipeline(FollowPipeline&&) noexcept = default;
+FollowPipeline& FollowPipeline::operator=(FollowPipeline&&) noexcept = default;
+
+PoseStatus FollowPipeline::AddPose(const PoseSample& sample) { return impl_->AddPose(sample); }
+PoseStatus FollowPipeline::AddGimbal(const GimbalSample& sample) {
+  return impl_->AddGimbal(sample);
+}
+void FollowPipeline::ChangeOptions(const FollowPipelineOptions& options) {
+  impl_->ChangeOptions(options);
+}
+FollowObservation FollowPipeline::Mark(const cv::Mat& image, Time time, const cv::Rect2d& box_px) {
+  return impl_->Mark(image, time, box_px);
+}
+FollowObservation FollowPipeline::Process(const cv::Mat& image, Time time) {
+  return impl_->Process(image, time);
+}
+const TargetTracker& FollowPipeline::tracker() const { return impl_->tracker(); }
+const FollowPipelineOptions& FollowPipeline::options() const { return impl_->options(); }
+
+}  // namespace kestrel
