@@ -199,9 +199,7 @@ void BindFollowObservation(py::module_& module) {
       .Field("track_state", &Seen::track_state, "'searching', 'tracking', 'predicting' or 'lost'.")
       .Field("target", &Seen::target, "TargetEstimate at the time of the frame, or None.")
       .Field("detect_time_s", &Seen::detect_time, "Time of the tracker alone, s.")
-      .Repr([](const Seen& self) {
-        return fmt::format("<FollowObservation: {}>", InWords(self));
-      });
+      .Repr([](const Seen& self) { return fmt::format("<FollowObservation: {}>", InWords(self)); });
 }
 
 constexpr char kAddPose[] =

@@ -363,12 +363,19 @@ void BindSession(py::module_& module) {
                       const std::string& autopilot, bool guide, const std::string& record,
                       const py::object& on_event, const std::optional<Box>& follow,
                       std::size_t follow_at) {
-            Choices choices{source,     camera, TaskName(hunt, follow.has_value()),
-                            options,    std::move(sinks),
-                            on_event,   altitude_m,
-                            live,       model,
-                            output,     record,
-                            replace,    autopilot,
+            Choices choices{source,
+                            camera,
+                            TaskName(hunt, follow.has_value()),
+                            options,
+                            std::move(sinks),
+                            on_event,
+                            altitude_m,
+                            live,
+                            model,
+                            output,
+                            record,
+                            replace,
+                            autopilot,
                             guide};
             if (follow) {
               const auto& [x, y, width, height] = *follow;

@@ -267,8 +267,8 @@ class Flight {
             .mark =
                 [this, logged](Time captured, const cv::Rect2d& box) {
                   session_->Mark(captured, box);
-                  return logged(fmt::format("follows a box of {:.0f} x {:.0f} px", box.width,
-                                            box.height));
+                  return logged(
+                      fmt::format("follows a box of {:.0f} x {:.0f} px", box.width, box.height));
                 },
             .settings =
                 [this](const std::vector<std::string>& settings) {

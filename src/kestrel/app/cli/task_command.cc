@@ -80,8 +80,7 @@ void AddFollowArguments(CLI::App* command, TaskArguments* arguments) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->required();
-  command
-      ->add_option("--at", arguments->at, "Number of the frame with that box, from 0")
+  command->add_option("--at", arguments->at, "Number of the frame with that box, from 0")
       ->type_name("FRAME");
 }
 

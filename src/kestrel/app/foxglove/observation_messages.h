@@ -34,7 +34,8 @@ foxglove::ImageAnnotations FoxgloveAnnotations(Time time, const std::vector<Over
 
 // Returns a scene in the world. For a landing: the target's ring, its position with two standard
 // deviations, and its path over the next 3 s. For a hunt: each object in view with its class and
-// two standard deviations. For what is followed: its position and its path. Entities last for a second.
+// two standard deviations. For what is followed: its position and its path. Entities last for a
+// second.
 foxglove::SceneUpdate FoxgloveScene(const LandingView& view, const LandingObservation& observation);
 foxglove::SceneUpdate FoxgloveScene(const HuntView& view, const HuntObservation& observation);
 foxglove::SceneUpdate FoxgloveScene(const FollowView& view, const FollowObservation& observation);

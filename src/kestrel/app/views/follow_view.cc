@@ -51,7 +51,8 @@ std::vector<OverlayShape> FollowShapes(const FollowObservation& observation) {
   const auto& region = observation.region;
   if (!region || region->state == RegionState::kLost) return {};
   const bool is_seen = region->state == RegionState::kFollowing;
-  return {{is_seen ? OverlayLayer::kDetection : OverlayLayer::kPrediction, OutlineOf(region->box_px),
+  return {{is_seen ? OverlayLayer::kDetection : OverlayLayer::kPrediction,
+           OutlineOf(region->box_px),
            fmt::format("{} {:.2f}", ToString(region->state), region->probability)}};
 }
 
@@ -69,12 +70,12 @@ ViewStatus FollowStatus(const FollowObservation& observation) {
 std::vector<ViewFact> FollowFacts(const FollowObservation& observation) {
   std::vector<ViewFact> facts;
   if (const auto& region = observation.region) {
-    facts.push_back({"size", fmt::format("{:.0f} x {:.0f} px", region->box_px.width,
-                                         region->box_px.height)});
+    facts.push_back(
+        {"size", fmt::format("{:.0f} x {:.0f} px", region->box_px.width, region->box_px.height)});
   }
   if (const auto& place = observation.place) {
-    facts.push_back({"place", fmt::format("{:.2f}, {:.2f} m", place->position.x(),
-                                          place->position.y())});
+    facts.push_back(
+        {"place", fmt::format("{:.2f}, {:.2f} m", place->position.x(), place->position.y())});
   }
   return facts;
 }
@@ -83,11 +84,11 @@ ViewMap FollowMap(const FollowObservation& observation) {
   ViewMap map;
   PlaceUav(observation.world_from_camera, &map);
   if (const auto& target = observation.target) {
-    map.target = ViewMapObject{.label = observation.region ? ToString(observation.region->state)
-                                                           : "",
-                               .color = "",
-                               .position = target->motion.position().head<2>(),
-                               .covariance = target->motion.covariance.topLeftCorner<2, 2>()};
+    map.target =
+        ViewMapObject{.label = observation.region ? ToString(observation.region->state) : "",
+                      .color = "",
+                      .position = target->motion.position().head<2>(),
+                      .covariance = target->motion.covariance.topLeftCorner<2, 2>()};
     map.target_velocity = target->motion.velocity().head<2>();
   }
   return map;

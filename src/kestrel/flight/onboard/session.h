@@ -16,8 +16,8 @@
 #include "kestrel/flight/session/flight_end.h"
 #include "kestrel/flight/session/flight_report.h"
 #include "kestrel/flight/session/follow_task.h"  // IWYU pragma: export
-#include "kestrel/flight/session/hunt_task.h"  // IWYU pragma: export
-#include "kestrel/flight/session/land_task.h"  // IWYU pragma: export
+#include "kestrel/flight/session/hunt_task.h"    // IWYU pragma: export
+#include "kestrel/flight/session/land_task.h"    // IWYU pragma: export
 #include "kestrel/flight/session/observation_sinks.h"
 #include "kestrel/flight/session/task.h"
 #include "kestrel/io/bags/open_recording.h"
@@ -50,8 +50,8 @@ struct SessionOptions {
   std::string record = {};  // folder of a recording that begins at once; empty: none
 };
 
-// A source, the vision of a task, and sinks, put together: what `kestrel land`, `hunt`, `follow` and, live,
-// `fly` run.
+// A source, the vision of a task, and sinks, put together: what `kestrel land`, `hunt`, `follow`
+// and, live, `fly` run.
 class Session {
  public:
   virtual ~Session() = default;

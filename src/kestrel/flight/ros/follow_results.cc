@@ -16,9 +16,8 @@ void FollowResults::PublishTrack(const FollowObservation& observation) {
   if (!options_.world_frame || !observation.target) return;
   connection_->Publish(
       ResultTopic::kTrack,
-      SerializeMessage(
-          TrackOf(*observation.target, *options_.world_frame, options_.target_frame),
-          WireFormat::kCdr));
+      SerializeMessage(TrackOf(*observation.target, *options_.world_frame, options_.target_frame),
+                       WireFormat::kCdr));
 }
 
 void FollowResults::PublishImage(const cv::Mat& image, const FollowObservation& observation) {

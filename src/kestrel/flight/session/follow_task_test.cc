@@ -16,7 +16,8 @@ namespace {
 using ::testing::HasSubstr;
 
 CameraIntrinsics Intrinsics() {
-  return {kRegionImageWidth, kRegionImageHeight, 500, 500, 319.5, 239.5, DistortionModel::kNone, {}};
+  return {
+      kRegionImageWidth, kRegionImageHeight, 500, 500, 319.5, 239.5, DistortionModel::kNone, {}};
 }
 
 std::unique_ptr<Vision> VisionWith(const FollowMark& mark) {
@@ -40,19 +41,19 @@ TEST(FollowTaskTest, FollowsFromTheMarkedFrameOn) {
 TEST(FollowTaskTest, BoxOutsideOfTheImageNamesTheFrame) {
   RegionScene scene(1);
   const auto vision = VisionWith({{900, 10, 20, 20}, 0});
-  EXPECT_THAT(
-      InputErrorOf([&] {
-        const cv::Mat image = scene.Take();
-        vision->Process({"image_7", scene.time, image});
-      }),
-      HasSubstr("image_7: box 900,10,20,20: expected one within the image of 640 x 480"));
+  EXPECT_THAT(InputErrorOf([&] {
+                const cv::Mat image = scene.Take();
+                vision->Process({"image_7", scene.time, image});
+              }),
+              HasSubstr("image_7: box 900,10,20,20: expected one within the image of 640 x 480"));
 }
 
 TEST(FollowTaskTest, RecordingThatEndsBeforeTheMarkIsAnError) {
   RegionScene scene(1);
   const auto vision = VisionWith({scene.Box(), 5});
   vision->Process({"image", scene.time, scene.Take()});
-  EXPECT_THAT(InputErrorOf([&] { vision->Finish(); }), HasSubstr("--at 5: the source has 1 frames"));
+  EXPECT_THAT(InputErrorOf([&] { vision->Finish(); }),
+              HasSubstr("--at 5: the source has 1 frames"));
 }
 
 TEST(FollowTaskTest, RecordingNeedsAMark) {
@@ -87,7 +88,9 @@ TEST(FollowTaskTest, MarkOnALatePictureIsAppliedToThatPicture) {
   EXPECT_EQ(region->state, RegionState::kFollowing);
   EXPECT_GT((region->box_px & scene.Box()).area(), 0.6 * scene.Box().area());
   EXPECT_THAT(InputErrorOf([&] { vision->Mark(Time(), box); }), HasSubstr("mark a newer one"));
-  EXPECT_THAT(InputErrorOf([&] { vision->Mark(marked, {-90, 0, 9, 9}); }),
+  EXPECT_THAT(InputErrorOf([&] {
+                vision->Mark(marked, {-90, 0, 9, 9});
+              }),
               HasSubstr("expected one within the image"));
 }
 

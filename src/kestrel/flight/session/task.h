@@ -86,8 +86,8 @@ struct FollowMark {
 struct TaskChoice {
   std::vector<double> predict_s = {};  // horizons of predictions, which a recording's tables have
   ObjectModel model = DefaultObjectModel();
-  std::optional<ColorGrid> grid = {};  // nothing: the model's own
-  std::vector<double> origin = {};     // as HuntTask's
+  std::optional<ColorGrid> grid = {};   // nothing: the model's own
+  std::vector<double> origin = {};      // as HuntTask's
   std::optional<FollowMark> mark = {};  // what to follow
 };
 

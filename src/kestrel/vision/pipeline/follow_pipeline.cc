@@ -189,9 +189,8 @@ double FollowPipeline::Impl::AnglePerPixel(const Eigen::Vector2d& pixel) const {
 
 void FollowPipeline::Impl::Place(double angle_per_px, double size_px, FollowObservation* seen) {
   const RigidTransform& world_from_camera = *seen->world_from_camera;
-  const auto ground =
-      LocateByAltitude(world_from_camera.rotation.conjugate() * *seen->bearing, world_from_camera,
-                       options_.ground_height_m);
+  const auto ground = LocateByAltitude(world_from_camera.rotation.conjugate() * *seen->bearing,
+                                       world_from_camera, options_.ground_height_m);
   if (!ground) return;
   const Eigen::Vector3d sight = *ground - world_from_camera.translation;
   MeasurementNoise noise;

@@ -45,8 +45,8 @@ struct PlaceOnGround {
 
 // The result of one frame.
 struct FollowObservation {
-  Time time;                           // of the frame, on the images' clock
-  std::optional<RegionReport> region;  // nothing before something was marked
+  Time time;                                        // of the frame, on the images' clock
+  std::optional<RegionReport> region;               // nothing before something was marked
   std::optional<RigidTransform> world_from_camera;  // when there is a pose for this time
   std::optional<RigidTransform> camera_from_body;   // as well
   // With a pose, while the region is seen: the direction to it in the world (ENU), of length 1.

@@ -69,9 +69,10 @@ TEST(WorldLocation, GroundCovarianceIsThatOfManySights) {
   for (int i = 0; i < kSamples; ++i) {
     const Eigen::Vector3d turn = errors.direction_rad * normal3();
     const Eigen::Vector3d sight = ground - camera;
-    const RigidTransform pose{Eigen::Quaterniond::Identity(), camera + errors.position_m * normal3()};
-    const auto at = LocateByAltitude(sight + turn.cross(sight), pose,
-                                     errors.ground_m * random.Normal());
+    const RigidTransform pose{Eigen::Quaterniond::Identity(),
+                              camera + errors.position_m * normal3()};
+    const auto at =
+        LocateByAltitude(sight + turn.cross(sight), pose, errors.ground_m * random.Normal());
     ASSERT_TRUE(at);
     sum += (*at - ground) * (*at - ground).transpose();
   }

@@ -30,7 +30,7 @@ struct FlightRequests {
   std::function<std::string(bool is_on)> record;  // switches recording on or off
   std::function<std::string(const cv::Mat& image, Time captured)> keep_snapshot;
   // Follows what was marked in the picture of this time.
-  std::function<std::string(Time captured, const cv::Rect2d& box_px)> mark;
+  std::function<std::string(Time captured, const cv::Rect2d& box_px)> mark = {};
   // Saves settings, each as "key=value", and returns the state of all that can be changed, with
   // what was saved or why not; none: only returns it. Does not throw InputError.
   std::function<ConsoleSettings(const std::vector<std::string>& settings)> settings;

@@ -178,6 +178,32 @@ TEST_F(FlightConsoleTest, KeepsNoImageWithoutViewer) {
   EXPECT_EQ(frame.image.u->refcount, 1);
 }
 
+TEST(FollowConsoleTest, MarkNamesThePictureAndTheBox) {
+  FlightConsole console(FreePort(), "a flight", FollowView(),
+                        FlightExamination(PaperCalibration(), ".", 0));
+  TestSocket socket(PortOf(console));
+  const auto hello = socket.Next("hello");
+  ASSERT_TRUE(hello);
+  EXPECT_THAT((*hello)["offers"], testing::Contains("mark"));
+  console.Answer({.record = {},
+                  .keep_snapshot = {},
+                  .mark =
+                      [](Time captured, const cv::Rect2d& box) {
+                        return fmt::format("{} {:g} {:g} {:g} {:g}", ToNanoseconds(captured), box.x,
+                                           box.y, box.width, box.height);
+                      },
+                  .settings = [](const auto&) { return ConsoleSettings(); }});
+  const auto answer = [&](const std::string& mark) -> std::string {
+    socket.Send(R"({"command": "mark", "settings": [)" + mark + "]}");
+    const auto event = socket.Next("event");
+    return event ? (*event)["text"] : "none";
+  };
+  EXPECT_EQ(answer(R"("1700000000000000001", "1.5", "2", "30", "40")"),
+            "1700000000000000001 1.5 2 30 40");
+  EXPECT_EQ(answer(R"("7", "1.5", "nan", "30", "40")"), "mark: expected numbers");
+  EXPECT_EQ(answer(R"("7", "1.5")"), "mark: expected the time of a picture and a box");
+}
+
 // A green square on gray ground.
 Frame ColorFrame() {
   cv::Mat image(240, 376, CV_8UC3, cv::Scalar(90, 100, 95));

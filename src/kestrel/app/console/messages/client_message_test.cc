@@ -37,6 +37,10 @@ TEST(ClientMessageTest, ReadsMessagesOfPage) {
   EXPECT_EQ(save.kind, ConsoleCommandKind::kSettings);
   EXPECT_EQ(save.settings, std::vector<std::string>{"landing.target.id=3"});
   EXPECT_FALSE(ParseClientMessage(R"({"command": "settings"})"));
+  const auto mark = std::get<ConsoleCommand>(*ParseClientMessage(
+      R"({"command": "mark", "settings": ["1700000000000000000", "1", "2", "30", "40"]})"));
+  EXPECT_EQ(mark.kind, ConsoleCommandKind::kMark);
+  EXPECT_EQ(mark.settings.size(), 5u);
 }
 
 TEST(ClientMessageTest, LimitsSettings) {

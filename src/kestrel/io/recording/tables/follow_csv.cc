@@ -35,11 +35,11 @@ std::string FollowCsvHeader() {
 }
 
 std::string FollowCsvRow(const std::string& frame_name, const FollowObservation& observation) {
-  return fmt::format(
-      "{},{},{},{},{},{},{},{:.4f}\n", CsvCell(frame_name), ToNanoseconds(observation.time),
-      RegionCells(observation.region), observation.bearing ? VectorCells(*observation.bearing) : ",,",
-      PlaceCells(observation.place), ToString(observation.track_state),
-      TargetCells(observation.target), 1e3 * ToSeconds(observation.detect_time));
+  return fmt::format("{},{},{},{},{},{},{},{:.4f}\n", CsvCell(frame_name),
+                     ToNanoseconds(observation.time), RegionCells(observation.region),
+                     observation.bearing ? VectorCells(*observation.bearing) : ",,",
+                     PlaceCells(observation.place), ToString(observation.track_state),
+                     TargetCells(observation.target), 1e3 * ToSeconds(observation.detect_time));
 }
 
 std::string UnreadableFollowCsvRow(const std::string& frame_name, Time time) {
