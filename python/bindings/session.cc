@@ -4,7 +4,6 @@
 
 #include <array>
 #include <atomic>
-#include <cstddef>
 #include <exception>
 #include <functional>
 #include <memory>
@@ -338,7 +337,7 @@ void BindSeenFrame(py::module_& module) {
           "csv_rows",
           [](const SeenFrame& self) {
             if (const auto* follow = std::get_if<FollowObservation>(&self.seen)) {
-              return FollowCsvRow(self.frame.name, *follow);
+              return follow->region ? FollowCsvRow(self.frame.name, *follow) : "";
             }
             const auto* hunt = std::get_if<SeenHunt>(&self.seen);
             return hunt ? ObjectCsvRows(self.frame.name, *hunt, *hunt->model)
@@ -362,7 +361,7 @@ void BindSession(py::module_& module) {
                       const std::string& output, bool replace, bool live,
                       const std::string& autopilot, bool guide, const std::string& record,
                       const py::object& on_event, const std::optional<Box>& follow,
-                      std::size_t follow_at) {
+                      const std::string& follow_at) {
             Choices choices{source,
                             camera,
                             TaskName(hunt, follow.has_value()),
@@ -388,7 +387,7 @@ void BindSession(py::module_& module) {
           py::arg("altitude_m") = py::none(), py::arg("model") = py::none(), py::arg("output") = "",
           py::arg("replace") = false, py::arg("live") = false, py::arg("autopilot") = "",
           py::arg("guide") = false, py::arg("record") = "", py::arg("on_event") = py::none(),
-          py::arg("follow") = py::none(), py::arg("follow_at") = 0,
+          py::arg("follow") = py::none(), py::arg("follow_at") = "0",
           "source: a path (recording, bag, video, images), a Recording or SimulatedFlight; with "
           "live=True also '/dev/video0', 'rtsp://...', a GStreamer pipeline, "
           "'dds:/camera/image_raw' of ROS 2 or 'sim:standing', a simulated flight.\ncamera: path "
@@ -402,7 +401,7 @@ void BindSession(py::module_& module) {
           "misses frames.\nautopilot, guide, record: of live sessions, as of `kestrel fly`, also "
           "autopilot='sim:ardupilot' or 'sim:px4', a simulated one.\non_event: gets each message, "
           "as a warning, as a text.\nfollow: box (x, y, width, height, px) around what is to be "
-          "followed in a recording, in its frame number 'follow_at'.")
+          "followed in a recording, in the frame 'follow_at', its number or name.")
       .def("run", &Session::Run,
            "Runs to the end of the source, until stop() or Ctrl-C. Returns a summary in words. "
            "Raises InputError when the source fails, and what a sink raises: at once over a "

@@ -54,6 +54,25 @@ def test_the_hunt_is_that_of_the_command(hunt_recording, tmp_path):
 
 
 @needs_command
+def test_what_is_followed_is_that_of_the_command(recording, tmp_path):
+    subprocess.run([COMMAND, "follow", recording, "--box", "340,210,60,60", "--at", "2", "--output", tmp_path],
+                   check=True, capture_output=True)
+    table = kestrel.ResultTable()
+    seen = []
+    kestrel.Session(recording, follow=(340, 210, 60, 60), follow_at="2", sinks=[table, seen.append]).run()
+    assert without_times(table.csv()) == without_times((tmp_path / "follow_track.csv").read_text())
+    assert [each.seen.region is None for each in seen[:4]] == [True, True, False, False]
+    last = seen[-1].seen
+    assert last.region.state == "following" and last.place.covariance.shape == (3, 3)
+    assert kestrel.draw(seen[-1].frame.image, last).shape == (480, 752, 3)
+
+
+def test_one_task_at_a_time(recording):
+    with pytest.raises(kestrel.InputError, match="hunt, follow"):
+        kestrel.Session(recording, hunt=True, follow=(1, 2, 30, 40))
+
+
+@needs_command
 def test_a_simulated_flight_is_that_of_the_command(recording, tmp_path):
     subprocess.run([COMMAND, "simulate", "landing", "--scenario", "calm", "--set", "frames=10", "--set", "rate_hz=10",
                     "--output", tmp_path / "flight"], check=True, capture_output=True)

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
-#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
@@ -29,7 +28,7 @@ struct TaskArguments {
   std::string model, grid;
   std::vector<double> origin;  // latitude, longitude, degrees; or empty
   std::vector<double> box_px;  // x, y, width, height; or empty
-  std::size_t at = 0;          // number of the frame with that box
+  std::string at = "0";        // number or name of the frame with that box
 
   TaskChoice Choice() const {
     TaskChoice choice{.predict_s = predict_s, .model = ReadModel(model), .origin = origin};
@@ -80,7 +79,9 @@ void AddFollowArguments(CLI::App* command, TaskArguments* arguments) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->required();
-  command->add_option("--at", arguments->at, "Number of the frame with that box, from 0")
+  command
+      ->add_option("--at", arguments->at,
+                   "Frame with that box: its number, from 0, or its name as in the table")
       ->type_name("FRAME");
 }
 

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/core/base/error.h"
+#include "kestrel/core/base/parse_number.h"
 #include "kestrel/flight/session/result_files.h"
 #include "kestrel/io/recording/overlays/follow_overlay.h"
 
@@ -21,20 +22,23 @@ namespace {
 class FollowFiles : public ObservationSink {
  public:
   explicit FollowFiles(const OutputOptions& output)
-      : results_(output, kFollowTable, FollowCsvHeader()) {}
+      : results_(output, kFollowTable, FollowCsvHeader()), only_in_image_(output.only_in_image) {}
 
   void Take(const Observation& observation) override {
     const auto& seen = std::get<FollowObservation>(observation.seen);
-    results_.WriteRows(FollowCsvRow(observation.frame.name, seen));
+    has_begun_ = has_begun_ || seen.region;
+    if (seen.region) results_.WriteRows(FollowCsvRow(observation.frame.name, seen, only_in_image_));
     if (!results_.wants_pictures()) return;
     results_.WritePicture(observation.frame.name, DrawFollowOverlay(observation.frame.image, seen));
   }
   void Take(const BrokenFrame& frame) override {
-    results_.WriteRows(UnreadableFollowCsvRow(frame.name, frame.time));
+    if (has_begun_) results_.WriteRows(UnreadableFollowCsvRow(frame.name, frame.time));
   }
 
  private:
   ResultFiles results_;
+  bool only_in_image_;
+  bool has_begun_ = false;  // rows begin with the marked frame
 };
 
 // Copies of the newest images, for a mark on a picture that a person saw some time ago.
@@ -102,12 +106,14 @@ class FollowVision : public Vision {
 
  private:
   FollowObservation Follow(const Frame& frame);
+  bool IsMarked(const Frame& frame) const;
 
   FollowPipeline pipeline_;
   Duration clock_offset_;
   bool has_world_, is_live_;
   std::optional<FollowMark> mark_;
-  KeptImages kept_;  // in flight
+  bool is_marked_ = false;  // that mark has been passed
+  KeptImages kept_;         // in flight
   TrackSnapshot snapshot_;
   std::array<int, 3> frames_{};  // by RegionState
 };
@@ -126,13 +132,20 @@ Observation FollowVision::Process(const Frame& frame) {
 }
 
 FollowObservation FollowVision::Follow(const Frame& frame) {
-  const auto number = static_cast<std::size_t>(snapshot_.frames);
-  if (!mark_ || mark_->frame != number) return pipeline_.Process(frame.image, frame.time);
+  if (is_marked_ || !mark_ || !IsMarked(frame)) return pipeline_.Process(frame.image, frame.time);
+  is_marked_ = true;
   try {
     return pipeline_.Mark(frame.image, frame.time, mark_->box_px);
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", frame.name, error.what()));
   }
+}
+
+// By its number, or by its name or the end of it.
+bool FollowVision::IsMarked(const Frame& frame) const {
+  const std::string& wanted = mark_->frame;
+  if (const auto number = ParseNumber<int>(wanted)) return *number == snapshot_.frames;
+  return frame.name == wanted || frame.name.ends_with("/" + wanted);
 }
 
 // The images since then are followed at once, so that the next one finds the region where it is.
@@ -149,10 +162,10 @@ void FollowVision::Mark(Time frame, const cv::Rect2d& box_px) {
 }
 
 void FollowVision::Finish() {
-  const auto frames = static_cast<std::size_t>(snapshot_.frames);
-  if (!mark_ || frames > mark_->frame) return;
-  throw InputError(fmt::format("--at {}: the source has {} frames, expected a number below that",
-                               mark_->frame, frames));
+  if (is_marked_ || !mark_) return;
+  throw InputError(fmt::format(
+      "--at {}: the source has {} frames and none of that name, expected a name or a number",
+      mark_->frame, snapshot_.frames));
 }
 
 std::string FollowVision::Found() const {

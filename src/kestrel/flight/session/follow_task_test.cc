@@ -28,7 +28,7 @@ std::unique_ptr<Vision> VisionWith(const FollowMark& mark) {
 
 TEST(FollowTaskTest, FollowsFromTheMarkedFrameOn) {
   RegionScene scene(1);
-  std::unique_ptr<Vision> vision = VisionWith({scene.Box(), 2});
+  std::unique_ptr<Vision> vision = VisionWith({scene.Box(), "2"});
   for (int i = 0; i < 6; ++i) {
     const cv::Mat image = scene.Take();
     const Observation seen = vision->Process({"image", scene.time, image});
@@ -38,9 +38,20 @@ TEST(FollowTaskTest, FollowsFromTheMarkedFrameOn) {
   EXPECT_EQ(vision->Found(), "followed in 4, coasted in 0, lost in 0");
 }
 
+TEST(FollowTaskTest, FrameIsMarkedByItsName) {
+  RegionScene scene(1);
+  const auto vision = VisionWith({scene.Box(), "b.png"});
+  for (const char* name : {"data/a.png", "data/bb.png", "data/b.png"}) {
+    const cv::Mat image = scene.Take();
+    const Observation seen = vision->Process({name, scene.time, image});
+    EXPECT_EQ(std::get<FollowObservation>(seen.seen).region.has_value(),
+              name == std::string("data/b.png"));
+  }
+}
+
 TEST(FollowTaskTest, BoxOutsideOfTheImageNamesTheFrame) {
   RegionScene scene(1);
-  const auto vision = VisionWith({{900, 10, 20, 20}, 0});
+  const auto vision = VisionWith({{900, 10, 20, 20}});
   EXPECT_THAT(InputErrorOf([&] {
                 const cv::Mat image = scene.Take();
                 vision->Process({"image_7", scene.time, image});
@@ -50,10 +61,10 @@ TEST(FollowTaskTest, BoxOutsideOfTheImageNamesTheFrame) {
 
 TEST(FollowTaskTest, RecordingThatEndsBeforeTheMarkIsAnError) {
   RegionScene scene(1);
-  const auto vision = VisionWith({scene.Box(), 5});
+  const auto vision = VisionWith({scene.Box(), "5"});
   vision->Process({"image", scene.time, scene.Take()});
   EXPECT_THAT(InputErrorOf([&] { vision->Finish(); }),
-              HasSubstr("--at 5: the source has 1 frames"));
+              HasSubstr("--at 5: the source has 1 frames and none of that name"));
 }
 
 TEST(FollowTaskTest, RecordingNeedsAMark) {

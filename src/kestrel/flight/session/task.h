@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstddef>
 #include <memory>
 #include <optional>
 #include <span>
@@ -78,8 +77,8 @@ struct TaskOptions {
 
 // What a person has marked in a recording.
 struct FollowMark {
-  cv::Rect2d box_px;      // as RegionTracker::Mark
-  std::size_t frame = 0;  // number of the frame, from 0
+  cv::Rect2d box_px;        // as RegionTracker::Mark
+  std::string frame = "0";  // number of the frame, from 0, or its name
 };
 
 // The choices of a session, beside the options.
