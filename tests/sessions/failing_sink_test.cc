@@ -173,7 +173,7 @@ TEST_F(FailingSink, SurvivesStalledWriter) {
 }
 
 TEST_F(FailingSink, SurvivesFullDiskOfMcapFile) {
-  sinks().Add(OpenMcapSink("/dev/full", /*replace=*/true, LandTask({}), SmallCamera(),
+  sinks().Add(OpenMcapSink("/dev/full", /*replace=*/true, LandTask({}), SmallCamera(), {},
                            [this](const std::string& text) { Report(text); }));
   Fly();
   ExpectAllResults();
@@ -208,7 +208,7 @@ TEST_F(FailingSink, SurvivesFullDiskOfTables) {
 
 TEST_F(FailingSink, SurvivesVanishedBrowser) {
   FlightConsole* const console = sinks().Add(std::make_unique<FlightConsole>(
-      AnyPort(), "a flight", ViewOf(SmallCamera(), LandingPipelineOptions()),
+      AnyPort(), "a flight", std::vector<TaskView>{ViewOf(SmallCamera(), LandingPipelineOptions())},
       FlightExamination(SmallCamera(), ".", 0)));
   const std::string url = console->urls().front();
   const int port = std::stoi(url.substr(url.rfind(':') + 1));

@@ -51,9 +51,9 @@ class AllSinks {
     const CameraIntrinsics camera = SmallCamera().intrinsics;
     live = sinks.Add(std::make_unique<FlightLive>(camera, LandingViewOfSession(), 30));
     console = sinks.Add(std::make_unique<FlightConsole>(
-        AnyPort(), "a flight", LandingViewOfSession(), FlightExamination(SmallCamera(), ".", 0),
-        live->channels()));
-    sinks.Add(OpenMcapSink(mcap, /*replace=*/false, LandTask({}), SmallCamera(),
+        AnyPort(), "a flight", std::vector<TaskView>{LandingViewOfSession()},
+        FlightExamination(SmallCamera(), ".", 0), live->channels()));
+    sinks.Add(OpenMcapSink(mcap, /*replace=*/false, LandTask({}), SmallCamera(), {},
                            [this](const std::string& text) { Report(text); }));
     if (Ros2Node::Knows("tf2_msgs/TFMessage")) AddRos(domain);
   }

@@ -69,7 +69,8 @@ CameraRun::CameraRun(const KestrelOptions& options, CameraRunChoice choice, FlyS
         return std::make_unique<FlightRecorder>(
             folder, replace, source_->live.calibration, source_->live.rate_hz,
             options_.fly.recorder,
-            [this](const std::string& text) { console_.Report(EventLevel::kWarning, text); });
+            [this](const std::string& text) { console_.Report(EventLevel::kWarning, text); },
+            source_->live.further);
       }),
       keeper_(choice_.keep_folder, &recording_),
       console_(choice_.page, Camera(), choice_.folder, options.landing.detector) {

@@ -123,6 +123,9 @@ class DoctorVisit {
   }
 
   void OpenSource() {
+    if (arguments_.flight.source.sources.size() > 1) {
+      throw InputError("expected one SOURCE: each camera is checked by itself");
+    }
     CameraObservations& camera = observations_.camera;
     try {
       source_.Open(arguments_.flight.source.Recording(PixelFormat::kGray), arguments_.flight.loop);
@@ -138,7 +141,7 @@ class DoctorVisit {
 
   // The calibration of a camera that cannot be opened.
   void ReadCameraFile() {
-    const std::string& file = arguments_.flight.source.camera;
+    const std::string file = arguments_.flight.source.camera();
     if (file.empty()) return;
     try {
       source_.live.calibration = ReadCalibration(file);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/app/cli/fly_arguments.h"
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 
@@ -15,8 +16,17 @@ namespace {
 
 // Throws InputError for the arguments of `land` that a flight does not support.
 void RequireFlyable(const SourceArguments& source) {
-  if (source.sources.size() > 1)
-    throw InputError("expected one SOURCE, got " + std::to_string(source.sources.size()));
+  const std::size_t sources = std::max<std::size_t>(source.sources.size(), 1);
+  const std::size_t files = source.cameras.size();
+  if (files > 1 && files != sources) {
+    throw InputError(fmt::format(
+        "--camera: expected one FILE for each SOURCE, or one with an entry for each, got {} for {}",
+        files, sources));
+  }
+  if (sources > 1 && source.clock_offset) {
+    throw InputError(
+        "--clock-offset is of one camera, expected time_offset_s in the calibration of each");
+  }
   if (source.still) throw InputError("--still: the frames of a flight follow each other");
   if (!source.annotate.empty()) {
     throw InputError("--annotate: record the flight, then kestrel land DIR --annotate");
@@ -40,7 +50,8 @@ double ParseLinkDelay(const std::string& text) {
 void FlyArguments::AddTo(CLI::App* command) {
   source.AddTo(command);
   command->get_option("SOURCE")->required(false)->description(
-      "A camera (/dev/video0, rtsp://...), a GStreamer pipeline, a topic of ROS 2 (dds:TOPIC), a "
+      "A camera (/dev/video0, rtsp://...) or several, with a --camera FILE each, a GStreamer "
+      "pipeline, a topic of ROS 2 (dds:TOPIC), a "
       "simulated camera (sim:SCENARIO, as sim:standing or sim:figure8), or a recording, which is "
       "played in real time (default: fly.source of --config)");
   source.options.target.AddTo(command);
@@ -99,6 +110,17 @@ void FlyArguments::AddTo(CLI::App* command) {
   command->add_flag("--loop", loop, "Play a recording in a loop");
 }
 
+std::vector<RecordingChoice> FlyArguments::Cameras(PixelFormat format) const {
+  std::vector<RecordingChoice> cameras;
+  for (std::size_t i = 0; i < source.sources.size(); ++i) {
+    SourceArguments one = source;
+    one.sources = {source.sources[i]};
+    if (source.cameras.size() > 1) one.cameras = {source.cameras[i]};
+    cameras.push_back(one.Recording(format));
+  }
+  return cameras;
+}
+
 KestrelOptions FlyArguments::ReadOptions() {
   RequireFlyable(source);
   KestrelOptions options = source.options.Read();
@@ -109,7 +131,7 @@ KestrelOptions FlyArguments::ReadOptions() {
   } else if (options.fly.source.empty()) {
     throw CLI::RequiredError("SOURCE, or fly.source in --config FILE,");
   }
-  source.sources = {options.fly.source};
+  if (source.sources.empty()) source.sources = {options.fly.source};
   if (rate_hz) options.fly.rate_hz = *rate_hz;
   if (!signing_key.empty()) options.fly.link.signing_key = signing_key;
   if (link_delay != "auto") options.fly.link_delay_s = ParseLinkDelay(link_delay);

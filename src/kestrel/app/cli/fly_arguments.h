@@ -36,6 +36,9 @@ struct FlyArguments {
 
   void AddTo(CLI::App* command);
 
+  // The cameras, of which there are several, with their calibrations.
+  std::vector<RecordingChoice> Cameras(PixelFormat format) const;
+
   // Returns the options with the changes that these arguments make; a source that the command line
   // does not name becomes that of the options. Throws InputError for arguments of `land` that a
   // flight does not support, and when the options are not valid. Once only.

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -12,6 +13,7 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -50,8 +52,7 @@ constexpr char kEndsWithoutAutopilot[] =
     "runs until Ctrl-C, SIGTERM or the end of the source; goes on when its terminal closes\n";
 
 // A camera that is slow, or delivers nothing, must not look like a program that hangs.
-void OpenAloud(const RecordingChoice& choice, bool is_looped, FlySource* opened) {
-  const std::string& source = choice.sources.front();
+void OpenAloud(const std::string& source, const std::function<void()>& open) {
   const std::jthread notice([&source](const std::stop_token& is_open) {
     constexpr Duration kQuiet = std::chrono::seconds(1);
     std::mutex mutex;
@@ -60,7 +61,7 @@ void OpenAloud(const RecordingChoice& choice, bool is_looped, FlySource* opened)
     if (is_open.stop_requested() || !IsCamera(source)) return;
     Print("waits for the camera: the first image of " + source + "\n");
   });
-  opened->Open(choice, is_looped);
+  open();
 }
 
 // Prints events with the time since the start. Any thread may give one and does not wait for the
@@ -97,7 +98,7 @@ class Flight {
         settings_(arguments.source.options.config, arguments.given, options),
         task_(TaskOf(arguments, options)),
         source_(options_, arguments_.source.dds.NodeOpener(options_.dds)) {
-    OpenAloud(arguments_.source.Recording(task_->format()), arguments_.loop, &source_);
+    OpenAloud(arguments_.source.sources.front(), [this] { OpenSource(); });
     RequireAutopilot();
     log_ = sinks_.Add(std::make_unique<FlightLog>());
     OpenConsole();
@@ -143,6 +144,18 @@ class Flight {
   }
 
  private:
+  void OpenSource() {
+    if (arguments_.source.sources.size() > 1) {
+      source_.Open(arguments_.Cameras(task_->format()));
+    } else {
+      RecordingChoice choice = arguments_.source.Recording(task_->format());
+      choice.all_cameras = task_->takes_several_cameras();
+      source_.Open(choice, arguments_.loop);
+    }
+    if (source_.live.further.empty() || task_->takes_several_cameras()) return;
+    throw WrongUsage("--hunt: expected one camera");
+  }
+
   // A simulated camera renders where the autopilot says that the UAV is: without one, nothing.
   void RequireAutopilot() const {
     const std::string& source = arguments_.source.sources.front();
@@ -163,15 +176,21 @@ class Flight {
   void OpenConsole() {
     if (!arguments_.console) return;
     const ConsoleOptions& options = options_.console;
+    std::vector<TaskView> views = {View()};
+    std::vector<FlightLive::FurtherCamera> further;
+    for (const CameraCalibration& camera : source_.live.further) {
+      views.push_back(ViewOf(*task_, camera));
+      further.push_back({camera.name, camera.intrinsics, views.back()});
+    }
     FlightLive* const live = sinks_.Add(std::make_unique<FlightLive>(
-        source_.live.calibration.intrinsics, View(), options.max_image_rate_hz));
+        source_.live.calibration.intrinsics, View(), options.max_image_rate_hz, further));
     const FlightExamination examination(
         source_.live.calibration,
         arguments_.record.empty() ? options_.fly.keep_folder : arguments_.record,
         options_.fly.recorder.free_space_mb);
-    console_ = sinks_.Add(std::make_unique<FlightConsole>(options,
-                                                          arguments_.source.sources.front(), View(),
-                                                          examination, live->channels(), Colors()));
+    console_ =
+        sinks_.Add(std::make_unique<FlightConsole>(options, arguments_.source.sources.front(),
+                                                   views, examination, live->channels(), Colors()));
     PrintLinks(console_->urls());
     Log("for Foxglove: " + console_->viewer_url());
   }
@@ -216,9 +235,9 @@ class Flight {
     const SourceArguments& source = arguments_.source;
     if (source.mcap.empty()) return;
     RequireNoSource(source.mcap, source.sources);
-    sinks_.Add(
-        OpenMcapSink(source.mcap, source.force, *task_, source_.live.calibration,
-                     [this](const std::string& text) { Notify(text, EventLevel::kWarning); }));
+    sinks_.Add(OpenMcapSink(
+        source.mcap, source.force, *task_, source_.live.calibration, source_.live.further,
+        [this](const std::string& text) { Notify(text, EventLevel::kWarning); }));
   }
 
   // Called before anything is written.
@@ -300,9 +319,10 @@ class Flight {
   std::optional<FlightKeeper> keeper_;
 };
 
-// True for a camera of whose lens nothing is known.
+// True for a camera of whose lens nothing is known, if it is the only one.
 bool IsUncalibrated(const FlyArguments& arguments) {
-  return IsCamera(arguments.source.sources.front()) && arguments.source.camera.empty();
+  const std::vector<std::string>& sources = arguments.source.sources;
+  return sources.size() == 1 && IsCamera(sources.front()) && arguments.source.cameras.empty();
 }
 
 // Throws WrongUsage for what needs a measurement. 'advice': how there would be one.
@@ -334,7 +354,7 @@ void RunUncalibrated(const FlyArguments& arguments, const KestrelOptions& option
                          .replaces = arguments.source.force};
   choice.camera.may_assume_lens = true;
   if (arguments.console) choice.page = options.console;
-  OpenAloud(choice.camera, choice.is_looped, &source);
+  OpenAloud(name, [&] { source.Open(choice.camera, choice.is_looped); });
   CameraRun run(options, choice, &source);
   Print("kestrel: " + advice + "\n");
   Print(kEndsWithoutAutopilot);

@@ -71,10 +71,12 @@ void SourceArguments::AddReadingTo(CLI::App* command) {
       ->required();
   bag.AddTo(command);
   command
-      ->add_option("--camera", camera,
+      ->add_option("--camera", cameras,
                    "Calibration: EuRoC sensor.yaml, Kalibr camchain.yaml, ROS camera_info YAML or "
                    "OpenCV YAML or XML, camodocal, ORB-SLAM; overrides the source's")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->expected(1)
+      ->take_all();
   command
       ->add_option("--fov", fov_deg,
                    "Field of view of the lens, from the left edge to the right (degrees): a guess "
@@ -119,9 +121,16 @@ void SourceArguments::AddTo(CLI::App* command) {
   command->add_flag("--force", force, "Replace files that exist");
 }
 
+std::string SourceArguments::camera() const {
+  if (cameras.size() > 1) {
+    throw InputError("--camera: expected one FILE; several are for as many cameras of kestrel fly");
+  }
+  return cameras.empty() ? "" : cameras.front();
+}
+
 RecordingChoice SourceArguments::Recording(PixelFormat format) const {
   RecordingChoice choice = bag.Recording(sources, format);
-  choice.camera = camera;
+  choice.camera = camera();
   choice.fov_deg = fov_deg;
   if (clock_offset) choice.clock_offset = DurationFromSeconds(*clock_offset);
   return choice;

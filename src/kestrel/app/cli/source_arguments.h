@@ -21,7 +21,7 @@ namespace kestrel {
 struct SourceArguments {
   std::vector<std::string> sources;
   BagArguments bag;
-  std::string camera;
+  std::vector<std::string> cameras;  // files with the calibration; empty: the source's own
   OptionArguments options;
   std::string output;
   std::string annotate;  // "video", "images" or empty
@@ -36,6 +36,10 @@ struct SourceArguments {
   void AddTo(CLI::App* command);
   // Adds the arguments for reading only, without those for the results.
   void AddReadingTo(CLI::App* command);
+
+  // The file with the calibration; empty: the source's own. Throws InputError when there are
+  // several.
+  std::string camera() const;
 
   // The recording and what the arguments say of it. Warnings go to stderr.
   RecordingChoice Recording(PixelFormat format) const;

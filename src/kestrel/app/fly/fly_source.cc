@@ -11,23 +11,36 @@
 #include "kestrel/io/recording/open_source.h"
 
 namespace kestrel {
+namespace {
+
+// Throws InputError for a camera without a calibration.
+void RequireCalibration(const RecordingChoice& camera) {
+  const std::string& source = camera.sources.front();
+  if (!IsCamera(source) || !camera.camera.empty() || camera.may_assume_lens) return;
+  throw InputError(fmt::format(
+      "{}: no calibration: nothing can be measured, and nothing sent to an autopilot, without "
+      "one: --camera FILE (kestrel calibrate lens makes one)",
+      source));
+}
+
+void PrintLine(const std::string& text) { fmt::print(stderr, "kestrel: {}\n", text); }
+
+}  // namespace
 
 FlySource::FlySource(const KestrelOptions& options, DdsSource::OpenNode open_node)
     : simulated(options.fly.sim_camera, options.landing.target,
                 static_cast<std::uint64_t>(options.fly.sim_seed)),
-      dds(options.dds, std::move(open_node),
-          [](const std::string& text) { fmt::print(stderr, "kestrel: {}\n", text); }),
+      dds(options.dds, std::move(open_node), PrintLine),
       camera_(options.fly.camera) {}
 
 void FlySource::Open(const RecordingChoice& recording, bool is_looped) {
-  const std::string& source = recording.sources.front();
-  if (IsCamera(source) && recording.camera.empty() && !recording.may_assume_lens) {
-    throw InputError(fmt::format(
-        "{}: no calibration: nothing can be measured, and nothing sent to an autopilot, without "
-        "one: --camera FILE (kestrel calibrate lens makes one)",
-        source));
-  }
+  RequireCalibration(recording);
   live = OpenLiveSource({recording, is_looped}, camera_, {dds.Scheme(), simulated.Scheme()});
+}
+
+void FlySource::Open(const std::vector<RecordingChoice>& cameras) {
+  for (const RecordingChoice& camera : cameras) RequireCalibration(camera);
+  live = OpenLiveCameras(cameras, camera_, PrintLine);
 }
 
 }  // namespace kestrel

@@ -19,6 +19,8 @@ struct FlySource {
 
   // Throws InputError as OpenLiveSource does.
   void Open(const RecordingChoice& recording, bool is_looped);
+  // Opens several cameras, see OpenLiveCameras.
+  void Open(const std::vector<RecordingChoice>& cameras);
 
   SimulatedSource simulated;  // owns what 'live' renders
   DdsSource dds;

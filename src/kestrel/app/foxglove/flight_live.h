@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "kestrel/app/views/task_view.h"
 #include "kestrel/app/web_server/channel_feed.h"
@@ -16,8 +17,17 @@ namespace kestrel {
 // Without any a frame costs the vision thread one read of a number.
 class FlightLive : public ObservationSink {
  public:
-  // 'max_image_rate_hz': limit for /camera/image; the other messages are made for each frame.
-  FlightLive(const CameraIntrinsics& camera, const TaskView& view, double max_image_rate_hz);
+  // A camera after the first one: its topics have its name, as /cam1/image.
+  struct FurtherCamera {
+    std::string name;
+    CameraIntrinsics camera;
+    TaskView view;
+  };
+
+  // 'max_image_rate_hz': limit for the images of a camera; the other messages are made for each
+  // frame.
+  FlightLive(const CameraIntrinsics& camera, const TaskView& view, double max_image_rate_hz,
+             const std::vector<FurtherCamera>& further = {});
 
   // The channels for a WebServer; valid as long as this.
   ChannelFeed* channels() { return &feed_; }

@@ -24,6 +24,8 @@ class McapWriter : public SinkWriter {
              const TaskView& view, std::function<void(const std::string&)> notify)
       : file_(path, replace, camera, view), notify_(std::move(notify)) {}
 
+  ObservationWriter& writer() { return file_.writer(); }
+
   void Write(const Observation& observation, std::size_t /*waiting*/) override {
     file_.writer().Write(observation);
   }
@@ -57,21 +59,29 @@ class McapFileSink : public ObservationSink {
   ObservationFile file_;
 };
 
+void AddCameras(const std::vector<CameraCalibration>& further, const Task& task,
+                ObservationWriter* writer) {
+  for (const CameraCalibration& camera : further) {
+    writer->AddCamera(camera.name, camera.intrinsics, ViewOf(task, camera));
+  }
+}
+
 }  // namespace
 
 std::unique_ptr<AsynchronousSink> OpenMcapSink(const std::string& path, bool replace,
                                                const Task& task,
                                                const CameraCalibration& calibration,
+                                               const std::vector<CameraCalibration>& further,
                                                std::function<void(const std::string&)> notify) {
   AsynchronousSinkOptions options{
       .thread_name = "mcap", .frames = kFrames, .patience = kFlushPeriod, .notify = {}};
   options.notify = [notify](const std::string& error) {
     notify(fmt::format("{}: the flight goes on without it", error));
   };
-  return std::make_unique<AsynchronousSink>(
-      std::move(options),
-      std::make_unique<McapWriter>(path, replace, calibration.intrinsics, ViewOf(task, calibration),
-                                   std::move(notify)));
+  auto writer = std::make_unique<McapWriter>(path, replace, calibration.intrinsics,
+                                             ViewOf(task, calibration), std::move(notify));
+  AddCameras(further, task, &writer->writer());
+  return std::make_unique<AsynchronousSink>(std::move(options), std::move(writer));
 }
 
 std::unique_ptr<ObservationSink> OpenMcapFile(const std::string& path, bool replace,
@@ -80,9 +90,7 @@ std::unique_ptr<ObservationSink> OpenMcapFile(const std::string& path, bool repl
                                               const std::vector<CameraCalibration>& further) {
   auto sink = std::make_unique<McapFileSink>(path, replace, calibration.intrinsics,
                                              ViewOf(task, calibration));
-  for (const CameraCalibration& camera : further) {
-    sink->writer().AddCamera(camera.name, camera.intrinsics, ViewOf(task, camera));
-  }
+  AddCameras(further, task, &sink->writer());
   return sink;
 }
 

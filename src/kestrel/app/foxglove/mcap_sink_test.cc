@@ -28,7 +28,7 @@ TEST(McapSinkTest, WritesAllObservationsAndEvents) {
   const std::string path = folder / "flight.mcap";
   std::vector<std::string> reported;
   {
-    const auto mcap = OpenMcapSink(path, false, LandTask({}), ObservedCalibration(),
+    const auto mcap = OpenMcapSink(path, false, LandTask({}), ObservedCalibration(), {},
                                    [&](const std::string& text) { reported.push_back(text); });
     mcap->Take(SessionEvent{Now(), EventLevel::kWarning, "the autopilot is gone"});
     for (int i = 0; i < 20; ++i) {
@@ -49,7 +49,7 @@ TEST(McapSinkTest, WritesFrameWithinASecond) {
   const TestFolder folder;
   const std::string path = folder / "flight.mcap";
   const auto mcap =
-      OpenMcapSink(path, false, LandTask({}), ObservedCalibration(), [](const std::string&) {});
+      OpenMcapSink(path, false, LandTask({}), ObservedCalibration(), {}, [](const std::string&) {});
   const Frame frame = ObservedFrame(0);
   mcap->Take(Observation{frame, ObservedLanding(frame.time)});
   EXPECT_TRUE(Eventually([&] {
@@ -64,7 +64,7 @@ TEST(McapSinkTest, ReportsFullDiskAndContinuesFlight) {
   std::mutex mutex;
   std::vector<std::string> reported;
   {
-    const auto mcap = OpenMcapSink("/dev/full", true, LandTask({}), ObservedCalibration(),
+    const auto mcap = OpenMcapSink("/dev/full", true, LandTask({}), ObservedCalibration(), {},
                                    [&](const std::string& text) {
                                      const std::lock_guard lock(mutex);
                                      reported.push_back(text);

@@ -35,7 +35,7 @@ FlightProgram::FlightProgram(const FlightOptions& options, const FlightParts& pa
     : options_(Checked(options)),
       parts_(parts),
       report_(std::move(report)),
-      events_(options.events, parts.vision->pose_lead()),
+      events_(options.events, parts.vision->pose_lead(), parts.cameras),
       poses_(kPoses, kPoseGap),
       latency_({"capture to arrival", "capture to vision", "detection", "capture to message",
                 "capture to set-point"}),
@@ -168,7 +168,8 @@ void FlightProgram::Take(Event event) {
   auto& frame = std::get<Frame>(event);
   latency_.step(kArrival).Add(Now() - frame.time);
   if (const auto recorder = Recorder()) {
-    recorder->AddFrame(frame, parts_.truth ? parts_.truth(frame) : std::nullopt);
+    const bool has_truth = parts_.truth && frame.camera == 0;
+    recorder->AddFrame(frame, has_truth ? parts_.truth(frame) : std::nullopt);
   }
   events_.Push(std::move(frame));
 }
@@ -205,7 +206,8 @@ void FlightProgram::See() {
       continue;
     }
     const auto& frame = std::get<Frame>(event);
-    if (!parts_.sees_repeated && IsFrozen(frame)) continue;
+    // Of several cameras the vision itself judges which ones it can use.
+    if (parts_.cameras == 1 && !parts_.sees_repeated && IsFrozen(frame)) continue;
     latency_.step(kVision).Add(Now() - frame.time);
     const TrackSnapshot snapshot = See(frame);
     latency_.step(kDetection).Add(snapshot.detect_time);
@@ -218,6 +220,7 @@ void FlightProgram::See() {
     track_.Set(snapshot);
     if (parts_.connection != nullptr) parts_.connection->Wake();
     WarnOnce();
+    ReportCameras();
   }
 }
 
@@ -225,10 +228,13 @@ TrackSnapshot FlightProgram::See(const Frame& frame) {
   Observation observation = parts_.vision->Process(frame);
   observation.latency = Now() - frame.time;
   TrackSnapshot snapshot = parts_.vision->snapshot();
-  if (parts_.exposure != nullptr) parts_.exposure->Update(frame.image, snapshot.area);
+  if (parts_.exposure != nullptr && frame.camera == 0) {
+    parts_.exposure->Update(frame.image, snapshot.area);
+  }
   // Without pixels many frames can wait for the disk.
   if (parts_.tables != nullptr) {
-    parts_.tables->Take({{frame.name, frame.time, {}}, observation.seen, observation.latency});
+    parts_.tables->Take(
+        {{frame.name, frame.time, {}, {}, frame.camera}, observation.seen, observation.latency});
   }
   if (parts_.sink != nullptr && parts_.sink->IsWanted()) parts_.sink->Take(observation);
   return snapshot;
@@ -247,6 +253,13 @@ void FlightProgram::WarnOnce() {
   if (warning.empty()) return;
   was_warned_ = true;
   report_(warning);
+}
+
+void FlightProgram::ReportCameras() {
+  const auto events = parts_.vision->camera_events();
+  for (; reported_camera_events_ < events.size(); ++reported_camera_events_) {
+    report_(events[reported_camera_events_]);
+  }
 }
 
 // True when the camera repeats an image: it shows where the target was, not where it is.
@@ -461,6 +474,7 @@ std::string FlightProgram::Summary() const {
   if (const std::string warning = parts_.vision->Warning(); !warning.empty()) {
     summary += warning + "\n";
   }
+  for (const std::string& event : parts_.vision->camera_events()) summary += event + "\n";
   summary += latency_.InWords();
   if (parts_.connection == nullptr) return summary;
   const ConnectionCounters link = parts_.connection->counters();

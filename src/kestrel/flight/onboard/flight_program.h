@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -52,7 +53,8 @@ struct FlightParts {
   bool guides = false;                         // flies by set-points when the pilot gives the mode
   bool source_has_poses = false;               // the autopilot's poses are then not used
   bool sees_repeated = false;                  // processes images that equal the one before
-  std::optional<LinkProfile> profile;          // nothing: chosen by the heartbeat
+  std::size_t cameras = 1;
+  std::optional<LinkProfile> profile;  // nothing: chosen by the heartbeat
   // Returns the true pattern at the time of a frame, in a simulation that knows it.
   std::function<std::optional<TruePattern>(const Frame&)> truth;
   // Returns the true offset of the touch-down, in a simulation that knows it, see FlightEnd.
@@ -105,6 +107,7 @@ class FlightProgram {
 
   bool IsFrozen(const Frame& frame);
   void WarnOnce();
+  void ReportCameras();
   void Take(Event event);
   void TakePose(const PoseSample& pose);
   void TakeGimbal(const GimbalSample& report);
@@ -155,6 +158,7 @@ class FlightProgram {
   // Used by the vision's thread only.
   RepeatedImage repeated_image_;
   bool was_warned_ = false;
+  std::size_t reported_camera_events_ = 0;
 
   std::atomic<int> repeated_frames_{0}, frames_{0}, detections_{0}, messages_{0};
   std::atomic<TargetPhase> phase_{TargetPhase::kSearching};

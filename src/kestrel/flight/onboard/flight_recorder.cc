@@ -56,18 +56,23 @@ Duration UtcOffset() {
 
 FlightRecorder::FlightRecorder(const fs::path& folder, bool replace,
                                const CameraCalibration& calibration, double rate_hz,
-                               const FlightRecorderOptions& options, Notify notify)
+                               const FlightRecorderOptions& options, Notify notify,
+                               const std::vector<CameraCalibration>& further)
     : options_(options),
       folder_(MadeFolder(folder, replace, options)),
       lock_(folder_.string()),
       notify_(std::move(notify)),
       utc_offset_(UtcOffset()),
       gimbal_(calibration.gimbal),
-      writer_(Emptied(folder_), kEurocTables),
+      writer_(Emptied(folder_), kEurocTables, 1 + further.size()),
       images_(static_cast<std::size_t>(options.queue_frames)),
-      records_(kRecords) {
+      records_(kRecords),
+      last_images_(1 + further.size()) {
   if (options_.compression == "jpg") jpeg_encoder_.emplace(options_.jpg_quality);
   if (calibration.intrinsics.width_px > 0) writer_.WriteCamera(calibration, rate_hz);
+  for (std::size_t i = 0; i < further.size(); ++i) {
+    writer_.WriteCamera(further[i], rate_hz, i + 1);
+  }
   writer_.WritePoseSensor(kPoseRate_hz);
   write_thread_ = std::thread([this] { RunWriter(); });
   commit_thread_ = std::thread([this] { RunCommitter(); });
@@ -90,13 +95,14 @@ void FlightRecorder::Report(const std::string& text) const {
 }
 
 void FlightRecorder::AddFrame(const Frame& frame, const std::optional<TruePattern>& truth) {
-  const auto dropped = images_.Push({{"", frame.time, frame.image}, truth});
-  if (dropped) Drop(dropped->frame.time, "the disk is too slow");
+  const auto dropped = images_.Push({{"", frame.time, frame.image, {}, frame.camera}, truth});
+  if (dropped) Drop(dropped->frame, "the disk is too slow");
 }
 
-void FlightRecorder::Drop(Time time, const char* reason) {
+void FlightRecorder::Drop(const Frame& frame, const char* reason) {
   drop_count_.fetch_add(1, std::memory_order_relaxed);
-  if (records_.Push(Dropped{time, reason})) lost_count_.fetch_add(1, std::memory_order_relaxed);
+  if (!records_.Push(Dropped{frame.time, reason, frame.camera})) return;
+  lost_count_.fetch_add(1, std::memory_order_relaxed);
 }
 
 void FlightRecorder::AddPose(const PoseSample& pose) {
@@ -158,12 +164,14 @@ void FlightRecorder::RunCommitter() {
 }
 
 void FlightRecorder::Write(const RecordedImage& image) {
-  const Time time = image.frame.time;
-  if (!IsNext(kImages, time)) return Drop(time, "not later than the image before");
-  if (!HasRoom()) return Drop(time, "the disk is full");
-  if (!WriteImage(image.frame)) return Drop(time, "it could not be written");
+  const Frame& frame = image.frame;
+  if (!IsNext(frame.time, &last_images_[frame.camera])) {
+    return Drop(frame, "not later than the image before");
+  }
+  if (!HasRoom()) return Drop(frame, "the disk is full");
+  if (!WriteImage(frame)) return Drop(frame, "it could not be written");
   image_count_.fetch_add(1, std::memory_order_relaxed);
-  writer_.ListImage(time, options_.compression);
+  writer_.ListImage(frame.time, options_.compression, frame.camera);
   if (image.truth) writer_.AddTruePattern(*image.truth);
 }
 
@@ -199,7 +207,7 @@ void FlightRecorder::Encode(const cv::Mat& image) {
 bool FlightRecorder::WriteImage(const Frame& frame) {
   try {
     Encode(frame.image);
-    writer_.WriteImage(frame.time, options_.compression, encoded_);
+    writer_.WriteImage(frame.time, options_.compression, encoded_, frame.camera);
   } catch (const InputError& error) {
     StopImages(error.what());
     return false;
@@ -215,10 +223,9 @@ void FlightRecorder::WriteRecords() {
   }
 }
 
-bool FlightRecorder::IsNext(Kind kind, Time time) {
-  std::optional<Time>& last = last_times_[kind];
-  if (last && time <= *last) return false;
-  last = time;
+bool FlightRecorder::IsNext(Time time, std::optional<Time>* last) {
+  if (*last && time <= **last) return false;
+  *last = time;
   return true;
 }
 
@@ -245,7 +252,7 @@ void FlightRecorder::WriteRecord(const Exposure& exposure) {
 }
 
 void FlightRecorder::WriteRecord(const Dropped& dropped) {
-  writer_.AddDroppedImage(dropped.time, dropped.reason);
+  writer_.AddDroppedImage(dropped.time, dropped.reason, dropped.camera);
 }
 
 void FlightRecorder::WriteRecord(const Packet& packet) {

@@ -15,6 +15,7 @@
 #include <string>
 #include <thread>
 #include <variant>
+#include <vector>
 
 #include "kestrel/core/base/bounded_queue.h"
 #include "kestrel/core/base/folder_lock.h"
@@ -60,6 +61,7 @@ struct FlightRecorderOptions {
 //   mav0/cam0/data.csv, data/*.png, sensor.yaml   images, as they were given out by the camera
 //   mav0/cam0/exposure.csv                        timestamp, exposure (s) from that image on
 //   mav0/cam0/dropped.csv                         timestamp, reason: images that are not there
+//   mav0/cam1/                                    the same of the next camera, without exposures
 //   mav0/nav0/data.csv                            poses as the autopilot reported them
 //   mav0/gimbal0/data.csv, sensor.yaml            reports of the gimbal on which the camera is
 //   mav0/state_groundtruth_estimate0/data.csv     true poses, where a simulation has them
@@ -74,9 +76,11 @@ class FlightRecorder {
   // Throws InputError when 'folder' has something else in it (or a recording, unless 'replace'),
   // cannot be written or is in use by another writer, or the options are not valid. 'rate_hz': rate
   // of the images. A calibration of width 0 (none is known) is not written.
+  // 'further': calibrations of the cameras after the first one, which become cam1, cam2 and so on.
   FlightRecorder(const std::filesystem::path& folder, bool replace,
                  const CameraCalibration& calibration, double rate_hz,
-                 const FlightRecorderOptions& options, Notify notify);
+                 const FlightRecorderOptions& options, Notify notify,
+                 const std::vector<CameraCalibration>& further = {});
   // Writes all data that it has received.
   ~FlightRecorder();
   FlightRecorder(const FlightRecorder&) = delete;
@@ -98,8 +102,8 @@ class FlightRecorder {
   bool is_recording_images() const { return !are_images_stopped_; }
 
  private:
-  // Kinds of records; those of one kind must come in order of time.
-  enum Kind : std::size_t { kImages, kExposures, kPoses, kGimbal, kTruePoses, kKindCount };
+  // Kinds of records; those of one kind, and of one camera, must come in order of time.
+  enum Kind : std::size_t { kExposures, kPoses, kGimbal, kTruePoses, kKindCount };
   struct RecordedImage {
     Frame frame;
     std::optional<TruePattern> truth;
@@ -114,6 +118,7 @@ class FlightRecorder {
   struct Dropped {
     Time time;
     const char* reason;
+    std::size_t camera;
   };
   struct Packet {
     static constexpr std::size_t kMaxSize = 280;
@@ -128,14 +133,15 @@ class FlightRecorder {
   void Report(const std::string& text) const;
 
   void Write(const RecordedImage& image);
-  void Drop(Time time, const char* reason);
+  void Drop(const Frame& frame, const char* reason);
   bool HasRoom();
   void Encode(const cv::Mat& image);
   bool WriteImage(const Frame& frame);
   void StopImages(const std::string& reason);
 
   void WriteRecords();
-  bool IsNext(Kind kind, Time time);
+  static bool IsNext(Time time, std::optional<Time>* last);
+  bool IsNext(Kind kind, Time time) { return IsNext(time, &last_times_[kind]); }
   void WriteRecord(const PoseSample& pose);
   void WriteRecord(const GimbalSample& report);
   void WriteRecord(const TruePose& truth);
@@ -156,7 +162,8 @@ class FlightRecorder {
 
   // Used by the writer's thread only.
   std::array<std::optional<Time>, kKindCount> last_times_;
-  std::optional<YawFrame> yaw_frame_;  // of the recorded reports
+  std::vector<std::optional<Time>> last_images_;  // of each camera
+  std::optional<YawFrame> yaw_frame_;             // of the recorded reports
   std::string encoded_;
   Time next_attempt_;  // of writing, after a failure
 

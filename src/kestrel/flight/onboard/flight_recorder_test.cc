@@ -14,6 +14,7 @@
 #include "kestrel/app/evaluation/landing_truth.h"
 #include "kestrel/core/base/read_file.h"
 #include "kestrel/core/base/test_eventually.h"
+#include "kestrel/io/bags/open_recording.h"
 #include "kestrel/io/recording/euroc/euroc_recording.h"
 #include "kestrel/io/recording/open_source.h"
 #include "kestrel/io/recording/tables/csv_table.h"
@@ -99,6 +100,29 @@ TEST_F(FlightRecorderTest, WritesReadableRecording) {
     EXPECT_TRUE(calibration.body_from_camera);
   }
   EXPECT_THAT(Reported(), IsEmpty());
+}
+
+TEST_F(FlightRecorderTest, WritesTwoCamerasThatAreReadAsOneRecording) {
+  {
+    CameraCalibration second = Mounted();
+    second.intrinsics.fx_px = 90;
+    FlightRecorder recorder(Folder(), false, Mounted(), 50, {.free_space_mb = 0}, {}, {second});
+    for (int i = 0; i < 5; ++i) {
+      recorder.AddFrame(FrameAt(20 * i + 10));
+      Frame frame = FrameAt(20 * i);  // earlier than that of the other camera
+      frame.camera = 1;
+      recorder.AddFrame(frame);
+      recorder.AddFrame(frame);  // not later than the one before
+    }
+  }
+  const OpenedSource opened = OpenRecording({.sources = {Folder()}, .all_cameras = true});
+  ASSERT_THAT(opened.further, SizeIs(1));
+  EXPECT_EQ(opened.further[0].name, "cam1");
+  EXPECT_EQ(opened.further[0].intrinsics.fx_px, 90);
+  std::array<int, 2> frames{};
+  for (Frame frame; opened.source->Next(&frame);) ++frames[frame.camera];
+  EXPECT_THAT(frames, ElementsAre(5, 5));
+  EXPECT_THAT(ReadFile(Mav0("cam1/dropped.csv")), HasSubstr("not later than the image before"));
 }
 
 TEST_F(FlightRecorderTest, WritesTruthForEvaluation) {

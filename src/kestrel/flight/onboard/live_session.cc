@@ -74,6 +74,7 @@ class TableWriter : public SinkWriter {
 // Results have places in the world: there is a mount, and somebody has poses.
 SessionCamera CameraOf(const OpenedLiveSource& live, const SessionOptions& options) {
   return {.calibration = live.calibration,
+          .further = live.further,
           .altitude_m = options.altitude_m,
           .has_world =
               live.calibration.body_from_camera && (live.has_poses || !options.autopilot.empty()),
@@ -222,9 +223,9 @@ void Flight::OpenExposure() {
 
 std::unique_ptr<FlightRecorder> Flight::OpenRecorder(const std::filesystem::path& folder,
                                                      bool replace) {
-  return std::make_unique<FlightRecorder>(folder, replace, live_.calibration, live_.rate_hz,
-                                          flight().recorder,
-                                          [this](const std::string& text) { Notify(text); });
+  return std::make_unique<FlightRecorder>(
+      folder, replace, live_.calibration, live_.rate_hz, flight().recorder,
+      [this](const std::string& text) { Notify(text); }, live_.further);
 }
 
 AutopilotOptions Flight::WantedOfAutopilot() const {
@@ -279,6 +280,7 @@ FlightParts Flight::ProgramParts() {
           .guides = options_.guides,
           .source_has_poses = live_.has_poses,
           .sees_repeated = live_.sees_repeated,
+          .cameras = 1 + live_.further.size(),
           .profile = options_.profile,
           .truth = live_.truth,
           .true_offset_m = live_.true_offset_m};

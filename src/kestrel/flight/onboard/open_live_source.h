@@ -22,6 +22,8 @@ namespace kestrel {
 struct OpenedLiveSource {
   std::unique_ptr<LiveSource> source = {};
   CameraCalibration calibration = {};
+  // Those of the further cameras: of frames with the indices 1, 2, ... All have their names then.
+  std::vector<CameraCalibration> further = {};
   double rate_hz = kNominalRateHz;       // of the images, nominal
   bool has_poses = false;                // the source has poses of its own
   ExposureActuator* actuator = nullptr;  // view of 'source'; null: its exposure cannot be set
@@ -65,8 +67,17 @@ OpenedLiveSource OpenLiveSource(const LiveSourceChoice& choice,
                                 const GstreamerCameraOptions& camera,
                                 const std::vector<SourceScheme>& schemes = {});
 
+// Opens several cameras as one source: cam0, cam1 and so on. Their calibrations are files of one
+// camera each, or one file with an entry for each. One that cannot be opened is left out, with a
+// line to 'notify', as long as another one can. Throws InputError when none can be opened, when one
+// is no camera, or is given twice.
+OpenedLiveSource OpenLiveCameras(const std::vector<RecordingChoice>& cameras,
+                                 const GstreamerCameraOptions& options,
+                                 const std::function<void(const std::string&)>& notify);
+
 // Returns the calibration of the choice's file, with its clock offset, for sources that have none
-// of their own. Throws InputError when the file is not valid.
-CameraCalibration ChosenCalibration(const RecordingChoice& choice);
+// of their own. 'name': of the camera, in a file with several. Throws InputError when the file is
+// not valid.
+CameraCalibration ChosenCalibration(const RecordingChoice& choice, const std::string& name = "");
 
 }  // namespace kestrel

@@ -15,10 +15,19 @@ constexpr Duration kPosesAhead = std::chrono::milliseconds(200);
 
 }  // namespace
 
-RealtimeReplay::RealtimeReplay(Open open, Duration clock_offset, bool is_looped)
-    : open_(std::move(open)), clock_offset_(clock_offset), is_looped_(is_looped) {
+RealtimeReplay::RealtimeReplay(Open open, Duration clock_offset, bool is_looped,
+                               std::vector<Duration> further_offsets)
+    : open_(std::move(open)),
+      clock_offset_(clock_offset),
+      further_offsets_(std::move(further_offsets)),
+      is_looped_(is_looped) {
   Begin();
   if (!frame_) throw InputError("the recording has no frames");
+}
+
+Time RealtimeReplay::OnFirstClock(const Frame& frame) const {
+  if (frame.camera == 0) return frame.time;
+  return frame.time + further_offsets_[frame.camera - 1] - clock_offset_;
 }
 
 void RealtimeReplay::Begin() {
@@ -28,7 +37,7 @@ void RealtimeReplay::Begin() {
   next_gimbal_ = 0;
   if (!ReadFrame()) return;
   const auto is_early = [this](const PoseSample& pose) {
-    return pose.time - clock_offset_ < frame_->time - kPosesAhead;
+    return pose.time - clock_offset_ < OnFirstClock(*frame_) - kPosesAhead;
   };
   const auto first = std::find_if_not(poses_.begin(), poses_.end(), is_early);
   next_pose_ = static_cast<std::size_t>(first - poses_.begin());
@@ -50,7 +59,7 @@ std::optional<Event> RealtimeReplay::Next(Duration timeout) {
   if (!has_ended_ && IsRoundOver()) EndOnFault([this] { BeginAgainOrEnd(); });
   if (has_ended_) return EndOfStream{};
   const Time now = Now();
-  if (!std::exchange(is_started_, true)) shift_ = now + kPosesAhead - frame_->time;
+  if (!std::exchange(is_started_, true)) shift_ = now + kPosesAhead - OnFirstClock(*frame_);
   const Time due = IsPoseNext() ? DueOf(poses_[next_pose_]) : DueOf(*frame_);
   if (IsGimbalNext(std::min(due, now))) return TakeGimbal();
   if (due > now + timeout) {
@@ -94,8 +103,8 @@ std::optional<Event> RealtimeReplay::TakePose() {
 
 Event RealtimeReplay::TakeFrame() {
   Frame frame = *std::exchange(frame_, std::nullopt);
+  last_frame_ = DueOf(frame);
   frame.time += shift_;
-  last_frame_ = frame.time;
   {
     const std::lock_guard lock(mutex_);
     ++counters_.captured;
@@ -120,7 +129,7 @@ void RealtimeReplay::BeginAgainOrEnd() {
   if (has_ended_) return;
   const Duration period = DurationFromSeconds(1 / source_->rate_hz());
   Begin();
-  shift_ = *last_frame_ + period - frame_->time;
+  shift_ = *last_frame_ + period - OnFirstClock(*frame_);
 }
 
 std::string RealtimeReplay::error() const {

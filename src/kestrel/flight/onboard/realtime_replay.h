@@ -24,8 +24,10 @@ class RealtimeReplay : public LiveSource {
   // 'open' opens the recording at its beginning, once for each round. 'clock_offset': of its
   // calibration, t_nav = t_image + clock_offset: a pose comes with the frames of its instant.
   // 'is_looped': it begins again at once after the last frame, so that positions jump; otherwise it
-  // ends. Throws InputError when 'open' does, or when the recording has no frame.
-  RealtimeReplay(Open open, Duration clock_offset, bool is_looped);
+  // ends. 'further_offsets': of the cameras after the first one. Throws InputError when 'open'
+  // does, or when the recording has no frame.
+  RealtimeReplay(Open open, Duration clock_offset, bool is_looped,
+                 std::vector<Duration> further_offsets = {});
 
   std::optional<Event> Next(Duration timeout) override;
   std::string error() const override;
@@ -34,7 +36,9 @@ class RealtimeReplay : public LiveSource {
  private:
   void Begin();
   bool ReadFrame();
-  Time DueOf(const Frame& frame) const { return frame.time + shift_; }
+  // Its time on the clock of the first camera's images.
+  Time OnFirstClock(const Frame& frame) const;
+  Time DueOf(const Frame& frame) const { return OnFirstClock(frame) + shift_; }
   Time DueOf(const PoseSample& pose) const { return pose.time - clock_offset_ + shift_; }
   Time DueOf(const GimbalSample& report) const { return report.time - clock_offset_ + shift_; }
   bool IsPoseNext() const;
@@ -49,6 +53,7 @@ class RealtimeReplay : public LiveSource {
 
   Open open_;
   Duration clock_offset_;
+  std::vector<Duration> further_offsets_;
   bool is_looped_;
   std::unique_ptr<FrameSource> source_;
   std::vector<PoseSample> poses_;

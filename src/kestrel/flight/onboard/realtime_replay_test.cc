@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/flight/onboard/realtime_replay.h"
 
+#include <chrono>
+#include <cstddef>
+#include <map>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "kestrel/io/recording/euroc/euroc_recording.h"
+#include "kestrel/io/recording/several_cameras.h"
 #include "kestrel/io/recording/test_files.h"
 
 namespace kestrel {
@@ -55,6 +61,36 @@ class RealtimeReplayTest : public ::testing::Test {
 
   TestFolder folder_;
 };
+
+// The stamps of the second camera are an hour ahead; its images were taken 10 ms after the first
+// one's.
+TEST_F(RealtimeReplayTest, CameraWithClockOfItsOwnComesInItsTurn) {
+  const Duration hour = std::chrono::hours(1);
+  std::string rows = "#timestamp [ns],filename\n";
+  for (int i = 0; i < kFrames; ++i) {
+    const std::string name = std::to_string(i) + ".png";
+    rows += std::to_string(3'700'010'000'000 + 20'000'000LL * i) + "," + name + "\n";
+    WriteTestImage(folder_, "mav0/cam1/data/" + name, cv::Mat(4, 4, CV_8UC1, cv::Scalar(i)));
+  }
+  folder_.Write("mav0/cam1/data.csv", rows);
+  const std::map<std::string, Duration> clocks = {{"cam0", Duration::zero()}, {"cam1", -hour}};
+  const auto open = [&] {
+    std::vector<SeveralCameras::Camera> cameras;
+    for (const auto& [name, offset] : clocks) {
+      cameras.push_back(
+          {std::make_unique<ImageSequence>(OpenEurocRecording(folder_.path(), name)), offset});
+    }
+    return std::make_unique<SeveralCameras>(std::move(cameras));
+  };
+  RealtimeReplay replay(open, Duration::zero(), false, {-hour});
+  std::vector<std::size_t> cameras;
+  for (;;) {
+    const Event event = Wait(&replay);
+    if (std::holds_alternative<EndOfStream>(event)) break;
+    if (const auto* frame = std::get_if<Frame>(&event)) cameras.push_back(frame->camera);
+  }
+  EXPECT_EQ(cameras, (std::vector<std::size_t>{0, 1, 0, 1, 0, 1, 0, 1, 0, 1}));
+}
 
 TEST_F(RealtimeReplayTest, DeliversFramesAndPosesWhenDue) {
   RealtimeReplay replay = Replay(false);

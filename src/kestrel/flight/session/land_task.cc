@@ -59,6 +59,7 @@ class LandingVision : public Vision {
 
   // Reports how the detections contradict the given height and attitude; in flight, the lens.
   std::string Warning() const override;
+  std::span<const std::string> camera_events() const override { return faults_; }
   std::string Found() const override;
   // Contradictions between detections and calibration; the number of frames without a pose, where
   // others have one.
@@ -135,7 +136,8 @@ void LandingVision::LimitSearch(const Frame& frame) {
   FramePeriod& camera = cameras_[frame.camera].period;
   camera.Add(frame.time);
   if (const auto period = camera.Get()) {
-    pipeline_.LimitSearch(kSearchShare * 1e3 * ToSeconds(*period));
+    const double share = kSearchShare / static_cast<double>(cameras_.size());
+    pipeline_.LimitSearch(share * 1e3 * ToSeconds(*period));
   }
 }
 

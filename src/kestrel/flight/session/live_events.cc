@@ -11,7 +11,7 @@ namespace kestrel {
 namespace {
 
 constexpr std::size_t kWaitingSamples = 256;  // several seconds of poses of any autopilot
-constexpr std::size_t kWaitingFrames = 10;    // of 30 per second, for poses as late as below
+constexpr std::size_t kWaitingFrames = 10;    // of a camera: 30 per second, poses as late as below
 constexpr double kDelayMemory_s = 5;          // a large delay of a pose counts for so long
 constexpr double kLongestDelay_s = 0.3;       // a pose that is later is of no use
 
@@ -22,9 +22,12 @@ Duration PoseWaitOf(const LiveEventsOptions& options) {
 
 }  // namespace
 
-LiveEvents::LiveEvents(const LiveEventsOptions& options, Duration lead)
-    : pose_wait_(PoseWaitOf(options)), lead_(lead), samples_(kWaitingSamples) {
-  frames_.reserve(kWaitingFrames);
+LiveEvents::LiveEvents(const LiveEventsOptions& options, Duration lead, std::size_t cameras)
+    : pose_wait_(PoseWaitOf(options)),
+      lead_(lead),
+      samples_(kWaitingSamples),
+      most_frames_(cameras * kWaitingFrames) {
+  frames_.reserve(most_frames_);
 }
 
 void LiveEvents::Push(Frame frame) {
@@ -35,7 +38,7 @@ void LiveEvents::Push(Frame frame) {
     TakePoseInto(&arrived);
     // Those that have waited longer stay. If newer ones replaced them, and poses took longer than
     // so many frames, none would ever get through.
-    if (frames_.size() < kWaitingFrames) {
+    if (frames_.size() < most_frames_) {
       frames_.push_back(std::move(arrived));
     } else {
       std::swap(frames_.back(), arrived);
@@ -104,11 +107,19 @@ bool LiveEvents::IsReady(const WaitingFrame& waiting, Time now) {
   return waiting.has_pose || waiting.deadline <= now;
 }
 
+// True when the next frame of the same camera can go.
+bool LiveEvents::IsReplaced(const WaitingFrame& waiting, Time now) const {
+  const auto next = std::find_if(frames_.begin(), frames_.end(), [&](const WaitingFrame& other) {
+    return &other > &waiting && other.frame.camera == waiting.frame.camera;
+  });
+  return next != frames_.end() && IsReady(*next, now);
+}
+
 // Drops frames that the reader has missed, up to the newest that can go. Those whose poses came
 // together while it waited stay.
 void LiveEvents::DropMissed(Time now) {
-  while (frames_.size() > 1 && (frames_[0].is_missed || !frames_[0].has_pose) &&
-         IsReady(frames_[1], now)) {
+  while (!frames_.empty() && (frames_[0].is_missed || !frames_[0].has_pose) &&
+         IsReplaced(frames_[0], now)) {
     frames_.erase(frames_.begin());
     ++counters_.dropped_frames;
   }

@@ -28,13 +28,13 @@ struct LiveEventsOptions {
 
 // The stream of a flight: several threads put in frames and poses, one thread processes them.
 // Frames wait for the pose after them, in order; over a slow link many are on their way at once.
-// While the thread is busy, only the newest of those that have their pose is kept for it. The
-// threads that put in never wait, and nothing is allocated once the image memory is.
+// While the thread is busy, only the newest of those that have their pose is kept for it, of each
+// camera. The threads that put in never wait, and nothing is allocated once the image memory is.
 class LiveEvents : public EventSource {
  public:
   // 'lead': a frame needs poses until its time + 'lead', see RecordingEvents. Throws InputError
   // when the options are not valid.
-  LiveEvents(const LiveEventsOptions& options, Duration lead);
+  LiveEvents(const LiveEventsOptions& options, Duration lead, std::size_t cameras = 1);
 
   void Push(Frame frame);
   void Push(const PoseSample& pose);
@@ -60,6 +60,7 @@ class LiveEvents : public EventSource {
   void LearnDelay(const PoseSample& pose, Time now);
   void TakePoseInto(WaitingFrame* waiting) const;
   static bool IsReady(const WaitingFrame& waiting, Time now);
+  bool IsReplaced(const WaitingFrame& waiting, Time now) const;
   void DropMissed(Time now);
   void Queue(const Event& sample);
   Event TakeSample();
@@ -76,7 +77,8 @@ class LiveEvents : public EventSource {
   std::optional<Time> newest_pose_;  // that was put in
   double pose_delay_s_ = 0;          // the largest of the last seconds
   Time delay_learnt_;
-  std::vector<WaitingFrame> frames_;  // in order of time
+  std::size_t most_frames_;           // that may wait
+  std::vector<WaitingFrame> frames_;  // those of a camera in order of time
   bool is_reader_busy_ = true;        // with a frame, or it has not come yet
   Counters counters_;
   bool is_closed_ = false;

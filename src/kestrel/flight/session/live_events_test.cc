@@ -2,6 +2,7 @@
 #include "kestrel/flight/session/live_events.h"
 
 #include <thread>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -77,6 +78,21 @@ TEST(LiveEvents, KeepsNewestFrameWhileReaderIsBusy) {
   EXPECT_EQ(InWords(events.Next()), "p200");
   EXPECT_EQ(InWords(events.Next()), "f90");
   EXPECT_EQ(events.counters().dropped_frames, 9u);
+}
+
+// The frames of a camera that is just behind the other do not replace those of that one.
+TEST(LiveEvents, KeepsNewestFrameOfEachCamera) {
+  LiveEvents events({.pose_wait_s = 1}, Duration::zero(), 2);
+  for (int ms = 0; ms < 80; ms += 20) {
+    for (const std::size_t camera : {0, 1}) {
+      Frame frame = EmptyFrame(ms + 5 * static_cast<int>(camera));
+      frame.camera = camera;
+      events.Push(std::move(frame));
+    }
+  }
+  events.Push(UnitPose(200));
+  for (const char* word : {"p200", "f60", "f65"}) EXPECT_EQ(InWords(events.Next()), word);
+  EXPECT_EQ(events.counters().dropped_frames, 6u);
 }
 
 TEST(LiveEvents, DeliversAllFramesWhosePosesArriveTogether) {

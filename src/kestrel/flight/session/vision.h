@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include <opencv2/core.hpp>
@@ -70,6 +71,9 @@ class Vision {
   // Reports which part of the set-up contradicts the images, and what to do, as far as it is known
   // by now; empty where nothing does.
   virtual std::string Warning() const { return ""; }
+
+  // What happened to each of several cameras so far, in words; only grows.
+  virtual std::span<const std::string> camera_events() const { return {}; }
 
   // The summary: Found() for its line ("pattern found in 12"), Remarks() for the lines below it.
   virtual std::string Found() const = 0;

@@ -9,14 +9,16 @@ namespace kestrel {
 namespace {
 
 std::optional<CameraFault> FaultOf(const std::string& kind) {
-  constexpr std::array<std::pair<const char*, CameraFault>, 7> kFaults = {
+  constexpr std::array<std::pair<const char*, CameraFault>, 9> kFaults = {
       {{"none", CameraFault::kNone},
        {"frozen", CameraFault::kFrozen},
        {"black", CameraFault::kBlack},
        {"bright", CameraFault::kBright},
        {"slow", CameraFault::kSlow},
        {"stopped", CameraFault::kStopped},
-       {"beside", CameraFault::kBeside}}};
+       {"beside", CameraFault::kBeside},
+       {"late", CameraFault::kLate},
+       {"turned", CameraFault::kTurned}}};
   for (const auto& [name, fault] : kFaults) {
     if (kind == name) return fault;
   }

@@ -11,7 +11,9 @@
 
 #include "kestrel/core/base/hash.h"
 #include "kestrel/core/base/options.h"
+#include "kestrel/core/geometry/angles.h"
 #include "kestrel/simulation/recordings/landing_simulation.h"
+#include "kestrel/simulation/recordings/second_camera.h"
 #include "kestrel/simulation/recordings/truth_text.h"
 #include "kestrel/simulation/rendering/lens.h"
 #include "kestrel/simulation/scene/solids.h"
@@ -23,10 +25,11 @@ constexpr std::size_t kCameraPoses = 1000;
 // Longest gap of the autopilot's link over which a pose is still interpolated.
 constexpr Duration kLongestPoseGap = std::chrono::milliseconds(500);
 
-// Returns the paper's camera with 'scale' times its pixels, on a gimbal if there is one. The
-// corners of the image stay.
-CameraCalibration ScaledCalibration(double scale, const std::optional<GimbalMount>& gimbal) {
-  CameraCalibration calibration = PaperCalibration();
+constexpr double kLate_s = 0.3;
+constexpr double kTurned_deg = 5;
+
+// Returns the camera with 'scale' times its pixels. The corners of the image stay.
+CameraCalibration Scaled(CameraCalibration calibration, double scale) {
   CameraIntrinsics& lens = calibration.intrinsics;
   lens.width_px = static_cast<int>(std::lround(scale * lens.width_px));
   lens.height_px = static_cast<int>(std::lround(scale * lens.height_px));
@@ -34,6 +37,12 @@ CameraCalibration ScaledCalibration(double scale, const std::optional<GimbalMoun
   lens.fy_px *= scale;
   lens.cx_px = scale * (lens.cx_px + 0.5) - 0.5;
   lens.cy_px = scale * (lens.cy_px + 0.5) - 0.5;
+  return calibration;
+}
+
+// Returns the paper's camera, on a gimbal if there is one.
+CameraCalibration FirstCalibration(double scale, const std::optional<GimbalMount>& gimbal) {
+  CameraCalibration calibration = Scaled(PaperCalibration(), scale);
   if (gimbal) {
     calibration.gimbal = gimbal;
     calibration.body_from_camera = gimbal->body_from_pivot * gimbal->platform_from_camera;
@@ -43,20 +52,37 @@ CameraCalibration ScaledCalibration(double scale, const std::optional<GimbalMoun
 
 }  // namespace
 
+SimulatedCameraOptions SimulatedCameraOptions::OfSecond() const {
+  SimulatedCameraOptions options = *this;
+  options.clock_offset_s = second.clock_offset_s;
+  options.fault = second.fault;
+  options.second = {};
+  return options;
+}
+
+CameraCalibration SimulatedCamera::CalibrationOfSecond(const SimulatedCameraOptions& options) {
+  return Scaled(SecondCalibration(options.second.fov_deg, options.second.tilt_deg), options.scale);
+}
+
 // Few rays, so that an image takes a few ms.
 SimulatedCameraOptions::SimulatedCameraOptions() { shutter.rays_per_pixel = 3; }
 
 SimulatedCamera::SimulatedCamera(const SimulatedCameraOptions& options, VehicleWorld* world,
                                  Time start, std::uint64_t seed,
                                  const std::optional<GimbalMount>& gimbal)
+    : SimulatedCamera(options, world, start, seed, FirstCalibration(options.scale, gimbal)) {}
+
+SimulatedCamera::SimulatedCamera(const SimulatedCameraOptions& options, VehicleWorld* world,
+                                 Time start, std::uint64_t seed,
+                                 const CameraCalibration& calibration)
     : options_(Checked(options)),
       world_(*world),
       start_(start),
       seed_(seed),
-      calibration_(ScaledCalibration(options.scale, gimbal)),
+      calibration_(calibration),
       drawn_(world->scene().world),
       poses_(kCameraPoses, kLongestPoseGap),
-      platforms_(gimbal ? kCameraPoses : 0) {
+      platforms_(calibration.gimbal ? kCameraPoses : 0) {
   const SurroundingsOptions& surroundings = world->options().surroundings;
   if (surroundings.uav_shadow) {
     constexpr double kSize_m = 0.8;  // from rotor to rotor
@@ -71,7 +97,7 @@ SimulatedCamera::SimulatedCamera(const SimulatedCameraOptions& options, VehicleW
                                            options.shutter, options.sensor, drawn_,
                                            [this](double time_s) { return CameraAt(time_s); });
   world_.ListenToPoses(
-      [this](const PoseSample& pose, const VehicleWorld::PlatformAttitude& platform) {
+      this, [this](const PoseSample& pose, const VehicleWorld::PlatformAttitude& platform) {
         Place(pose, platform, true);
       });
 }
@@ -157,10 +183,12 @@ void SimulatedCamera::WaitForPose(Time capture, Time deadline) {
 }
 
 std::optional<Frame> SimulatedCamera::Capture(Time capture) {
-  const auto snapshot = SnapshotAt(capture);
+  const CameraFault fault = FaultAt(capture);
+  const double late_s = fault == CameraFault::kLate ? kLate_s : 0;
+  const auto snapshot = SnapshotAt(capture - DurationFromSeconds(late_s));
   if (!snapshot) return std::nullopt;
   snapshot_ = *snapshot;
-  const CameraFault fault = FaultAt(capture);
+  snapshot_.is_turned = fault == CameraFault::kTurned;
   constexpr double kBeside_m = 1.5;
   constexpr double kBright = 30;
   if (fault == CameraFault::kBeside) snapshot_.world_from_body.translation.x() += kBeside_m;
@@ -230,7 +258,10 @@ bool SimulatedCamera::AddPlatform(Time capture, Snapshot* snapshot) const {
 }
 
 RigidTransform SimulatedCamera::CameraAt(double time_s) const {
-  const RigidTransform body = BodyAt(time_s);
+  RigidTransform body = BodyAt(time_s);
+  if (snapshot_.is_turned) {
+    body.rotation = body.rotation * RotationBy({Radians(kTurned_deg), 0, 0});
+  }
   const auto& gimbal = calibration_.gimbal;
   if (!gimbal) return body * *calibration_.body_from_camera;
   const double since_s = time_s - snapshot_.time_s;

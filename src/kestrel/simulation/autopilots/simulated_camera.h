@@ -26,6 +26,24 @@
 
 namespace kestrel {
 
+// A second camera beside the first one, with the same rate and scale.
+struct SecondSimulatedCameraOptions {
+  double fov_deg = 0;
+  double tilt_deg = 0;
+  double clock_offset_s = 0;
+  CameraFaultOptions fault;
+
+  static void Visit(auto& self, auto&& visit) {
+    visit("fov_deg", self.fov_deg, Range{0, 150}, "field of view of a second camera; 0: none");
+    visit("tilt_deg", self.tilt_deg, Range{0, 120},
+          "where it looks: 0 down, 45 between down and ahead");
+    visit("clock_offset_s", self.clock_offset_s, Range{-1, 1}, "as of the first camera");
+    visit.Group("fault", self.fault);
+  }
+
+  bool is_there() const { return fov_deg > 0; }
+};
+
 struct SimulatedCameraOptions {
   SimulatedCameraOptions();
 
@@ -37,6 +55,7 @@ struct SimulatedCameraOptions {
   ShutterOptions shutter;
   SensorOptions sensor;
   CameraFaultOptions fault;
+  SecondSimulatedCameraOptions second;
 
   static void Visit(auto& self, auto&& visit) {
     visit("rate_hz", self.rate_hz, Range{0.1, 200}, "images per second");
@@ -49,7 +68,11 @@ struct SimulatedCameraOptions {
     visit.Group("shutter", self.shutter);
     visit.Group("sensor", self.sensor);
     visit.Group("fault", self.fault);
+    visit.Group("second", self.second);
   }
+
+  // The options of the second camera.
+  SimulatedCameraOptions OfSecond() const;
 };
 
 // A live camera that is rendered: the view from the UAV over a vehicle that drives in real time.
@@ -62,7 +85,10 @@ class SimulatedCamera {
   // InputError when the options are not valid.
   SimulatedCamera(const SimulatedCameraOptions& options, VehicleWorld* world, Time start,
                   std::uint64_t seed, const std::optional<GimbalMount>& gimbal = std::nullopt);
-  ~SimulatedCamera() { world_.ListenToPoses(nullptr); }
+  // A camera with a calibration of its own, on a fixed mount.
+  SimulatedCamera(const SimulatedCameraOptions& options, VehicleWorld* world, Time start,
+                  std::uint64_t seed, const CameraCalibration& calibration);
+  ~SimulatedCamera() { world_.ListenToPoses(this, nullptr); }
   SimulatedCamera(const SimulatedCamera&) = delete;  // the renderer refers to it
   SimulatedCamera& operator=(const SimulatedCamera&) = delete;
 
@@ -78,6 +104,9 @@ class SimulatedCamera {
   // Returns the image taken at 'capture' on the local clock; nothing without a pose near it. Called
   // by the same thread as Next.
   std::optional<Frame> Capture(Time capture);
+
+  // The calibration of the second camera of the options.
+  static CameraCalibration CalibrationOfSecond(const SimulatedCameraOptions& options);
 
   // The nominal calibration: with the mount, without a clock offset.
   const CameraCalibration& calibration() const { return calibration_; }
@@ -98,6 +127,7 @@ class SimulatedCamera {
     BodyMotion motion;
     Eigen::Quaterniond world_from_platform = Eigen::Quaterniond::Identity();  // with a gimbal
     Eigen::Vector3d platform_rate{0, 0, 0};                                   // in its own frame
+    bool is_turned = false;                                                   // the mount is
   };
 
   void Place(const PoseSample& pose, const VehicleWorld::PlatformAttitude& platform, bool is_true);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "kestrel/core/camera/calibration_reader.h"
+#include "kestrel/flight/onboard/several_sources.h"
 
 namespace kestrel {
 namespace {
@@ -20,6 +21,9 @@ class RenderedSource : public LiveSource {
   RenderedSource(const SimulatedCameraOptions& options, VehicleWorld* world, Time start,
                  std::uint64_t seed, const std::optional<GimbalMount>& gimbal)
       : camera_(options, world, start, seed, gimbal) {}
+  RenderedSource(const SimulatedCameraOptions& options, VehicleWorld* world, Time start,
+                 std::uint64_t seed, const CameraCalibration& calibration)
+      : camera_(options, world, start, seed, calibration) {}
 
   std::optional<Event> Next(Duration timeout) override {
     Frame frame;
@@ -83,12 +87,31 @@ OpenedLiveSource SimulatedSource::Open(const LiveSourceChoice& choice) {
     opened.calibration.body_from_camera = own.body_from_camera;
   }
   opened.rate_hz = options_.rate_hz;
-  camera_ = &source->camera();
+  cameras_ = {&source->camera()};
   opened.source = std::move(source);
   opened.pose = [this](const PoseSample& pose) { TakePose(pose); };
   opened.true_pose = [this](const PoseSample& pose) { TakeTruePose(pose); };
-  opened.truth = [this](const Frame& frame) { return camera_->Truth(frame); };
+  if (options_.second.is_there()) {
+    AddSecond(start, &opened);
+  } else {
+    opened.truth = [this](const Frame& frame) { return cameras_[0]->Truth(frame); };
+  }
   return opened;
+}
+
+// Each camera then renders in a thread of its own, and only that one could ask for its truth.
+void SimulatedSource::AddSecond(Time start, OpenedLiveSource* opened) {
+  auto source =
+      std::make_unique<RenderedSource>(options_.OfSecond(), world_.get(), start, seed_ + 1,
+                                       SimulatedCamera::CalibrationOfSecond(options_));
+  cameras_.push_back(&source->camera());
+  opened->calibration.name = "cam0";
+  opened->further = {source->camera().calibration()};
+  opened->further[0].name = "cam1";
+  std::vector<SeveralSources::Camera> sources;
+  sources.push_back({"cam0", std::move(opened->source)});
+  sources.push_back({"cam1", std::move(source)});
+  opened->source = std::make_unique<SeveralSources>(std::move(sources));
 }
 
 VehicleWorld* SimulatedSource::World() {
@@ -100,16 +123,17 @@ VehicleWorld* SimulatedSource::World() {
 }
 
 void SimulatedSource::TakePose(const PoseSample& pose) {
-  if (camera_ != nullptr && !has_true_poses_) camera_->AddPose(pose);
+  if (has_true_poses_) return;
+  for (SimulatedCamera* camera : cameras_) camera->AddPose(pose);
 }
 
 void SimulatedSource::TakeTruePose(const PoseSample& pose) {
   has_true_poses_ = true;
-  if (camera_ != nullptr) camera_->AddPose(pose);
+  for (SimulatedCamera* camera : cameras_) camera->AddPose(pose);
 }
 
 AutopilotOptions SimulatedSource::Asking(AutopilotOptions options) const {
-  options.wants_true_pose = options.wants_true_pose || camera_ != nullptr;
+  options.wants_true_pose = options.wants_true_pose || !cameras_.empty();
   return options;
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string_view>
+#include <vector>
 
 #include "kestrel/comms/mavlink/autopilot.h"
 #include "kestrel/core/poses/pose_history.h"
@@ -14,8 +15,8 @@
 namespace kestrel {
 
 // The scheme "sim:SCENARIO" of live sources, with optional settings as
-// "sim:straight,vehicle.speed_mps=4": a camera over a simulated world. It owns the world, which a
-// simulated autopilot shares. Must outlive the scheme and its source.
+// "sim:straight,vehicle.speed_mps=4": a camera, or two, over a simulated world. It owns the world,
+// which a simulated autopilot shares. Must outlive the scheme and its source.
 class SimulatedSource {
  public:
   // 'target': the pad on the vehicle, unless the settings of the source name another.
@@ -36,7 +37,7 @@ class SimulatedSource {
   VehicleWorld* World();
 
   // True when the camera is on a gimbal, which only a simulated autopilot has.
-  bool has_gimbal() const { return camera_ != nullptr && camera_->calibration().gimbal; }
+  bool has_gimbal() const { return !cameras_.empty() && cameras_[0]->calibration().gimbal; }
 
   // Poses from the autopilot. They place the camera: the true poses, if there are any, else the
   // estimated ones.
@@ -48,12 +49,13 @@ class SimulatedSource {
 
  private:
   OpenedLiveSource Open(const LiveSourceChoice& choice);
+  void AddSecond(Time start, OpenedLiveSource* opened);
 
   SimulatedCameraOptions options_;
   TargetOptions target_;
   std::uint64_t seed_;
   std::unique_ptr<VehicleWorld> world_;
-  SimulatedCamera* camera_ = nullptr;  // camera of the source; null: none was opened
+  std::vector<SimulatedCamera*> cameras_;  // of the source; empty: none was opened
   bool has_true_poses_ = false;
 };
 

@@ -112,15 +112,17 @@ void VehicleWorld::ObserveUav(Time time, const Eigen::Vector3d& position_in_worl
   departure_s_.compare_exchange_strong(waiting, SceneTime(time) + options_.drive_delay_s);
 }
 
-void VehicleWorld::ListenToPoses(PoseListener listener) {
+void VehicleWorld::ListenToPoses(const void* owner, PoseListener listener) {
   const std::lock_guard lock(listener_mutex_);
-  listener_ = std::move(listener);
+  listeners_[owner] = std::move(listener);
 }
 
 void VehicleWorld::ReportPose(const PoseSample& pose, const PlatformAttitude& platform) {
   ObserveUav(pose.time, pose.world_from_body.translation);
   const std::lock_guard lock(listener_mutex_);
-  if (listener_) listener_(pose, platform);
+  for (const auto& [owner, listener] : listeners_) {
+    if (listener) listener(pose, platform);
+  }
 }
 
 // Returns how long it would have driven at full speed to be where it is.

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <span>
@@ -78,11 +79,12 @@ class VehicleWorld {
 
   // The true poses of a UAV that is simulated beside this world, and the attitude of the platform
   // of its gimbal (world_from_platform; nothing: it has none), from the autopilot to the camera:
-  // they take no time. One listener at a time; nothing: none.
+  // they take no time.
   using PlatformAttitude = std::optional<Eigen::Quaterniond>;
   using PoseListener =
       std::function<void(const PoseSample& pose, const PlatformAttitude& platform)>;
-  void ListenToPoses(PoseListener listener);
+  // 'owner': by which the listener is known; one that is empty ends its listening.
+  void ListenToPoses(const void* owner, PoseListener listener);
   void ReportPose(const PoseSample& pose, const PlatformAttitude& platform = std::nullopt);
 
   const LandingScene& scene() const { return scene_; }
@@ -96,7 +98,7 @@ class VehicleWorld {
   std::atomic<double> departure_s_;  // scene time; infinite while it waits
   LandingScene scene_;
   std::mutex listener_mutex_;
-  PoseListener listener_;
+  std::map<const void*, PoseListener> listeners_;
 };
 
 }  // namespace kestrel

@@ -24,21 +24,6 @@ std::uint64_t SeedOf(std::uint64_t seed, SecondCameraPart part) {
   return Hash(seed, static_cast<std::uint64_t>(part));
 }
 
-CameraCalibration SecondCalibration(const SecondCameraOptions& options) {
-  constexpr int kWidth_px = 752, kHeight_px = 480;
-  // Down, the top of the image ahead, then tilted up.
-  Eigen::Matrix3d axes;
-  axes.col(0) = -Eigen::Vector3d::UnitY();
-  axes.col(1) = -Eigen::Vector3d::UnitX();
-  axes.col(2) = -Eigen::Vector3d::UnitZ();
-  const Eigen::AngleAxisd tilt(-Radians(options.tilt_deg), Eigen::Vector3d::UnitY());
-  CameraCalibration calibration;
-  calibration.intrinsics = AssumedLens(kWidth_px, kHeight_px, options.fov_deg);
-  calibration.body_from_camera =
-      RigidTransform{Eigen::Quaterniond(tilt * axes), Eigen::Vector3d(0.13, 0.06, -0.05)};
-  return calibration;
-}
-
 NavigationErrors SecondErrors(const NavigationOptions& options, std::uint64_t seed) {
   Random random(SeedOf(seed, SecondCameraPart::kErrors));
   return DrawNavigationErrors(options, &random);
@@ -68,13 +53,28 @@ LensOptions SecondLens(const FlightRecordingOptions& flight) {
 
 }  // namespace
 
+CameraCalibration SecondCalibration(double fov_deg, double tilt_deg) {
+  constexpr int kWidth_px = 752, kHeight_px = 480;
+  // Down, the top of the image ahead, then tilted up.
+  Eigen::Matrix3d axes;
+  axes.col(0) = -Eigen::Vector3d::UnitY();
+  axes.col(1) = -Eigen::Vector3d::UnitX();
+  axes.col(2) = -Eigen::Vector3d::UnitZ();
+  const Eigen::AngleAxisd tilt(-Radians(tilt_deg), Eigen::Vector3d::UnitY());
+  CameraCalibration calibration;
+  calibration.intrinsics = AssumedLens(kWidth_px, kHeight_px, fov_deg);
+  calibration.body_from_camera =
+      RigidTransform{Eigen::Quaterniond(tilt * axes), Eigen::Vector3d(0.13, 0.06, -0.05)};
+  return calibration;
+}
+
 SecondCamera::SecondCamera(const SecondCameraOptions& options, const FlightRecordingOptions& flight,
                            const SimulatedLanding& landing, const Motion& world_from_uav,
                            std::uint64_t seed)
     : options_(options),
       seed_(seed),
       landing_(landing),
-      nominal_(SecondCalibration(options)),
+      nominal_(SecondCalibration(options.fov_deg, options.tilt_deg)),
       errors_(SecondErrors(flight.navigation, seed)),
       camera_(CameraModel(nominal_.intrinsics), SecondLens(flight), flight.shutter, flight.sensor,
               landing.flight().world(),

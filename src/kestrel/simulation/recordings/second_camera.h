@@ -40,6 +40,9 @@ struct SecondCameraOptions {
   bool is_there() const { return fov_deg > 0; }
 };
 
+// Returns the nominal calibration of a second camera, 752x480 pixels, beside the first one.
+CameraCalibration SecondCalibration(double fov_deg, double tilt_deg);
+
 // The second camera of a flight. Thread-safe.
 class SecondCamera {
  public:

@@ -2,6 +2,7 @@
 #include "kestrel/simulation/recordings/second_camera.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <span>
@@ -57,8 +58,7 @@ struct SeenByBoth {
 };
 
 // Runs the pipeline over both cameras' images in order of time.
-SeenByBoth RunBoth(const RecordingPlan& plan) {
-  const std::vector<CameraCalibration> cameras = CalibrationsOf(plan);
+SeenByBoth RunBoth(const RecordingPlan& plan, const std::vector<CameraCalibration>& cameras) {
   LandingPipeline pipeline(cameras, {});
   std::map<Time, std::pair<std::size_t, std::size_t>> images;  // by time of the navigation
   for (std::size_t i = 0; i < plan.times.size(); ++i) {
@@ -94,6 +94,8 @@ SeenByBoth RunBoth(const RecordingPlan& plan) {
   seen.second = pipeline.camera_state(1);
   return seen;
 }
+
+SeenByBoth RunBoth(const RecordingPlan& plan) { return RunBoth(plan, CalibrationsOf(plan)); }
 
 class TwoCameras : public ::testing::TestWithParam<std::vector<std::string>> {};
 
@@ -134,6 +136,21 @@ INSTANTIATE_TEST_SUITE_P(Faults, SecondCameraFault,
                                            Fault{"late", CameraHealth::kContradicts},
                                            Fault{"mount", CameraHealth::kContradicts}),
                          [](const auto& info) { return std::string(info.param.name); });
+
+// Their clocks are as far apart as those of two cameras that are opened one after the other, and
+// the car passes below a UAV that keeps its place.
+TEST(SecondCameraTest, IsNotLeftOutForAnUnknownClock) {
+  const RecordingPlan plan =
+      PlanTwoCameras({"second.fov_deg=100", "vehicle.path=straight", "vehicle.speed_mps=4"}, 3);
+  for (const int late_ms : {-60, 60}) {
+    std::vector<CameraCalibration> cameras = CalibrationsOf(plan);
+    *cameras[1].clock_offset += std::chrono::milliseconds(late_ms);
+    const SeenByBoth seen = RunBoth(plan, cameras);
+    EXPECT_EQ(seen.first.health, CameraHealth::kGood) << InWords(seen.first);
+    EXPECT_EQ(seen.second.health, CameraHealth::kGood) << InWords(seen.second);
+    EXPECT_GT(seen.hand_overs, 10);
+  }
+}
 
 TEST(SecondCameraTest, HasFilesAndTruthOfItsOwn) {
   const RecordingPlan plan = PlanTwoCameras({"second.fov_deg=40"}, 1);

@@ -15,8 +15,14 @@ std::string InWords(const CameraState& state) {
       return "repeats its image: left out until that changes";
     case CameraHealth::kContradicts:
       return fmt::format(
-          "sees the target {:.2f} m from where the others see it: left out; check its mount and "
-          "its clock (kestrel calibrate mount --both)",
+          "sees the target {:.2f} m from where the others see it: left out until it agrees; check "
+          "its "
+          "mount and its clock (kestrel calibrate mount --both)",
+          state.offset_m);
+    case CameraHealth::kAlone:
+      return fmt::format(
+          "is used although it saw the target {:.2f} m from where the others did: no other camera "
+          "sees it",
           state.offset_m);
   }
   return "";

@@ -12,13 +12,17 @@ enum class CameraHealth {
   kGood,
   kSilent,       // sends no images
   kFrozen,       // repeats its image
-  kContradicts,  // sees the target elsewhere than the others; for good
+  kContradicts,  // sees the target elsewhere than the others, until it agrees again
+  kAlone,        // contradicts, but is used: no other one sees the target
 };
 
 struct CameraState {
   CameraHealth health = CameraHealth::kGood;
-  Time since;           // time of the frame that showed the fault, or its end
-  double offset_m = 0;  // kContradicts: median distance from the place where the others see it
+  Time since;  // time of the frame that showed the fault, or its end
+  // kContradicts, kAlone: median distance from the place where the others saw it.
+  double offset_m = 0;
+
+  bool is_used() const { return health == CameraHealth::kGood || health == CameraHealth::kAlone; }
 };
 // "sees the target 0.52 m from where the others see it: ...".
 std::string InWords(const CameraState& state);

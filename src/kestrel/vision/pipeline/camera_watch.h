@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -25,7 +26,8 @@ enum class SightingPlace {
 // Decides which of several cameras with one track can be used. A camera contradicts when several of
 // its sightings in a row are outside of the track while those of another camera are inside. Of the
 // two, the one is left out that has moved the track before, or whose views alone contradict the
-// UAV's attitude, or else the one that is outside.
+// UAV's attitude, or else the one that is outside. It is used again when it has agreed for a while,
+// and as long as no other camera sees the target.
 class CameraWatch {
  public:
   explicit CameraWatch(std::size_t cameras) : cameras_(cameras) {}
@@ -40,21 +42,34 @@ class CameraWatch {
 
   // True when the newest frame of the camera can be used.
   bool IsUsed(std::size_t camera) const;
+  // True when a sighting of the newest frame has a place by the track: IsUsed, or it is left out
+  // for its sightings alone.
+  bool IsJudged(std::size_t camera) const;
+  // True when another camera that is used has seen the target within 'age' before 'time'.
+  bool IsSeenByOthers(std::size_t camera, Time time, Duration age) const;
   const CameraState& state(std::size_t camera) const { return cameras_[camera].state; }
 
  private:
-  static constexpr int kSightings = 10;  // in a row that contradict
+  static constexpr int kSightings = 10;  // in a row that contradict, or agree again
+  static constexpr Duration kProbation = std::chrono::seconds(2);
 
   struct Watched {
     CameraState state;
     std::optional<Time> newest;
+    std::optional<Time> seen;  // newest sighting while it was used
     RepeatedImage repeated;
     int outside = 0;              // sightings in a row outside
     int confirmed_by_others = 0;  // sightings of others inside since the first of those
     std::array<double, kSightings> offsets_m{};
+    // While it contradicts: sightings in a row inside, and when they began.
+    int agreements = 0;
+    Time agrees_since;
+    Duration probation = kProbation;  // so long they must go on; doubled each time
   };
 
   static void Set(Watched* camera, CameraHealth health, Time time);
+  void UseThoseThatAreAlone(Time time);
+  void Reconsider(Watched* camera, Time time, SightingPlace place);
   void Confirm(std::size_t camera);
   std::size_t Contradicting(std::size_t camera,
                             const std::function<bool(std::size_t)>& has_wrong_tilt) const;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/vision/pipeline/camera_watch.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include <gmock/gmock.h>
@@ -19,9 +20,16 @@ class CameraWatchTest : public ::testing::Test {
   // A frame that differs from the ones before, and where it shows the target.
   void See(std::size_t camera, SightingPlace place, double offset_m = 0) {
     watch_.AddFrame(camera, cv::Mat(8, 8, CV_8UC1, cv::Scalar(++frames_ % 256)), time_);
-    if (!watch_.IsUsed(camera)) return;
+    if (!watch_.IsJudged(camera)) return;
     watch_.AddSighting(camera, time_, place, offset_m,
                        [this](std::size_t each) { return each == tilted_; });
+  }
+  // The second camera sees the target elsewhere than the first one, until it is left out.
+  void Contradict() {
+    for (int i = 0; i < 10; ++i, Step()) {
+      See(kFirst, SightingPlace::kInside);
+      See(kSecond, SightingPlace::kOutside, 1);
+    }
   }
   void Step() { time_ += std::chrono::milliseconds(100); }
   CameraHealth HealthOf(std::size_t camera) const { return watch_.state(camera).health; }
@@ -55,7 +63,7 @@ TEST_F(CameraWatchTest, FrozenCameraIsLeftOutFromItsFirstRepetition) {
   EXPECT_EQ(HealthOf(kSecond), CameraHealth::kGood);
 }
 
-TEST_F(CameraWatchTest, CameraThatContradictsIsLeftOutForGood) {
+TEST_F(CameraWatchTest, CameraThatContradictsIsLeftOut) {
   for (int i = 0; i < 10; ++i, Step()) {
     EXPECT_EQ(HealthOf(kSecond), CameraHealth::kGood) << i;
     See(kFirst, SightingPlace::kInside);
@@ -64,9 +72,56 @@ TEST_F(CameraWatchTest, CameraThatContradictsIsLeftOutForGood) {
   EXPECT_EQ(HealthOf(kSecond), CameraHealth::kContradicts);
   EXPECT_NEAR(watch_.state(kSecond).offset_m, 0.55, 0.02);
   EXPECT_THAT(InWords(watch_.state(kSecond)), HasSubstr("m from where the others see it"));
-  for (int i = 0; i < 20; ++i, Step()) See(kSecond, SightingPlace::kInside);
+}
+
+TEST_F(CameraWatchTest, CameraIsUsedAgainOnceItHasAgreedForLonger) {
+  int used_after = 0;
+  for (int round = 0; round < 2; ++round) {
+    Contradict();
+    ASSERT_EQ(HealthOf(kSecond), CameraHealth::kContradicts);
+    int agreements = 0;
+    for (; !watch_.IsUsed(kSecond) && agreements < 100; ++agreements, Step()) {
+      See(kFirst, SightingPlace::kInside);
+      See(kSecond, SightingPlace::kInside);
+    }
+    EXPECT_GT(agreements, std::max(2 * used_after - 3, 15));
+    EXPECT_LT(agreements, 100);
+    used_after = agreements;
+    EXPECT_EQ(InWords(watch_.state(kSecond)), "is used again");
+  }
+}
+
+TEST_F(CameraWatchTest, AgreementNobodyConfirmsDoesNotCount) {
+  Contradict();
+  See(kFirst, SightingPlace::kInside);
+  for (int i = 0; i < 25; ++i, Step()) {
+    See(kSecond, SightingPlace::kInside);
+    watch_.AddFrame(kFirst, cv::Mat(8, 8, CV_8UC1, cv::Scalar(++frames_ % 256)), time_);
+  }
   EXPECT_EQ(HealthOf(kSecond), CameraHealth::kContradicts);
+}
+
+TEST_F(CameraWatchTest, CameraThatContradictsIsUsedWhileItIsAlone) {
+  Contradict();
+  for (int i = 0; i < 15; ++i, Step()) See(kSecond, SightingPlace::kOutside, 1);
   EXPECT_EQ(HealthOf(kFirst), CameraHealth::kSilent);
+  EXPECT_EQ(HealthOf(kSecond), CameraHealth::kAlone);
+  EXPECT_TRUE(watch_.IsUsed(kSecond));
+  EXPECT_THAT(InWords(watch_.state(kSecond)), HasSubstr("no other camera sees it"));
+  See(kFirst, SightingPlace::kOutside, 1);
+  EXPECT_TRUE(watch_.IsUsed(kFirst));
+  See(kSecond, SightingPlace::kInside);
+  EXPECT_EQ(HealthOf(kSecond), CameraHealth::kContradicts);
+}
+
+TEST_F(CameraWatchTest, CameraThatContradictsIsUsedWhereNoOtherSeesTheTarget) {
+  Contradict();
+  for (int i = 0; i < 35; ++i, Step()) {
+    See(kSecond, SightingPlace::kOutside, 1);
+    watch_.AddFrame(kFirst, cv::Mat(8, 8, CV_8UC1, cv::Scalar(++frames_ % 256)), time_);
+    EXPECT_EQ(watch_.IsUsed(kSecond), i > 29) << i;
+  }
+  EXPECT_EQ(HealthOf(kFirst), CameraHealth::kGood);
 }
 
 // The target has moved while nobody saw it: both cameras agree on where it is.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/vision/pipeline/landing_pipeline.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -10,6 +11,7 @@
 
 #include "kestrel/core/base/options.h"
 #include "kestrel/vision/pipeline/calibration_monitor.h"
+#include "kestrel/vision/pipeline/camera_lag.h"
 #include "kestrel/vision/pipeline/camera_poses.h"
 #include "kestrel/vision/pipeline/camera_watch.h"
 #include "kestrel/vision/pipeline/input_contradictions.h"
@@ -112,6 +114,7 @@ class LandingPipeline::Impl {
     std::optional<Others> others;  // nothing once the target was found
     CameraPoses poses;
     Duration ahead;  // the first camera's clock minus that of this camera's images
+    CameraLag lag;   // of the stamps, beside 'ahead'; none of the first camera, which is the clock
     std::optional<RigidTransform> fixed_mount;  // camera from body
     bool is_track_trusted = true;  // the last detection was where the track predicted it
     std::optional<Sighting> last;
@@ -134,8 +137,11 @@ class LandingPipeline::Impl {
   static Eigen::Vector3d SweepOf(const Eye& eye, const LandingObservation& observation);
   TargetMeasurement MeasurementOf(const Eye& eye, const LandingObservation& observation) const;
   void Track(Eye* eye, LandingObservation* observation);
-  void Judge(const TargetMeasurement& measurement, const std::optional<TargetEstimate>& expected,
-             const LandingObservation& observation);
+  double LagSigma_s() const;
+  void TrackWithOthers(TargetMeasurement measurement, Eye* eye, LandingObservation* observation);
+  void Judge(const TargetMeasurement& measurement, const Eigen::Vector3d& slip_mps,
+             const std::optional<TargetEstimate>& expected, const LandingObservation& observation,
+             Eye* eye);
   void Remember(const LandingObservation& observation, Eye* eye);
 
   LandingPipelineOptions options_;
@@ -389,39 +395,74 @@ TargetMeasurement LandingPipeline::Impl::MeasurementOf(
   return measurement;
 }
 
+// Returns the standard deviation of the lag between two cameras. Whichever is late, the track is
+// made of both.
+double LandingPipeline::Impl::LagSigma_s() const {
+  double sigma_s = 0;
+  for (const Eye& eye : std::span(eyes_).subspan(1)) {
+    sigma_s = std::max(sigma_s, eye.lag.sigma_s());
+  }
+  return sigma_s;
+}
+
 void LandingPipeline::Impl::Track(Eye* eye, LandingObservation* observation) {
-  const bool is_used = IsUsed(observation->camera);
-  if (!is_used) eye->is_track_trusted = false;
-  if (observation->center_in_world && is_used) {
+  if (!IsUsed(observation->camera)) eye->is_track_trusted = false;
+  if (observation->center_in_world) {
     const TargetMeasurement measurement = MeasurementOf(*eye, *observation);
-    const auto expected = has_several() ? tracker_.Predict(observation->time) : std::nullopt;
-    observation->fate = tracker_.Add(measurement);
-    eye->is_track_trusted = observation->fate <= MeasurementFate::kAccepted;
-    if (has_several()) Judge(measurement, expected, *observation);
+    if (has_several()) {
+      TrackWithOthers(measurement, eye, observation);
+    } else {
+      observation->fate = tracker_.Add(measurement);
+    }
+    if (observation->fate) eye->is_track_trusted = observation->fate <= MeasurementFate::kAccepted;
   }
   observation->track_state = tracker_.StateAt(observation->time);
   observation->target = tracker_.Predict(observation->time);
 }
 
-// 'expected': the track without the measurement.
+// A camera whose stamps are late shows the target where its view was, and the target, before.
+void LandingPipeline::Impl::TrackWithOthers(TargetMeasurement measurement, Eye* eye,
+                                            LandingObservation* observation) {
+  if (!watch_.IsJudged(observation->camera)) return;
+  const auto expected = tracker_.Predict(observation->time);
+  Eigen::Vector3d slip_mps = Eigen::Vector3d::Zero();
+  if (expected) {
+    slip_mps = SweepOf(*eye, *observation) - expected->motion.velocity();
+    const Eigen::Vector3d uncertain_m = LagSigma_s() * slip_mps;
+    measurement.position_in_world -= eye->lag.seconds() * slip_mps;
+    measurement.covariance += uncertain_m * uncertain_m.transpose();
+  }
+  if (IsUsed(observation->camera)) observation->fate = tracker_.Add(measurement);
+  Judge(measurement, slip_mps, expected, *observation, eye);
+}
+
+// 'expected': the track without the measurement; 'slip_mps': see CameraLag.
 void LandingPipeline::Impl::Judge(const TargetMeasurement& measurement,
+                                  const Eigen::Vector3d& slip_mps,
                                   const std::optional<TargetEstimate>& expected,
-                                  const LandingObservation& observation) {
+                                  const LandingObservation& observation, Eye* eye) {
   constexpr double kSigmas = 3;
-  constexpr double kTolerated_rad = 0.035;  // by mounts and clocks
+  constexpr double kTolerated_rad = 0.035;  // by mounts
   constexpr double kFarthest_rad = 0.3;     // the most that they explain: beyond is another thing
+  constexpr Duration kFresh = std::chrono::milliseconds(500);
   SightingPlace place = SightingPlace::kStart;
-  double offset_m = 0;
+  Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();
   if (observation.fate != MeasurementFate::kStarted) {
     if (!expected) return;
     const double distance_m = observation.report.detection->camera_from_target.translation.norm();
-    offset_m = (measurement.position_in_world - expected->motion.position()).norm();
-    if (offset_m > kFarthest_rad * distance_m) return;
-    const double most_m = kSigmas * expected->position_sigma_m() + kTolerated_rad * distance_m;
-    place = offset_m > most_m ? SightingPlace::kOutside : SightingPlace::kInside;
+    offset_m = measurement.position_in_world - expected->motion.position();
+    if (offset_m.norm() > kFarthest_rad * distance_m) return;
+    const double sigma_m = std::hypot(expected->position_sigma_m(), LagSigma_s() * slip_mps.norm());
+    const double most_m = kSigmas * sigma_m + kTolerated_rad * distance_m;
+    place = offset_m.norm() > most_m ? SightingPlace::kOutside : SightingPlace::kInside;
+    if (place == SightingPlace::kInside && eye != &eyes_.front() &&
+        watch_.IsSeenByOthers(observation.camera, observation.time, kFresh)) {
+      eye->lag.Add(offset_m, slip_mps,
+                   measurement.covariance + expected->motion.covariance.topLeftCorner<3, 3>());
+    }
   }
   watch_.AddSighting(
-      observation.camera, observation.time, place, offset_m,
+      observation.camera, observation.time, place, offset_m.norm(),
       [this](std::size_t camera) { return eyes_[camera].contradictions.Attitude().has_value(); });
 }
 

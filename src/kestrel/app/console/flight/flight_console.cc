@@ -2,6 +2,8 @@
 #include "kestrel/app/console/flight/flight_console.h"
 
 #include <array>
+#include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -50,18 +52,19 @@ ConsoleFeed::Description DescriptionOf(const std::string& title, const TaskView&
 // Makes the content of the page; used by one thread.
 class FlightConsole::Page : public SinkWriter {
  public:
-  Page(FlightConsole* console, TaskView view, FlightExamination examination)
+  Page(FlightConsole* console, std::vector<TaskView> views, FlightExamination examination)
       : console_(*console),
         feed_(console->feed_),
-        view_(std::move(view)),
+        views_(std::move(views)),
         examination_(std::move(examination)) {}
 
   void Write(const Observation& observation, std::size_t /*waiting*/) override {
+    Examine(observation);
+    if (!IsShown(observation, Now())) return;
     frame_.captured = observation.frame.time;
     frame_.image = observation.frame.image;
     sources_.Look(frame_.captured, WorldFromCamera(observation).has_value());
     Show(observation);
-    examination_.Look(frame_.image, Now());
     {
       const std::lock_guard lock(console_.mutex_);
       console_.shown_ = {frame_.image, frame_.captured};
@@ -78,7 +81,7 @@ class FlightConsole::Page : public SinkWriter {
   }
 
   void Write(const TeamReport& report) override {
-    if (auto team = TeamOf(view_, report)) feed_.Add(*std::move(team));
+    if (auto team = TeamOf(views_.front(), report)) feed_.Add(*std::move(team));
   }
 
   void Rest(bool /*had_frame*/) override {
@@ -87,11 +90,32 @@ class FlightConsole::Page : public SinkWriter {
   }
 
  private:
-  void Show(const Observation& observation) {
+  void Examine(const Observation& observation) {
+    if (observation.frame.camera > 0) return;
     if (const auto* const landing = std::get_if<LandingObservation>(&observation.seen)) {
       examination_.Look(*landing);
     }
-    ViewFrame shown = ViewFrameOf(view_, observation);
+    examination_.Look(observation.frame.image, Now());
+  }
+
+  // True for a frame of the camera that is shown. It changes to one that sees the target when it
+  // has not for a while itself, or is gone.
+  bool IsShown(const Observation& observation, Time now) {
+    constexpr Duration kStay = std::chrono::seconds(1);
+    const auto* const landing = std::get_if<LandingObservation>(&observation.seen);
+    const bool has_target = landing != nullptr && landing->report.detection;
+    const std::size_t camera = observation.frame.camera;
+    const bool is_gone = now - shown_at_ > kStay;
+    const bool is_blind = has_target && now - shown_target_at_ > kStay;
+    if (camera != shown_camera_ && !is_gone && !is_blind) return false;
+    shown_camera_ = camera;
+    shown_at_ = now;
+    if (has_target) shown_target_at_ = now;
+    return true;
+  }
+
+  void Show(const Observation& observation) {
+    ViewFrame shown = ViewFrameOf(views_[observation.frame.camera], observation);
     frame_.shapes = std::move(shown.shapes);
     AddSample(std::move(shown.sample), observation.latency.value_or(Duration::zero()));
     feed_.Add(std::move(shown.map));
@@ -133,7 +157,9 @@ class FlightConsole::Page : public SinkWriter {
 
   FlightConsole& console_;
   ConsoleFeed& feed_;
-  TaskView view_;
+  std::vector<TaskView> views_;  // of each camera
+  std::size_t shown_camera_ = 0;
+  Time shown_at_{}, shown_target_at_{};  // its newest frame, and the newest with the target
   ConsoleFrame frame_;
   FlightExamination examination_;
   Time examined_{};
@@ -146,9 +172,9 @@ class FlightConsole::Page : public SinkWriter {
 };
 
 FlightConsole::FlightConsole(const ConsoleOptions& options, const std::string& title,
-                             const TaskView& view, FlightExamination examination,
+                             const std::vector<TaskView>& views, FlightExamination examination,
                              ChannelFeed* channels, std::optional<FlightColors> colors)
-    : feed_(DescriptionOf(title, view, colors.has_value())),
+    : feed_(DescriptionOf(title, views.front(), colors.has_value())),
       arrivals_(kArrivals),
       server_(ServeConsole(options, &feed_, WebAssets(), channels)),
       pictures_({.thread_name = "console frames",
@@ -157,8 +183,8 @@ FlightConsole::FlightConsole(const ConsoleOptions& options, const std::string& t
                      [this](const std::string& error) {
                        Report(EventLevel::kError, "this page shows no more frames: " + error);
                      }},
-                std::make_unique<Page>(this, view, std::move(examination))) {
-  if (colors) TeachColors(*colors, view);
+                std::make_unique<Page>(this, views, std::move(examination))) {
+  if (colors) TeachColors(*colors, views.front());
 }
 
 // The page begins with the model that the flight uses.
@@ -199,7 +225,9 @@ void FlightConsole::Take(const Observation& observation) {
   if (!feed_.IsWatched()) return;
   const Time captured = observation.frame.time;
   const Duration latency = observation.latency.value_or(Duration::zero());
-  arrivals_.Push({captured, captured + latency - DetectTime(observation)});
+  if (observation.frame.camera == 0) {
+    arrivals_.Push({captured, captured + latency - DetectTime(observation)});
+  }
   pictures_.Take(observation);
 }
 

@@ -47,12 +47,13 @@ struct FlightColors {
 // only while a browser looks: otherwise a frame costs the vision thread one read of a number.
 class FlightConsole : public ObservationSink {
  public:
-  // Starts the server. 'title': title of the page. 'channels' as for WebServer. 'colors': for a
-  // hunt only; the page then teaches its model's colours. Throws InputError as WebServer and
+  // Starts the server. 'title': title of the page. 'views': of each camera. The page shows the
+  // camera that sees the target, and checks the first one. 'channels' as for WebServer. 'colors':
+  // for a hunt only; the page then teaches its model's colours. Throws InputError as WebServer and
   // ColorPage do.
-  FlightConsole(const ConsoleOptions& options, const std::string& title, const TaskView& view,
-                FlightExamination examination, ChannelFeed* channels = nullptr,
-                std::optional<FlightColors> colors = std::nullopt);
+  FlightConsole(const ConsoleOptions& options, const std::string& title,
+                const std::vector<TaskView>& views, FlightExamination examination,
+                ChannelFeed* channels = nullptr, std::optional<FlightColors> colors = std::nullopt);
   ~FlightConsole() override { Finish(); }
   FlightConsole(const FlightConsole&) = delete;
   FlightConsole& operator=(const FlightConsole&) = delete;

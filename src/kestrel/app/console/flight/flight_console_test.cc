@@ -44,8 +44,9 @@ Observation ObservationOf(const Frame& frame, const LandingObservation& seen) {
 
 class FlightConsoleTest : public testing::Test {
  protected:
-  FlightConsole console_{FreePort(), "a flight",
-                         LandingView{CameraModel(PaperCamera()), {}, TurnNoise()},
+  FlightConsole console_{FreePort(),
+                         "a flight",
+                         {LandingView{CameraModel(PaperCamera()), {}, TurnNoise()}},
                          FlightExamination(PaperCalibration(), ".", 0)};
 };
 
@@ -92,7 +93,7 @@ TEST_F(FlightConsoleTest, ShowsVisionResults) {
 
 // A page that is opened later shows it as well.
 TEST(FlightConsoleOfAHunt, ShowsMapOfTeam) {
-  FlightConsole console(FreePort(), "a hunt", HuntView{DefaultObjectModel()},
+  FlightConsole console(FreePort(), "a hunt", {HuntView{DefaultObjectModel()}},
                         FlightExamination(PaperCalibration(), ".", 0));
   TeamObject known;
   known.object.state.head<2>() << 3, -4;
@@ -216,7 +217,7 @@ TEST(HuntConsoleTest, KeepsFramesAndTeachesColours) {
   const TestFolder test_folder;
   const fs::path folder = test_folder.path();
   {
-    FlightConsole console(FreePort(), "a hunt", HuntView{DefaultObjectModel()},
+    FlightConsole console(FreePort(), "a hunt", {HuntView{DefaultObjectModel()}},
                           FlightExamination(PaperCalibration(), ".", 0), nullptr,
                           FlightColors{folder / "colors", (folder / "taught").string(), {}});
     TestSocket socket(PortOf(console));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/io/recording/euroc/euroc_writer.h"
 
+#include <array>
 #include <vector>
 
 #include <fmt/format.h>
@@ -41,18 +42,34 @@ RecordedFiles::File FileOf(EurocTable table) {
   return {};
 }
 
-// The files of all tables, in their order; one without rows is never made.
-std::vector<RecordedFiles::File> FilesIn(const fs::path& folder) {
+// The tables that further cameras have, too.
+constexpr std::array kOfCameras = {EurocTable::kImages, EurocTable::kDroppedImages};
+
+// A path of the first camera, for another one.
+fs::path OfCamera(const fs::path& first, std::size_t camera) {
+  return kRoot / fs::path(fmt::format("cam{}", camera)) / first.filename();
+}
+
+// The files of all tables, in their order, then those of further cameras; one without rows is never
+// made.
+std::vector<RecordedFiles::File> FilesIn(const fs::path& folder, std::size_t cameras) {
   std::vector<RecordedFiles::File> files;
   for (const EurocTable table : kEurocTables) {
     files.push_back(FileOf(table));
     files.back().path = folder / files.back().path;
   }
+  for (std::size_t camera = 1; camera < cameras; ++camera) {
+    for (const EurocTable table : kOfCameras) {
+      files.push_back(FileOf(table));
+      files.back().path = folder / OfCamera(files.back().path, camera);
+    }
+  }
   return files;
 }
 
 // Returns the folder with the folders of the tables in it.
-fs::path WithFolders(const fs::path& folder, std::span<const EurocTable> tables) {
+fs::path WithFolders(const fs::path& folder, std::span<const EurocTable> tables,
+                     std::size_t cameras) {
   std::error_code error;
   for (const EurocTable table : tables) {
     const bool is_images = table == EurocTable::kImages;
@@ -60,6 +77,9 @@ fs::path WithFolders(const fs::path& folder, std::span<const EurocTable> tables)
     if (!error)
       fs::create_directories(folder / (is_images ? kRoot / fs::path(euroc::kImageFolder) : parent),
                              error);
+  }
+  for (std::size_t camera = 1; camera < cameras && !error; ++camera) {
+    fs::create_directories(folder / OfCamera(euroc::kImageFolder, camera), error);
   }
   if (!error) return folder;
   throw InputError(fmt::format("{}: cannot be written: {}", folder.string(), error.message()));
@@ -73,13 +93,15 @@ fs::path RecordedImagePath(Time time, std::string_view extension, std::size_t ca
 
 fs::path PathOf(EurocTable table) { return FileOf(table).path; }
 
-EurocWriter::EurocWriter(const fs::path& folder, std::span<const EurocTable> tables)
-    : folder_(WithFolders(folder, tables)), files_(folder_, FilesIn(folder_)) {}
+EurocWriter::EurocWriter(const fs::path& folder, std::span<const EurocTable> tables,
+                         std::size_t cameras)
+    : folder_(WithFolders(folder, tables, cameras)), files_(folder_, FilesIn(folder_, cameras)) {}
 
 EurocWriter::~EurocWriter() { Commit(); }
 
-void EurocWriter::WriteCamera(const CameraCalibration& calibration, double rate_hz) const {
-  WriteFile(folder_ / kRoot / euroc::kCamera,
+void EurocWriter::WriteCamera(const CameraCalibration& calibration, double rate_hz,
+                              std::size_t camera) const {
+  WriteFile(folder_ / OfCamera(euroc::kCamera, camera),
             EurocCalibrationText(calibration, rate_hz, GimbalPlace::kFolder));
 }
 
@@ -93,20 +115,21 @@ void EurocWriter::WriteGimbalSensor(const GimbalMount& gimbal, YawFrame yaw_fram
             EurocGimbalSensorText(gimbal, yaw_frame, rate_hz));
 }
 
-void EurocWriter::WriteImage(Time time, std::string_view extension, std::string_view bytes) const {
-  ReplaceFile(folder_ / RecordedImagePath(time, extension), bytes);
+void EurocWriter::WriteImage(Time time, std::string_view extension, std::string_view bytes,
+                             std::size_t camera) const {
+  ReplaceFile(folder_ / RecordedImagePath(time, extension, camera), bytes);
 }
 
-void EurocWriter::ListImage(Time time, std::string_view extension) {
-  Add(EurocTable::kImages, fmt::format("{0},{0}.{1}\n", ToNanoseconds(time), extension));
+void EurocWriter::ListImage(Time time, std::string_view extension, std::size_t camera) {
+  Add(EurocTable::kImages, fmt::format("{0},{0}.{1}\n", ToNanoseconds(time), extension), camera);
 }
 
 void EurocWriter::AddExposure(Time from, double exposure_s) {
   Add(EurocTable::kExposures, fmt::format("{},{:.7f}\n", ToNanoseconds(from), exposure_s));
 }
 
-void EurocWriter::AddDroppedImage(Time time, std::string_view reason) {
-  Add(EurocTable::kDroppedImages, fmt::format("{},{}\n", ToNanoseconds(time), reason));
+void EurocWriter::AddDroppedImage(Time time, std::string_view reason, std::size_t camera) {
+  Add(EurocTable::kDroppedImages, fmt::format("{},{}\n", ToNanoseconds(time), reason), camera);
 }
 
 void EurocWriter::AddPose(const PoseSample& pose) {
@@ -147,8 +170,10 @@ void EurocWriter::CommitMany() {
   if (files_.waiting_bytes() >= kMany) CommitOrThrow();
 }
 
-void EurocWriter::Add(EurocTable table, std::string_view rows) {
-  files_.Add(static_cast<std::size_t>(table), rows);
+void EurocWriter::Add(EurocTable table, std::string_view rows, std::size_t camera) {
+  if (camera == 0) return files_.Add(static_cast<std::size_t>(table), rows);
+  const std::size_t of_camera = table == kOfCameras[0] ? 0 : 1;
+  files_.Add(kEurocTables.size() + kOfCameras.size() * (camera - 1) + of_camera, rows);
 }
 
 }  // namespace kestrel

@@ -50,28 +50,31 @@ std::filesystem::path PathOf(EurocTable table);
 // given rows by one thread, while another one commits.
 class EurocWriter {
  public:
-  // Makes the folders of 'tables', the only ones that may be given rows. Throws InputError when
-  // 'folder' cannot be written.
-  EurocWriter(const std::filesystem::path& folder, std::span<const EurocTable> tables);
+  // Makes the folders of 'tables', the only ones that may be given rows, and those of the images of
+  // further cameras: cam1, cam2 and so on. Throws InputError when 'folder' cannot be written.
+  EurocWriter(const std::filesystem::path& folder, std::span<const EurocTable> tables,
+              std::size_t cameras = 1);
   // Commits.
   ~EurocWriter();
   EurocWriter(const EurocWriter&) = delete;
   EurocWriter& operator=(const EurocWriter&) = delete;
 
-  // Write the sensor.yaml of the camera, of the poses and of the gimbal. Throw InputError when they
+  // Write the sensor.yaml of a camera, of the poses and of the gimbal. Throw InputError when they
   // cannot.
-  void WriteCamera(const CameraCalibration& calibration, double rate_hz) const;
+  void WriteCamera(const CameraCalibration& calibration, double rate_hz,
+                   std::size_t camera = 0) const;
   void WritePoseSensor(double rate_hz) const;
   void WriteGimbalSensor(const GimbalMount& gimbal, YawFrame yaw_frame, double rate_hz) const;
 
   // Writes the file of an encoded image, which is not listed yet. Several threads may write
   // different images. Throws InputError when it cannot be written; then no part of it is there.
-  void WriteImage(Time time, std::string_view extension, std::string_view bytes) const;
+  void WriteImage(Time time, std::string_view extension, std::string_view bytes,
+                  std::size_t camera = 0) const;
   // Lists an image that is written.
-  void ListImage(Time time, std::string_view extension);
+  void ListImage(Time time, std::string_view extension, std::size_t camera = 0);
 
   void AddExposure(Time from, double exposure_s);
-  void AddDroppedImage(Time time, std::string_view reason);
+  void AddDroppedImage(Time time, std::string_view reason, std::size_t camera = 0);
   void AddPose(const PoseSample& pose);
   void AddGimbal(const GimbalSample& report);
   void AddTruePose(const PoseSample& pose);  // without motion: at rest
@@ -87,7 +90,8 @@ class EurocWriter {
   void CommitMany();
 
  private:
-  void Add(EurocTable table, std::string_view rows);
+  // 'camera' is not 0 for tables that further cameras have, too.
+  void Add(EurocTable table, std::string_view rows, std::size_t camera = 0);
 
   std::filesystem::path folder_;
   RecordedFiles files_;
