@@ -117,7 +117,8 @@ void Run() {
   ConsoleOptions options;
   options.port = 0;
   const CameraCalibration calibration = Vision::Calibration();
-  FlightConsole console(options, "benchmark", ViewOf(calibration, Vision::StillOptions()),
+  FlightConsole console(options, "benchmark",
+                        std::vector<TaskView>{ViewOf(calibration, Vision::StillOptions())},
                         FlightExamination(calibration, ".", 0));
   const int port = std::stoi(console.urls().front().substr(console.urls().front().rfind(':') + 1));
   Vision vision(&console);

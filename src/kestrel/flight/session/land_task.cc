@@ -81,6 +81,7 @@ class LandingVision : public Vision {
   std::string OfCamera(std::size_t camera, const std::string& text) const;
   std::string WarningOf(std::size_t camera) const;
   void LimitSearch(const Frame& frame);
+  bool IsUsed(const LandingObservation& observation) const;
   void UpdateSnapshot(const LandingObservation& observation);
   std::optional<TargetState> Sighting(const LandingObservation& observation) const;
   std::string LensWarning() const;
@@ -124,7 +125,7 @@ Observation LandingVision::Process(const Frame& frame) {
   ++snapshot_.frames;
   snapshot_.detections += seen.report.detection.has_value();
   snapshot_.other_tag = seen.other_tag;
-  if (is_live_) UpdateSnapshot(seen);
+  if (is_live_ && IsUsed(seen)) UpdateSnapshot(seen);
   return {frame, std::move(seen)};
 }
 
@@ -139,6 +140,13 @@ void LandingVision::LimitSearch(const Frame& frame) {
     const double share = kSearchShare / static_cast<double>(cameras_.size());
     pipeline_.LimitSearch(share * 1e3 * ToSeconds(*period));
   }
+}
+
+// False for a frame of a camera that is left out: guidance must not follow what that one sees.
+bool LandingVision::IsUsed(const LandingObservation& observation) const {
+  if (cameras_.size() == 1) return true;
+  if (observation.center_in_world) return observation.fate.has_value();
+  return pipeline_.camera_state(observation.camera).is_used();
 }
 
 void LandingVision::UpdateSnapshot(const LandingObservation& observation) {
