@@ -6,10 +6,21 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/camera/calibration_reader.h"
 #include "kestrel/flight/onboard/realtime_replay.h"
+#include "kestrel/io/recording/media/video_address.h"
 #include "kestrel/io/recording/open_source.h"
 
 namespace kestrel {
 namespace {
+
+// Without a mount nothing is measured in the world.
+void MeasureDelay(const GstreamerCameraOptions& options, OpenedLiveSource* opened) {
+  if (!opened->calibration.body_from_camera) return;
+  const bool corrects = options.measures_delay || !opened->calibration.clock_offset;
+  auto video =
+      std::make_unique<LateVideo>(std::move(opened->source), opened->calibration, corrects);
+  opened->late_video = video.get();
+  opened->source = std::move(video);
+}
 
 OpenedLiveSource OpenCamera(const RecordingChoice& choice, const GstreamerCameraOptions& options) {
   if (choice.camera.empty() && !choice.may_assume_lens) {
@@ -23,6 +34,8 @@ OpenedLiveSource OpenCamera(const RecordingChoice& choice, const GstreamerCamera
       choice.sources.front(), opened.calibration.intrinsics, choice.format, options);
   opened.actuator = camera.get();
   opened.source = std::move(camera);
+  if (IsNetworkVideo(choice.sources.front()) || options.measures_delay)
+    MeasureDelay(options, &opened);
   return opened;
 }
 
