@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/core/base/error.h"
+#include "kestrel/io/recording/media/video_address.h"
 #include "kestrel/io/recording/open_source.h"
 
 namespace kestrel {
@@ -25,7 +26,7 @@ void FlySource::Open(const RecordingChoice& recording, bool is_looped) {
     throw InputError(fmt::format(
         "{}: no calibration: nothing can be measured, and nothing sent to an autopilot, without "
         "one: --camera FILE (kestrel calibrate lens makes one)",
-        source));
+        WithoutPassword(source)));
   }
   live = OpenLiveSource({recording, is_looped}, camera_, {dds.Scheme(), simulated.Scheme()});
 }
