@@ -9,6 +9,7 @@
 #include "kestrel/app/cli/page_links.h"
 #include "kestrel/app/cli/terminal.h"
 #include "kestrel/flight/onboard/camera_automatics.h"
+#include "kestrel/io/recording/media/video_address.h"
 
 namespace kestrel {
 namespace {
@@ -81,7 +82,7 @@ CameraRun::CameraRun(const KestrelOptions& options, CameraRunChoice choice, FlyS
 CameraConsole::Camera CameraRun::Camera() {
   const std::string name = choice_.camera.sources.front();
   CameraConsole::Camera camera;
-  camera.name = name;
+  camera.name = WithoutPassword(name);
   if (source_->live.source) camera.source = Wrap();
   camera.open = [this] { return Open(); };
   camera.exposure_s = [name] { return ReadCameraAutomatics(name).exposure_s; };

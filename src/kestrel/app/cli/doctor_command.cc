@@ -81,6 +81,10 @@ class DoctorVisit {
       computer.disk_mb_per_s = MeasureDisk(observations_.use.record);
     }
     observations_.computer = computer;
+    if (const LateVideo* video = source_.live.late_video) {
+      observations_.camera.comes_late = true;
+      observations_.camera.delay = video->offset();
+    }
     return Check(observations_);
   }
 
@@ -178,13 +182,19 @@ class DoctorVisit {
             .true_pose = [this](const PoseSample& pose) { source_.simulated.TakeTruePose(pose); },
             .event = [this](const AutopilotEvent& e) { examination_->TakeEvent(e); },
             .text = {},
-            .gimbal = [this](const GimbalSample& report) { examination_->TakeGimbal(report); },
+            .gimbal = [this](const GimbalSample& report) { TakeGimbal(report); },
         });
   }
 
   void TakePose(const PoseSample& pose) {
     if (!source_.live.has_poses) examination_->TakePose(pose);
     source_.simulated.TakePose(pose);
+    if (source_.live.late_video != nullptr) source_.live.late_video->Add(pose);
+  }
+
+  void TakeGimbal(const GimbalSample& report) {
+    examination_->TakeGimbal(report);
+    if (source_.live.late_video != nullptr) source_.live.late_video->Add(report);
   }
 
   bool IsWanted(const Finding& finding) const {

@@ -40,6 +40,7 @@
 #include "kestrel/flight/session/observation_sinks.h"
 #include "kestrel/flight/session/task.h"
 #include "kestrel/flight/session/team_sharing.h"
+#include "kestrel/io/recording/media/video_address.h"
 #include "kestrel/io/recording/open_source.h"
 
 namespace kestrel {
@@ -59,7 +60,7 @@ void OpenAloud(const std::string& source, const std::function<void()>& open) {
     std::unique_lock lock(mutex);
     std::condition_variable_any().wait_for(lock, is_open, kQuiet, [] { return false; });
     if (is_open.stop_requested() || !IsCamera(source)) return;
-    Print("waits for the camera: the first image of " + source + "\n");
+    Print("waits for the camera: the first image of " + WithoutPassword(source) + "\n");
   });
   open();
 }
@@ -188,9 +189,9 @@ class Flight {
         source_.live.calibration,
         arguments_.record.empty() ? options_.fly.keep_folder : arguments_.record,
         options_.fly.recorder.free_space_mb);
-    console_ =
-        sinks_.Add(std::make_unique<FlightConsole>(options, arguments_.source.sources.front(),
-                                                   views, examination, live->channels(), Colors()));
+    console_ = sinks_.Add(
+        std::make_unique<FlightConsole>(options, WithoutPassword(arguments_.source.sources.front()),
+                                        views, examination, live->channels(), Colors()));
     PrintLinks(console_->urls());
     Log("for Foxglove: " + console_->viewer_url());
   }
@@ -340,7 +341,7 @@ void RequireNoResults(const FlyArguments& arguments, const std::string& advice) 
 
 // Shows and records a camera that cannot measure.
 void RunUncalibrated(const FlyArguments& arguments, const KestrelOptions& options) {
-  const std::string& name = arguments.source.sources.front();
+  const std::string name = WithoutPassword(arguments.source.sources.front());
   const std::string advice = fmt::format(
       "{0} has no lens calibration, so nothing is measured: `kestrel console {1}` or `kestrel "
       "calibrate lens` makes one for --camera FILE",

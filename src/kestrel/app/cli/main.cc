@@ -12,6 +12,7 @@
 #include "kestrel/app/cli/terminal.h"
 #include "kestrel/app/cli/usage_error.h"
 #include "kestrel/io/recording/media/silence_gstreamer.h"
+#include "kestrel/io/recording/media/video_address.h"
 #include "kestrel/version.h"
 
 namespace {
@@ -60,10 +61,12 @@ int main(int argc, char** argv) {
   } catch (const CLI::Success& wanted) {  // help, version
     return app.exit(wanted);
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "{}\n", kestrel::UsageErrorInWords(app, error, {argv + 1, argv + argc}));
+    fmt::print(
+        stderr, "{}\n",
+        kestrel::WithoutPassword(kestrel::UsageErrorInWords(app, error, {argv + 1, argv + argc})));
     return kWrongUsage;
   } catch (const kestrel::WrongUsage& error) {
-    fmt::print(stderr, "kestrel: {}\n", error.what());
+    fmt::print(stderr, "kestrel: {}\n", kestrel::WithoutPassword(error.what()));
     return kWrongUsage;
   } catch (const kestrel::BadFlightEnd& end) {
     kestrel::Print(fmt::format("kestrel: {}\n", end.what()));
@@ -72,7 +75,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "kestrel: {}\n", end.what());
     return kestrel::kInterruptedStatus;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "kestrel: {}\n", error.what());
+    fmt::print(stderr, "kestrel: {}\n", kestrel::WithoutPassword(error.what()));
     return kInputAtFault;
   }
 }

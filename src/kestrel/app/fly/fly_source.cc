@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/core/base/error.h"
+#include "kestrel/io/recording/media/video_address.h"
 #include "kestrel/io/recording/open_source.h"
 
 namespace kestrel {
@@ -20,7 +21,7 @@ void RequireCalibration(const RecordingChoice& camera) {
   throw InputError(fmt::format(
       "{}: no calibration: nothing can be measured, and nothing sent to an autopilot, without "
       "one: --camera FILE (kestrel calibrate lens makes one)",
-      source));
+      WithoutPassword(source)));
 }
 
 void PrintLine(const std::string& text) { fmt::print(stderr, "kestrel: {}\n", text); }

@@ -193,6 +193,33 @@ Finding CheckCaptureClock(const CameraObservations& camera) {
   return Good(check, measured);
 }
 
+Finding CheckVideoDelay(const CameraObservations& camera, std::optional<double> target_mps) {
+  constexpr double kLateForMoving_s = 0.3;
+  constexpr double kTooLate_s = 0.6;
+  constexpr double kError_m = 0.05;
+  const std::string check = "video delay";
+  if (!camera.delay) {
+    return NotChecked(check, "not known: the UAV has not turned enough",
+                      "turn and tilt it for 10 s, faster than 10 deg/s, over ground with texture");
+  }
+  const double late_s = -camera.delay->offset_s;
+  const std::string measured = fmt::format("{:.0f} ms late, +- {:.0f} ms", kMilliseconds * late_s,
+                                           kMilliseconds * camera.delay->sigma_s);
+  const std::string advice =
+      "less latency: a lower resolution, no B-frames and a short interval of key frames in the "
+      "camera, UDP, a wired link; docs/camera.md";
+  if (late_s > kTooLate_s) return Wrong(check, measured, advice);
+  if (!target_mps) return Good(check, measured);
+  const double error_m = *target_mps * camera.delay->sigma_s;
+  if (late_s > kLateForMoving_s || error_m > kError_m) {
+    return Doubtful(
+        check,
+        fmt::format("{}: {:.2f} m for a target at {:.1f} m/s", measured, error_m, *target_mps),
+        advice);
+  }
+  return Good(check, measured);
+}
+
 Finding CheckExposure(const CameraObservations& camera) {
   constexpr double kDark = 50;
   constexpr double kDim = 90;
@@ -244,11 +271,15 @@ Finding CheckFocus(const CameraObservations& camera) {
   return Good(check, measured);
 }
 
-std::vector<Finding> CheckCamera(const CameraObservations& camera) {
+std::vector<Finding> CheckCamera(const CameraObservations& camera,
+                                 std::optional<double> target_mps) {
   if (!camera.open_error.empty()) return {CheckImages(camera)};
-  return {CheckImages(camera),       CheckFrameRate(camera),    CheckSteadiness(camera),
-          CheckMissedFrames(camera), CheckFrozenFrames(camera), CheckCaptureClock(camera),
-          CheckExposure(camera),     CheckFocus(camera)};
+  std::vector<Finding> findings = {CheckImages(camera),       CheckFrameRate(camera),
+                                   CheckSteadiness(camera),   CheckMissedFrames(camera),
+                                   CheckFrozenFrames(camera), CheckCaptureClock(camera),
+                                   CheckExposure(camera),     CheckFocus(camera)};
+  if (camera.comes_late) findings.push_back(CheckVideoDelay(camera, target_mps));
+  return findings;
 }
 
 }  // namespace kestrel

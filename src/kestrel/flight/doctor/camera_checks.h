@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "kestrel/flight/doctor/finding.h"
@@ -16,10 +17,13 @@ Finding CheckSteadiness(const CameraObservations& camera);  // jitter of the sta
 Finding CheckMissedFrames(const CameraObservations& camera);
 Finding CheckFrozenFrames(const CameraObservations& camera);
 Finding CheckCaptureClock(const CameraObservations& camera);
+// Delay of a network's camera, whether it is known well enough for a target of this speed.
+Finding CheckVideoDelay(const CameraObservations& camera, std::optional<double> target_mps);
 Finding CheckExposure(const CameraObservations& camera);
 Finding CheckFocus(const CameraObservations& camera);
 
 // All of these checks.
-std::vector<Finding> CheckCamera(const CameraObservations& camera);
+std::vector<Finding> CheckCamera(const CameraObservations& camera,
+                                 std::optional<double> target_mps = std::nullopt);
 
 }  // namespace kestrel

@@ -10,7 +10,7 @@
 namespace kestrel {
 namespace {
 
-constexpr std::array<ListedCheck, 41> kChecks = {{
+constexpr std::array<ListedCheck, 42> kChecks = {{
     {"image size", "images have the size of the calibration"},
     {"lens model", "every pixel has a ray: the distortion does not bend back before the rim"},
     {"principal point, pixels", "the optical axis is near the middle, and pixels are square"},
@@ -21,6 +21,7 @@ constexpr std::array<ListedCheck, 41> kChecks = {{
     {"missed images", "the program takes every image of the camera"},
     {"frozen images", "no image comes twice"},
     {"capture clock", "times of capture rise without jumps and are not old"},
+    {"video delay", "the delay of a network's camera is known and short enough"},
     {"exposure", "neither dark nor saturated"},
     {"focus", "sharp edges are at most 3.5 px wide"},
     {"mount", "T_BS has the camera look down: body x ahead, y left, z up"},

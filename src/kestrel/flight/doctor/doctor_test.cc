@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <functional>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kestrel/flight/doctor/camera_checks.h"
 #include "kestrel/flight/doctor/check_list.h"
 #include "kestrel/flight/doctor/examination.h"
 #include "kestrel/flight/doctor/finding.h"
@@ -45,6 +47,33 @@ TEST(DoctorTest, FlagsNothingOnGoodSetup) {
 TEST(DoctorTest, RunsAllChecksOnGoodSetup) {
   for (const Finding& finding : Check(GoodSetup(AutopilotKind::kPx4))) {
     EXPECT_EQ(finding.verdict, Verdict::kGood) << finding.check << ": " << finding.measured;
+  }
+}
+
+TEST(DoctorTest, DelayOfVideoIsJudgedByItsUse) {
+  struct Case {
+    std::optional<ClockEstimate> delay;
+    std::optional<double> target_mps;
+    Verdict verdict;
+    const char* words;
+  };
+  for (const Case& given : std::vector<Case>{
+           {{}, {}, Verdict::kNotChecked, "has not turned"},
+           {ClockEstimate{-0.2, 0.004}, {}, Verdict::kGood, "200 ms late, +- 4 ms"},
+           {ClockEstimate{-0.2, 0.004}, 4.2, Verdict::kGood, "200 ms late"},
+           {ClockEstimate{-0.2, 0.01}, 8.3, Verdict::kDoubtful, "0.08 m for a target at 8.3 m/s"},
+           {ClockEstimate{-0.4, 0.004}, 4.2, Verdict::kDoubtful, "400 ms late"},
+           {ClockEstimate{-0.4, 0.004}, {}, Verdict::kGood, "400 ms late"},
+           {ClockEstimate{-0.7, 0.004}, {}, Verdict::kWrong, "700 ms late"}}) {
+    DoctorObservations setup = GoodSetup(AutopilotKind::kArduPilot);
+    setup.camera.comes_late = true;
+    setup.camera.delay = given.delay;
+    const Finding finding = CheckVideoDelay(setup.camera, given.target_mps);
+    EXPECT_EQ(finding.verdict, given.verdict) << given.words;
+    EXPECT_THAT(finding.measured, HasSubstr(given.words));
+    std::vector<std::string> checks;
+    for (const Finding& other : Check(setup)) checks.push_back(other.check);
+    EXPECT_THAT(checks, Contains("video delay"));
   }
 }
 

@@ -305,7 +305,7 @@ std::vector<Finding> Check(const DoctorObservations& observations) {
     findings.insert(findings.end(), part.begin(), part.end());
   };
   add(CheckCalibration(observations));
-  add(CheckCamera(observations.camera));
+  add(CheckCamera(observations.camera, observations.use.target_mps));
   add(CheckMount(observations));
   add(CheckLink(observations.link, observations.use));
   add(CheckGimbal(observations));

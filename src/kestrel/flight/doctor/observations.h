@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "kestrel/calibration/mount/video_delay.h"
 #include "kestrel/comms/mavlink/autopilot.h"
 #include "kestrel/comms/mavlink/connection.h"
 #include "kestrel/comms/mavlink/link_url.h"
@@ -57,6 +58,8 @@ struct CameraObservations {
   std::vector<FrameSample> frames;      // in the order in which they came
   std::vector<ImageQuality> qualities;  // quality of each examined frame
   CaptureCounters counters;
+  bool comes_late = false;             // over a network
+  std::optional<ClockEstimate> delay;  // of a camera that comes late, by the turns of its images
 };
 
 // The pattern in one frame, found without mount and attitude.

@@ -128,6 +128,7 @@ void FlightProgram::EndByLanding(FlightEnd end) {
 void FlightProgram::Capture() {
   SetUpThisThread("capture", {});
   std::string trouble;
+  std::string delay;
   Time last = Now();
   while (!is_over_) {
     capture_life_.Give(Now());
@@ -145,6 +146,12 @@ void FlightProgram::Capture() {
       const char* const end = trouble == kNoImageYet ? "images come" : "the camera is back";
       report_(now.empty() ? end : now);
       trouble = now;
+    }
+    if (parts_.late_video != nullptr) {
+      if (const std::string now = parts_.late_video->InWords(); now != delay) {
+        report_(now);
+        delay = now;
+      }
     }
     if (ToSeconds(Now() - last) < options_.source_timeout_s) continue;
     return End({FlightOutcome::kNotLanded,

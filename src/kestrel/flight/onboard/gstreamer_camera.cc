@@ -13,6 +13,7 @@
 #include "kestrel/flight/onboard/exposure_drive.h"
 #include "kestrel/flight/onboard/gstreamer_pipeline.h"
 #include "kestrel/flight/onboard/image_pool.h"
+#include "kestrel/io/recording/media/video_address.h"
 #include "kestrel/io/recording/media/video_device.h"
 #include "kestrel/io/recording/media/video_source.h"
 
@@ -34,6 +35,8 @@ std::string DeviceCaps(const CameraIntrinsics& calibration, const GstreamerCamer
 GstreamerCamera::GstreamerCamera(const std::string& camera, const CameraIntrinsics& calibration,
                                  PixelFormat format, const GstreamerCameraOptions& options)
     : camera_(camera),
+      name_(WithoutPassword(camera)),
+      is_network_(IsNetworkVideo(camera)),
       calibration_(calibration),
       format_(format),
       options_(Checked(options)),
@@ -47,19 +50,21 @@ GstreamerCamera::GstreamerCamera(const std::string& camera, const CameraIntrinsi
   Open();
   const Time deadline = Now() + kFirstFrame;
   while (!first_ && Now() < deadline) first_ = TakeFrame(deadline - Now());
-  if (!first_) throw InputError(camera + ": no frame within 10 s");
+  if (!first_) throw InputError(name_ + ": no frame within 10 s");
 }
 
 GstreamerCamera::~GstreamerCamera() = default;
 
 void GstreamerCamera::Open() {
   auto pipeline = std::make_unique<GstreamerPipeline>(
-      CameraPipelineText(camera_, DeviceCaps(calibration_, options_)), camera_, format_);
+      CameraPipelineText(camera_, DeviceCaps(calibration_, options_)), name_, format_);
   if (!options_.exposure_property.empty()) {
     pipeline->UseExposureProperty(options_.exposure_property, options_.exposure_unit_s);
   }
   StartPipeline(pipeline.get());
   last_arrival_ = Now();
+  stream_clock_ = {};  // RTP begins anew
+  sender_clock_ = {};
   const std::lock_guard lock(mutex_);
   pipeline_ = std::move(pipeline);
 }
@@ -125,19 +130,18 @@ std::optional<Event> GstreamerCamera::TakeFrame(Duration timeout) {
     const bool has_ended = pipeline_->HasEnded();
     has_ended_ = has_ended && !pipeline_->is_live();
     if (has_ended_) return EndOfStream{};
-    if (has_ended) throw InputError(camera_ + ": the camera has stopped");
+    if (has_ended) throw InputError(name_ + ": the camera has stopped");
     if (now - last_arrival_ > DurationFromSeconds(options_.stall_s)) {
-      throw InputError(fmt::format("{}: no frame for {} s", camera_, options_.stall_s));
+      throw InputError(fmt::format("{}: no frame for {} s", name_, options_.stall_s));
     }
     return std::nullopt;
   }
   GstVideoInfo info;
   if (gst_video_info_from_caps(&info, gst_sample_get_caps(sample.get())) == FALSE) {
-    throw InputError(camera_ + ": no images received");
+    throw InputError(name_ + ": no images received");
   }
-  if (calibration_.width_px > 0) {
-    CheckImageSize(calibration_, info.width, info.height, camera_);
-  }
+  const bool is_smeared = is_network_ && GstreamerPipeline::IsSmeared(sample.get());
+  if (!IsUsable(info.width, info.height, is_smeared)) return std::nullopt;
   const std::uint64_t missed = pipeline_->MissedBefore(sample.get());
   Frame frame;
   frame.image =
@@ -145,7 +149,10 @@ std::optional<Event> GstreamerCamera::TakeFrame(Duration timeout) {
   if (!CopyPixels(sample.get(), info, &frame.image)) return std::nullopt;
   last_arrival_ = now;
   back_off_ = DurationFromSeconds(options_.reopen_s);
-  const std::optional<Time> driver_time = pipeline_->DriverTime(sample.get());
+  std::optional<Time> driver_time = pipeline_->DriverTime(sample.get());
+  if (is_network_ && driver_time) {
+    driver_time = NetworkTime(*driver_time, GstreamerPipeline::SenderTime(sample.get()), now);
+  }
 
   const std::lock_guard lock(mutex_);
   counters_.missed += missed;
@@ -159,6 +166,34 @@ std::optional<Event> GstreamerCamera::TakeFrame(Duration timeout) {
   last_time_ = frame.time;
   frame.name = fmt::format("camera/{:06}", counters_.captured++);
   return frame;
+}
+
+// A stream that changes its size may change it back, or is another one after the next start.
+bool GstreamerCamera::IsUsable(int width_px, int height_px, bool is_smeared) {
+  std::string error;
+  try {
+    if (calibration_.width_px > 0) {
+      CheckImageSize(calibration_, width_px, height_px, name_);
+    }
+  } catch (const InputError& fault) {
+    if (last_time_ == Time::min() || !is_network_) throw;
+    error = fault.what();
+  }
+  if (!is_smeared && error.empty()) return true;
+  last_arrival_ = Now();
+  const std::lock_guard lock(mutex_);
+  ++counters_.missed;
+  ++counters_.refused;
+  if (!error.empty()) error_ = error + ": left out until the stream has that size again";
+  return false;
+}
+
+// Returns the time of a network's frame on the clock of Now(). 'stamp': by RTP; 'sent': by RTCP.
+Time GstreamerCamera::NetworkTime(Time stamp, std::optional<Time> sent, Time now) {
+  const Time by_stream = stream_clock_.Map(stamp, now);
+  if (!sent) return by_stream;
+  // The first report of the sender must not move the times.
+  return sender_clock_.Map(*sent, sender_clock_.has_begun() ? now : by_stream);
 }
 
 // Returns the capture time. If the driver uses another clock, its times are useless: the arrival is

@@ -10,7 +10,9 @@
 #include "kestrel/core/base/limits.h"
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/flight/onboard/exposure_actuator.h"
+#include "kestrel/flight/onboard/sender_clock.h"
 #include "kestrel/flight/session/live_source.h"
+#include "kestrel/io/recording/frame.h"
 
 namespace kestrel {
 
@@ -24,6 +26,7 @@ struct GstreamerCameraOptions {
   double exposure_unit_s = 1e-6;
   std::string device_caps = {};
   double stall_s = 2;
+  bool measures_delay = false;
   double reopen_s = 0.5;  // first interval between attempts to open a lost camera; it doubles
 
   static void Visit(auto& self, auto&& visit) {
@@ -39,13 +42,19 @@ struct GstreamerCameraOptions {
           "caps that are requested of /dev/videoN; empty: raw images of the calibration's size");
     visit("stall_s", self.stall_s, Range{0.1, 3600},
           "time without a frame after which the camera is lost");
+    visit(
+        "measures_delay", self.measures_delay,
+        "the clock offset is measured in flight by the turns of the images, also of a camera with "
+        "one in its file; always done for a network's camera without");
     visit.Gone({"reopen_s", "max_reopen_s"});
   }
 };
 
-// A camera through GStreamer: a device (/dev/video0), an RTSP address, or any pipeline. Only the
-// newest frame is kept. A frame's time is its buffer's PTS on the pipeline's clock, which is that
-// of Now(), minus half of the exposure and the read-out.
+// A camera through GStreamer: a device (/dev/video0), an address (rtsp://...), or any pipeline.
+// Only the newest frame is kept. A frame's time is its buffer's PTS on the pipeline's clock, which
+// is that of Now(), minus half of the exposure and the read-out. The times of a network's frames
+// have the intervals of the sender's clock and are late by the shortest way of a frame, see
+// SenderClock and LateVideo; its smeared frames, and those of another size, are left out.
 class GstreamerCamera : public LiveSource, public ExposureActuator {
  public:
   // 'camera': "/dev/video0", "rtsp://..." or a pipeline ("videotestsrc is-live=true ! ..."), with
@@ -69,6 +78,8 @@ class GstreamerCamera : public LiveSource, public ExposureActuator {
   void Open();
   void StartPipeline(GstreamerPipeline* pipeline) const;
   std::optional<Event> TakeFrame(Duration timeout);
+  bool IsUsable(int width_px, int height_px, bool is_smeared);
+  Time NetworkTime(Time stamp, std::optional<Time> sent, Time now);
 
   std::optional<Event> TakeFrameOrFail(Duration timeout);
   void Fail(const std::string& reason);
@@ -76,6 +87,8 @@ class GstreamerCamera : public LiveSource, public ExposureActuator {
   Time CaptureTime(std::optional<Time> driver_time, Time now);
 
   std::string camera_;
+  std::string name_;  // of the camera, for messages: without a password
+  bool is_network_;
   CameraIntrinsics calibration_;
   PixelFormat format_;
   GstreamerCameraOptions options_;
@@ -85,7 +98,8 @@ class GstreamerCamera : public LiveSource, public ExposureActuator {
   std::optional<Event> first_;  // the frame that the constructor has waited for
   Time last_time_ = Time::min();
   Time last_arrival_;
-  Time next_attempt_;  // of reopening
+  SenderClock stream_clock_, sender_clock_;  // of a network's frames, by RTP and by RTCP
+  Time next_attempt_;                        // of reopening
   Duration back_off_{};
   bool has_ended_ = false;
 

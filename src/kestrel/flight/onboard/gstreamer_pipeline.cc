@@ -85,6 +85,17 @@ std::optional<Time> GstreamerPipeline::DriverTime(GstSample* sample) const {
   return TimeFromNanoseconds(static_cast<std::int64_t>(base + running));
 }
 
+std::optional<Time> GstreamerPipeline::SenderTime(GstSample* sample) {
+  const GstReferenceTimestampMeta* meta =
+      gst_buffer_get_reference_timestamp_meta(gst_sample_get_buffer(sample), nullptr);
+  if (meta == nullptr) return std::nullopt;
+  return TimeFromNanoseconds(static_cast<std::int64_t>(meta->timestamp));
+}
+
+bool GstreamerPipeline::IsSmeared(GstSample* sample) {
+  return GST_BUFFER_FLAG_IS_SET(gst_sample_get_buffer(sample), GST_BUFFER_FLAG_CORRUPTED) != FALSE;
+}
+
 std::uint64_t GstreamerPipeline::MissedBefore(GstSample* sample) {
   const GstBuffer* buffer = gst_sample_get_buffer(sample);
   const guint64 number = std::exchange(last_number_, FrameNumber(buffer));

@@ -49,6 +49,12 @@ class GstreamerPipeline {
   // Returns the driver's time of the frame; nothing when the buffer has none.
   std::optional<Time> DriverTime(GstSample* sample) const;
 
+  // Returns the time of the frame on the clock of its sender, by RTCP; nothing when there is none.
+  static std::optional<Time> SenderTime(GstSample* sample);
+
+  // True for a picture that refers to one that was lost on the way.
+  static bool IsSmeared(GstSample* sample);
+
   // Returns the number of frames lost between the last one and this one: by the source's frame
   // numbers, else by the times.
   std::uint64_t MissedBefore(GstSample* sample);

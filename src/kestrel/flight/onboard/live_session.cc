@@ -116,6 +116,7 @@ class Flight : public LiveSession {
     sinks().Take(SessionEvent{Now(), level, text});
   }
   void TakePose(const PoseSample& pose);
+  void TakeGimbal(const GimbalSample& report);
   void TakeTruePose(const PoseSample& pose);
 
   const OpenedLiveSource& live_;
@@ -253,21 +254,22 @@ void Flight::OpenAutopilot() {
   }
   guard_ = guard.get();
   connection_.emplace(options_.autopilot, flight().link, tap, std::move(guard));
-  autopilot_.emplace(
-      WantedOfAutopilot(), &*connection_,
-      AutopilotListener{
-          .pose = [this](const PoseSample& pose) { TakePose(pose); },
-          .true_pose = [this](const PoseSample& pose) { TakeTruePose(pose); },
-          .event = [this](const AutopilotEvent& e) { Notify(e.text); },
-          .text = [this](
-                      std::uint8_t severity,
-                      std::string_view text) { Notify(WordsOfAutopilot(text), LevelOf(severity)); },
-          .gimbal = [this](const GimbalSample& report) { program_->TakeAutopilotGimbal(report); },
-      });
+  autopilot_.emplace(WantedOfAutopilot(), &*connection_,
+                     AutopilotListener{
+                         .pose = [this](const PoseSample& pose) { TakePose(pose); },
+                         .true_pose = [this](const PoseSample& pose) { TakeTruePose(pose); },
+                         .event = [this](const AutopilotEvent& e) { Notify(e.text); },
+                         .text =
+                             [this](std::uint8_t severity, std::string_view text) {
+                               Notify(WordsOfAutopilot(text), LevelOf(severity));
+                             },
+                         .gimbal = [this](const GimbalSample& report) { TakeGimbal(report); },
+                     });
 }
 
 FlightParts Flight::ProgramParts() {
   return {.source = live_.source.get(),
+          .late_video = live_.late_video,
           .vision = &mutable_vision(),
           .exposure = exposure_ ? &*exposure_ : nullptr,
           .connection = connection_ ? &*connection_ : nullptr,
@@ -289,6 +291,12 @@ FlightParts Flight::ProgramParts() {
 void Flight::TakePose(const PoseSample& pose) {
   program_->TakeAutopilotPose(pose);
   if (live_.pose) live_.pose(pose);
+  if (live_.late_video != nullptr) live_.late_video->Add(pose);
+}
+
+void Flight::TakeGimbal(const GimbalSample& report) {
+  program_->TakeAutopilotGimbal(report);
+  if (live_.late_video != nullptr) live_.late_video->Add(report);
 }
 
 void Flight::TakeTruePose(const PoseSample& pose) {

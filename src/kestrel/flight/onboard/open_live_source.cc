@@ -10,10 +10,21 @@
 #include "kestrel/core/camera/calibration_reader.h"
 #include "kestrel/flight/onboard/realtime_replay.h"
 #include "kestrel/flight/onboard/several_sources.h"
+#include "kestrel/io/recording/media/video_address.h"
 #include "kestrel/io/recording/open_source.h"
 
 namespace kestrel {
 namespace {
+
+// Without a mount nothing is measured in the world.
+void MeasureDelay(const GstreamerCameraOptions& options, OpenedLiveSource* opened) {
+  if (!opened->calibration.body_from_camera) return;
+  const bool corrects = options.measures_delay || !opened->calibration.clock_offset;
+  auto video =
+      std::make_unique<LateVideo>(std::move(opened->source), opened->calibration, corrects);
+  opened->late_video = video.get();
+  opened->source = std::move(video);
+}
 
 OpenedLiveSource OpenCamera(const RecordingChoice& choice, const GstreamerCameraOptions& options,
                             const std::string& name = "") {
@@ -28,6 +39,9 @@ OpenedLiveSource OpenCamera(const RecordingChoice& choice, const GstreamerCamera
       choice.sources.front(), opened.calibration.intrinsics, choice.format, options);
   opened.actuator = camera.get();
   opened.source = std::move(camera);
+  if (IsNetworkVideo(choice.sources.front()) || options.measures_delay) {
+    MeasureDelay(options, &opened);
+  }
   return opened;
 }
 
@@ -57,9 +71,12 @@ void RequireCameras(const std::vector<RecordingChoice>& cameras) {
   for (const RecordingChoice& camera : cameras) {
     const std::string& uri = camera.sources.front();
     if (!IsCamera(uri)) {
-      throw InputError(uri + ": expected a camera, as the others (/dev/video0, rtsp://...)");
+      throw InputError(WithoutPassword(uri) +
+                       ": expected a camera, as the others (/dev/video0, rtsp://...)");
     }
-    if (!names.insert(uri).second) throw InputError(uri + ": is given twice");
+    if (!names.insert(uri).second) {
+      throw InputError(WithoutPassword(uri) + ": is given twice");
+    };
   }
 }
 

@@ -11,6 +11,7 @@
 #include "kestrel/core/poses/pose_history.h"
 #include "kestrel/flight/onboard/exposure_actuator.h"
 #include "kestrel/flight/onboard/gstreamer_camera.h"
+#include "kestrel/flight/onboard/late_video.h"
 #include "kestrel/flight/session/live_source.h"
 #include "kestrel/io/bags/open_recording.h"
 #include "kestrel/io/recording/euroc/truth_rows.h"
@@ -27,6 +28,8 @@ struct OpenedLiveSource {
   double rate_hz = kNominalRateHz;       // of the images, nominal
   bool has_poses = false;                // the source has poses of its own
   ExposureActuator* actuator = nullptr;  // view of 'source'; null: its exposure cannot be set
+
+  LateVideo* late_video = nullptr;  // view of 'source'; null: its images come in time
 
   // Images that equal the one before are processed. False: a camera that repeats its image is
   // frozen.

@@ -7,6 +7,7 @@
 #include "kestrel/io/recording/euroc/euroc_recording.h"
 #include "kestrel/io/recording/media/file_kind.h"
 #include "kestrel/io/recording/media/image_sequence.h"
+#include "kestrel/io/recording/media/video_address.h"
 #include "kestrel/io/recording/media/video_source.h"
 
 namespace kestrel {
@@ -58,7 +59,7 @@ std::unique_ptr<FrameSource> Open(const std::vector<std::string>& arguments) {
 }  // namespace
 
 bool IsCamera(const std::string& source) {
-  if (source.starts_with(kVideoDevice) || source.starts_with("rtsp://")) return true;
+  if (source.starts_with(kVideoDevice) || IsVideoAddress(source)) return true;
   return source.find('!') != std::string::npos && !Exists(source);
 }
 

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 
 #include "kestrel/core/base/error.h"
+#include "kestrel/io/recording/media/video_address.h"
+#include "kestrel/io/recording/media/whole_pictures.h"
 
 namespace kestrel {
 namespace {
@@ -26,12 +28,45 @@ GstClockTime Nanoseconds(Duration timeout) {
   return static_cast<GstClockTime>(std::max<std::int64_t>(timeout.count(), 0));
 }
 
+void SetIfThere(GstElement* element, const char* property) {
+  if (g_object_class_find_property(G_OBJECT_GET_CLASS(element), property) == nullptr) return;
+  g_object_set(element, property, TRUE, nullptr);
+}
+
+void SetUpElement(GstBin* /*pipeline*/, GstBin* /*parent*/, GstElement* element, gpointer) {
+  SetIfThere(element, "request-keyframe");
+  PassWholePicturesOnly(element);
+}
+
+// GStreamer has these properties only from 1.20 or 1.22 on.
+void SetUpNetworkVideo(GstElement* pipeline) {
+  const GstElementPointer network(gst_bin_get_by_name(GST_BIN(pipeline), "network"));
+  if (network) SetIfThere(network.get(), "add-reference-timestamp-meta");
+  g_signal_connect(pipeline, "deep-element-added", G_CALLBACK(SetUpElement), nullptr);
+}
+
+// What an RTSP server or the way to it says, in words for the user; empty for other errors.
+std::string WordsOfNetworkError(GstMessage* message, const GError& error) {
+  const std::string_view element = G_OBJECT_TYPE_NAME(GST_MESSAGE_SRC(message));
+  if (element != "GstRTSPSrc" || error.domain != GST_RESOURCE_ERROR) return "";
+  switch (error.code) {
+    case GST_RESOURCE_ERROR_OPEN_READ_WRITE:
+      return "no connection: is the camera on, the address right?";
+    case GST_RESOURCE_ERROR_NOT_AUTHORIZED:
+      return "the camera refuses user and password (rtsp://USER:PASSWORD@HOST/...)";
+    case GST_RESOURCE_ERROR_NOT_FOUND:
+      return "the camera has no such stream: is the path of the address right?";
+    default:
+      return "";
+  }
+}
+
 }  // namespace
 
 std::string CameraPipelineText(const std::string& camera, const std::string& device_caps) {
   constexpr const char* kEnd = " ! videoconvert ! appsink";
-  if (camera.starts_with("rtsp://") || camera.starts_with("rtsps://")) {
-    return fmt::format("rtspsrc location=\"{}\" latency=0 ! decodebin{}", camera, kEnd);
+  if (IsVideoAddress(camera)) {
+    return fmt::format("{} ! decodebin{}", NetworkVideoText(camera), kEnd);
   }
   if (!camera.starts_with("/dev/video")) {
     return camera.find("appsink") == std::string::npos ? camera + kEnd : camera;
@@ -48,10 +83,12 @@ GstElementPointer ParsePipeline(const std::string& text, const std::string& name
       gst_parse_launch_full(text.c_str(), nullptr, GST_PARSE_FLAG_FATAL_ERRORS, &error));
   const GstErrorPointer owner(error);
   if (error != nullptr)
-    throw InputError(fmt::format("{}: GStreamer: {}", name, FirstLine(error->message)));
+    throw InputError(
+        WithoutPassword(fmt::format("{}: GStreamer: {}", name, FirstLine(error->message))));
   if (!GST_IS_PIPELINE(pipeline.get())) {
     throw InputError(name + ": is no GStreamer pipeline, expected elements joined by '!'");
   }
+  SetUpNetworkVideo(pipeline.get());
   return pipeline;
 }
 
@@ -114,6 +151,8 @@ void GstWatch::Take(GstMessage* message) {
   GError* error = nullptr;
   gst_message_parse_error(message, &error, nullptr);
   const GstErrorPointer owner(error);
+  fault_ = WordsOfNetworkError(message, *error);
+  if (!fault_.empty()) return;
   fault_ = missing_.empty() ? FirstLine(error->message)
                             : fmt::format(
                                   "GStreamer has no {}: install the plugins that have it "

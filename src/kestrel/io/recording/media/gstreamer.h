@@ -34,8 +34,8 @@ using GstMessagePointer = std::unique_ptr<GstMessage, GstReleaser>;
 using GstSamplePointer = std::unique_ptr<GstSample, GstReleaser>;
 
 // Returns GStreamer's pipeline for a camera: a device (/dev/video0, with the caps 'device_caps', or
-// its own choice if that is empty), an address (rtsp://...) or the text of a pipeline. It ends in
-// an appsink.
+// its own choice if that is empty), an address (see video_address.h) or the text of a pipeline. It
+// ends in an appsink.
 std::string CameraPipelineText(const std::string& camera, const std::string& device_caps);
 
 // Returns the pipeline of a text. Throws InputError that begins with 'name' when the text is not

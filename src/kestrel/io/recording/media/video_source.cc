@@ -11,6 +11,7 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/io/recording/media/gstreamer.h"
 #include "kestrel/io/recording/media/image_file.h"
+#include "kestrel/io/recording/media/video_address.h"
 #include "kestrel/io/recording/media/video_container.h"
 #include "kestrel/io/recording/media/video_decoder.h"
 #include "kestrel/io/recording/media/video_device.h"
@@ -136,16 +137,17 @@ std::unique_ptr<FrameSource> OpenVideoFile(const std::string& path) {
 
 std::unique_ptr<FrameSource> OpenCamera(const std::string& camera) {
   const bool is_pipeline = camera.find('!') != std::string::npos;
+  const std::string name = WithoutPassword(camera);
   GstElementPointer pipeline = ParsePipeline(CameraPipelineText(camera, ""), camera);
   try {
     auto decoder = std::make_unique<VideoDecoder>(std::move(pipeline));
-    return std::make_unique<VideoSource>(std::move(decoder), is_pipeline ? "gstreamer" : camera,
+    return std::make_unique<VideoSource>(std::move(decoder), is_pipeline ? "gstreamer" : name,
                                          VideoContainer());
   } catch (const InputError& error) {
     const std::string fault = CameraFault(camera);
     if (!fault.empty()) throw InputError(fault);
     throw InputError(fmt::format(
-        "{}: {}: {}", camera,
+        "{}: {}: {}", name,
         is_pipeline ? "this GStreamer pipeline does not start" : "the camera does not start",
         error.what()));
   }
