@@ -1141,6 +1141,53 @@ class HuntObservation:
     def asdict(self) -> dict[str, Any]:
         """Returns the fields as a dict."""
 
+class PlaceOnGround:
+    """A place on the ground, in the world (ENU)."""
+    def __init__(self, *, position: ArrayLike = ..., covariance: ArrayLike = ...) -> None: ...
+    def replace(self, *, position: ArrayLike = ..., covariance: ArrayLike = ...) -> PlaceOnGround: ...
+    @property
+    def position(self) -> NDArray[np.float64]:
+        """float64 of 3, m."""
+    @property
+    def covariance(self) -> NDArray[np.float64]:
+        """float64 of (3, 3), m^2, of all errors."""
+    def asdict(self) -> dict[str, Any]:
+        """Returns the fields as a dict."""
+
+class FollowObservation:
+    """What was seen of a marked thing in a frame."""
+    def __init__(self, *, time_ns: int = ..., region: RegionReport | None = ..., world_from_camera: RigidTransform | None = ..., bearing: ArrayLike | None = ..., place: PlaceOnGround | None = ..., fate: MeasurementFate | str | None = ..., track_state: TrackState | str = ..., target: TargetEstimate | None = ..., detect_time_s: float = ...) -> None: ...
+    def replace(self, *, time_ns: int = ..., region: RegionReport | None = ..., world_from_camera: RigidTransform | None = ..., bearing: ArrayLike | None = ..., place: PlaceOnGround | None = ..., fate: MeasurementFate | str | None = ..., track_state: TrackState | str = ..., target: TargetEstimate | None = ..., detect_time_s: float = ...) -> FollowObservation: ...
+    @property
+    def time_ns(self) -> int:
+        """Of the frame, on the images' clock, int, ns."""
+    @property
+    def region(self) -> RegionReport | None:
+        """RegionReport, or None before something was marked."""
+    @property
+    def world_from_camera(self) -> RigidTransform | None:
+        """RigidTransform, or None without a pose."""
+    @property
+    def bearing(self) -> NDArray[np.float64] | None:
+        """Direction to it in the world, float64 of 3, of length 1; or None."""
+    @property
+    def place(self) -> PlaceOnGround | None:
+        """PlaceOnGround; None near and above the horizon."""
+    @property
+    def fate(self) -> MeasurementFate | None:
+        """What the track made of the place, or None."""
+    @property
+    def track_state(self) -> TrackState:
+        """'searching', 'tracking', 'predicting' or 'lost'."""
+    @property
+    def target(self) -> TargetEstimate | None:
+        """TargetEstimate at the time of the frame, or None."""
+    @property
+    def detect_time_s(self) -> float:
+        """Time of the tracker alone, s."""
+    def asdict(self) -> dict[str, Any]:
+        """Returns the fields as a dict."""
+
 class LandingPipeline:
     """The whole vision of a landing: images and poses in; the pad, its place in the world and its
     track out.
@@ -1282,20 +1329,20 @@ class SimulatedFlight(Recording):
 
 class Observation:
     """A frame and what was seen in it."""
-    def __init__(self, *, frame: Frame = ..., seen: LandingObservation | HuntObservation = ..., latency_s: float | None = ...) -> None: ...
-    def replace(self, *, frame: Frame = ..., seen: LandingObservation | HuntObservation = ..., latency_s: float | None = ...) -> Observation: ...
+    def __init__(self, *, frame: Frame = ..., seen: LandingObservation | HuntObservation | FollowObservation = ..., latency_s: float | None = ...) -> None: ...
+    def replace(self, *, frame: Frame = ..., seen: LandingObservation | HuntObservation | FollowObservation = ..., latency_s: float | None = ...) -> Observation: ...
     @property
     def frame(self) -> Frame:
         """Frame."""
     @property
-    def seen(self) -> LandingObservation | HuntObservation:
-        """LandingObservation or HuntObservation."""
+    def seen(self) -> LandingObservation | HuntObservation | FollowObservation:
+        """LandingObservation, HuntObservation or FollowObservation."""
     @property
     def latency_s(self) -> float | None:
         """Time from the capture until it was processed, s; None for recordings."""
     @property
     def csv_header(self) -> str:
-        """First line of object_detections.csv or landing_detections.csv."""
+        """First line of object_detections.csv, landing_detections.csv or follow_track.csv."""
     @property
     def csv_rows(self) -> str:
         """Its lines of that table."""
@@ -1303,10 +1350,10 @@ class Observation:
         """Returns the fields as a dict."""
 
 class Session:
-    """A source, the vision, and functions that get the results: what `kestrel land`, `kestrel hunt`
-    and, live, `kestrel fly` run.
+    """A source, the vision, and functions that get the results: what `kestrel land`, `kestrel hunt`,
+    `kestrel follow` and, live, `kestrel fly` run.
     """
-    def __init__(self, source: _Path | Sequence[_Path] | Recording, camera: _Path | None = ..., sinks: Sequence[Callable[[Observation], Any]] = ..., *, hunt: bool = ..., options: _Options = ..., altitude_m: float | None = ..., model: ObjectModel | None = ..., output: str = ..., replace: bool = ..., live: bool = ..., autopilot: str = ..., guide: bool = ..., record: str = ..., on_event: Callable[[str], Any] | None = ...) -> None:
+    def __init__(self, source: _Path | Sequence[_Path] | Recording, camera: _Path | None = ..., sinks: Sequence[Callable[[Observation], Any]] = ..., *, hunt: bool = ..., options: _Options = ..., altitude_m: float | None = ..., model: ObjectModel | None = ..., output: str = ..., replace: bool = ..., live: bool = ..., autopilot: str = ..., guide: bool = ..., record: str = ..., on_event: Callable[[str], Any] | None = ..., follow: list[float] | None = ..., follow_at: str = ...) -> None:
         """source: a path (recording, bag, video, images), a Recording or SimulatedFlight; with live=True
         also '/dev/video0', 'rtsp://...', a GStreamer pipeline, 'dds:/camera/image_raw' of ROS 2 or
         'sim:standing', a simulated flight.
@@ -1321,6 +1368,8 @@ class Session:
         autopilot, guide, record: of live sessions, as of `kestrel fly`, also autopilot='sim:ardupilot'
         or 'sim:px4', a simulated one.
         on_event: gets each message, as a warning, as a text.
+        follow: box (x, y, width, height, px) around what is to be followed in a recording, in the frame
+        'follow_at', its number or name.
         """
     def run(self) -> str:
         """Runs to the end of the source, until stop() or Ctrl-C. Returns a summary in words. Raises
@@ -1680,13 +1729,16 @@ def draw(image: NDArray[np.uint8], observation: TargetReport) -> NDArray[np.uint
 @overload
 def draw(image: NDArray[np.uint8], observation: HuntObservation) -> NDArray[np.uint8]: ...
 @overload
+def draw(image: NDArray[np.uint8], observation: FollowObservation) -> NDArray[np.uint8]: ...
+@overload
 def draw(image: NDArray[np.uint8], observation: ObjectReport) -> NDArray[np.uint8]:
     """Returns a copy of an image with a result drawn in, uint8 BGR: of a pad its outlines, axes,
     distance and quality, or the stage at which the best candidate fell, and why; of objects their
     outlines, classes and distances.
 
     image: the image that was searched.
-    observation: TargetReport, LandingObservation, ObjectReport or HuntObservation.
+    observation: TargetReport, LandingObservation, ObjectReport, HuntObservation or
+    FollowObservation.
     """
 def evaluate(recording: _Path, output: _Path, hunt: bool = ...) -> Report:
     """Compares the tables that a Session wrote into the folder 'output' with the truth of a recording.

@@ -180,7 +180,7 @@ TEST_F(FlightConsoleTest, KeepsNoImageWithoutViewer) {
 }
 
 TEST(FollowConsoleTest, MarkNamesThePictureAndTheBox) {
-  FlightConsole console(FreePort(), "a flight", FollowView(),
+  FlightConsole console(FreePort(), "a flight", {FollowView()},
                         FlightExamination(PaperCalibration(), ".", 0));
   TestSocket socket(PortOf(console));
   const auto hello = socket.Next("hello");
