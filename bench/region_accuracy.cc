@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // RegionTracker over sequences of images with truth, beside the trackers of OpenCV (opencv-contrib)
 // in the same run: success (area under the curve of overlaps), precision (share of centres within
-// 20 px), images per second of processor time of one thread, and the share of the images in which
-// RegionTracker says that the region is lost. Usage: region_accuracy FOLDER... [--peers]
+// 20 px), images per second of processor time of one thread, the 99th percentile of the time of an
+// image, and the shares of the images in which the region is reported as lost, and in which
+// something else is followed. Then how probabilities and their truth compare (expected calibration
+// error), of regions below 20 px and of others. Usage: region_accuracy FOLDER... [--peers]
 //
 // A FOLDER has a folder for each sequence: groundtruth_rect.txt (x,y,width,height by image; NaN
 // where the region is hidden) and img/*.jpg, as in OTB; or NAME.txt beside the folder NAME, as the
 // sequences of UAV123@10fps that github.com/vision4robotics/ARCF-tracker has in seq/. There NAME_1,
-// NAME_2 ... are the parts of the folder NAME, one after the other.
+// NAME_2 ... are the parts of the folder NAME: each starts with the last image of the one before.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <ctime>
 #include <filesystem>
@@ -16,6 +19,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -93,7 +97,7 @@ std::vector<Sequence> SequencesIn(const fs::path& folder) {
       sequence.images = ImagesIn(folder / images);
       sequence.truth = ReadTruth(entry);
       const std::size_t first = used[images];
-      used[images] += sequence.truth.size();
+      used[images] += sequence.truth.size() - 1;
       if (first >= sequence.images.size()) {
         throw InputError(entry.string() + ": has more rows than there are images");
       }
@@ -109,12 +113,18 @@ std::vector<Sequence> SequencesIn(const fs::path& folder) {
   return sequences;
 }
 
-// A tracker of any kind. 'Next' returns the box, or nothing where the region is lost.
+// What a tracker finds in an image.
+struct Found {
+  std::optional<cv::Rect2d> box;      // nothing where the region is lost
+  std::optional<double> probability;  // of a region that is followed, where the tracker has one
+};
+
+// A tracker of any kind.
 class Tracker {
  public:
   virtual ~Tracker() = default;
   virtual void Start(const cv::Mat& image, const cv::Rect2d& box) = 0;
-  virtual std::optional<cv::Rect2d> Next(const cv::Mat& image) = 0;
+  virtual Found Next(const cv::Mat& image) = 0;
 };
 
 class Own : public Tracker {
@@ -122,11 +132,12 @@ class Own : public Tracker {
   void Start(const cv::Mat& image, const cv::Rect2d& box) override {
     tracker_.Mark(image, time_, box);
   }
-  std::optional<cv::Rect2d> Next(const cv::Mat& image) override {
+  Found Next(const cv::Mat& image) override {
     time_ += DurationFromSeconds(kPeriod_s);
     const RegionReport report = tracker_.Track(image, time_);
-    if (report.state == RegionState::kLost) return std::nullopt;
-    return report.box_px;
+    if (report.state == RegionState::kLost) return {};
+    if (report.state == RegionState::kCoasting) return {report.box_px, std::nullopt};
+    return {report.box_px, report.probability};
   }
 
  private:
@@ -140,10 +151,10 @@ class OpenCvTracker : public Tracker {
   explicit OpenCvTracker(cv::Ptr<Peer> peer) : peer_(std::move(peer)) {}
 
   void Start(const cv::Mat& image, const cv::Rect2d& box) override { peer_->init(image, box); }
-  std::optional<cv::Rect2d> Next(const cv::Mat& image) override {
+  Found Next(const cv::Mat& image) override {
     Box box;
-    if (!peer_->update(image, box)) return std::nullopt;
-    return box;
+    if (!peer_->update(image, box)) return {};
+    return {box, std::nullopt};
   }
 
  private:
@@ -174,8 +185,33 @@ std::vector<Competitor> Competitors(bool with_peers) {
 
 struct Score {
   double success = 0, precision = 0;
-  double ms = 0;    // mean of an image
-  double lost = 0;  // share of the images
+  double ms = 0, p99_ms = 0;   // of an image: mean, and 99th percentile
+  double lost = 0, wrong = 0;  // shares of the images
+};
+
+// Compares probabilities with the shares of them that were right, by ten classes of probability.
+class Reliability {
+ public:
+  void Add(double probability, bool is_right) {
+    const int i = std::clamp(static_cast<int>(10 * probability), 0, 9);
+    excess_[i] += probability - is_right;
+    ++count_;
+  }
+  double count() const { return count_; }
+  double ExpectedError() const {
+    double sum = 0;
+    for (const double excess : excess_) sum += std::abs(excess);
+    return sum / std::max(1.0, count_);
+  }
+
+ private:
+  std::array<double, 10> excess_{};
+  double count_ = 0;
+};
+
+// Of regions below 20 px, and of others.
+struct Calibration {
+  Reliability small, large;
 };
 
 double Overlap(const cv::Rect2d& a, const cv::Rect2d& b) {
@@ -184,25 +220,32 @@ double Overlap(const cv::Rect2d& a, const cv::Rect2d& b) {
 }
 
 // A tracker that has lost its region keeps its last box, as the benchmarks have it.
-Score Run(const Sequence& sequence, Tracker* tracker) {
+Score Run(const Sequence& sequence, Tracker* tracker, Calibration* calibration) {
   constexpr int kThresholds = 20;
-  constexpr double kNear_px = 20;
+  constexpr double kNear_px = 20, kSmall_px = 20;
+  constexpr double kOnIt = 0.05;  // overlap of a box that is on the region
   Score score;
   cv::Rect2d box = sequence.truth[0];
   double scored = 0;
-  std::clock_t spent = 0;  // of the processor: other programs do not count
+  std::vector<double> times_ms;  // of the processor: other programs do not count
   for (std::size_t i = 0; i < sequence.images.size(); ++i) {
+    const cv::Rect2d& truth = sequence.truth[i];
     const cv::Mat image = ReadImage(sequence.images[i], PixelFormat::kBgr);
     if (i == 0) {
       tracker->Start(image, box);
     } else {
       const std::clock_t start = std::clock();
-      const std::optional<cv::Rect2d> found = tracker->Next(image);
-      spent += std::clock() - start;
-      if (found) box = *found;
-      score.lost += !found;
+      const Found found = tracker->Next(image);
+      times_ms.push_back(1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
+      if (found.box) box = *found.box;
+      score.lost += !found.box;
+      if (found.probability) {
+        const bool is_right = truth.area() > 0 && Overlap(box, truth) > kOnIt;
+        const bool is_small = std::sqrt(box.area()) < kSmall_px;
+        score.wrong += !is_right;
+        (is_small ? calibration->small : calibration->large).Add(*found.probability, is_right);
+      }
     }
-    const cv::Rect2d& truth = sequence.truth[i];
     if (truth.area() == 0) continue;
     ++scored;
     const double overlap = Overlap(box, truth);
@@ -214,43 +257,55 @@ Score Run(const Sequence& sequence, Tracker* tracker) {
   }
   score.success /= scored;
   score.precision /= scored;
-  const double tracked = std::max(1.0, static_cast<double>(sequence.images.size()) - 1);
-  score.ms = 1e3 * static_cast<double>(spent) / CLOCKS_PER_SEC / tracked;
+  if (times_ms.empty()) return score;
+  const double tracked = static_cast<double>(times_ms.size());
+  score.ms = std::accumulate(times_ms.begin(), times_ms.end(), 0.0) / tracked;
+  std::sort(times_ms.begin(), times_ms.end());
+  score.p99_ms = times_ms[times_ms.size() * 99 / 100];
   score.lost /= tracked;
+  score.wrong /= tracked;
   return score;
 }
 
 void PrintRow(std::string_view sequence, std::string_view tracker, const Score& score) {
-  fmt::print("{:14} {:8} {:7.3f} {:9.3f} {:9.0f} {:6.1f}\n", sequence, tracker, score.success,
-             score.precision, 1e3 / score.ms, 100 * score.lost);
+  fmt::print("{:14} {:8} {:7.3f} {:9.3f} {:9.0f} {:7.1f} {:6.1f} {:7.1f}\n", sequence, tracker,
+             score.success, score.precision, 1e3 / score.ms, score.p99_ms, 100 * score.lost,
+             100 * score.wrong);
   std::fflush(stdout);
 }
 
 int Report(const std::vector<std::string>& folders, bool with_peers) {
   cv::setNumThreads(1);
-  fmt::print("{:14} {:8} {:>7} {:>9} {:>9} {:>6}\n", "sequence", "tracker", "success", "precision",
-             "images/s", "lost %");
+  fmt::print("{:14} {:8} {:>7} {:>9} {:>9} {:>7} {:>6} {:>7}\n", "sequence", "tracker", "success",
+             "precision", "images/s", "p99 ms", "lost %", "wrong %");
   const std::vector<Competitor> competitors = Competitors(with_peers);
   std::vector<Score> means(competitors.size());
+  Calibration calibration;
   double count = 0;
   for (const std::string& folder : folders) {
     for (const Sequence& sequence : SequencesIn(folder)) {
       ++count;
       for (std::size_t i = 0; i < competitors.size(); ++i) {
-        const Score score = Run(sequence, competitors[i].make().get());
+        const Score score = Run(sequence, competitors[i].make().get(), &calibration);
         PrintRow(sequence.name, competitors[i].name, score);
         means[i].success += score.success;
         means[i].precision += score.precision;
         means[i].ms += score.ms;
+        means[i].p99_ms += score.p99_ms;
         means[i].lost += score.lost;
+        means[i].wrong += score.wrong;
       }
     }
   }
   for (std::size_t i = 0; i < competitors.size(); ++i) {
     const Score& sum = means[i];
     PrintRow("mean", competitors[i].name,
-             {sum.success / count, sum.precision / count, sum.ms / count, sum.lost / count});
+             {sum.success / count, sum.precision / count, sum.ms / count, sum.p99_ms / count,
+              sum.lost / count, sum.wrong / count});
   }
+  fmt::print("expected calibration error: {:.3f} of {} boxes below 20 px, {:.3f} of {} others\n",
+             calibration.small.ExpectedError(), calibration.small.count(),
+             calibration.large.ExpectedError(), calibration.large.count());
   return 0;
 }
 
