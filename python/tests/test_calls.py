@@ -33,7 +33,8 @@ def pipeline(calibration):
     (lambda p: kestrel.PoseSample(1), "PoseSample: got 1 by position, expected none"),
     (lambda p: kestrel.PoseSample(time_ns="now"), "PoseSample.time_ns: got 'now', expected: int, ns."),
     (lambda p: kestrel.draw(IMAGE, 2), "draw: 'observation' is 2, expected LandingObservation, "
-                                       "TargetReport, HuntObservation or ObjectReport"),
+                                       "TargetReport, HuntObservation, FollowObservation or "
+                                       "ObjectReport"),
     (lambda p: kestrel.RigidTransform.from_matrix("I"), "RigidTransform.from_matrix: 'matrix' is "
                                                         "'I', expected ndarray[float64[4, 4]]"),
     (lambda p: kestrel.Session("flight", sinks=[3]), "Session: 'sinks' is [3], expected "

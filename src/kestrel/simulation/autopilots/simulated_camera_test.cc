@@ -274,7 +274,7 @@ TEST(SimulatedCameraOptionsTest, ReportsUnknownFault) {
   options.fault.kind = "foggy";
   EXPECT_THAT(ViolationsOf(options),
               testing::ElementsAre("fault.kind is 'foggy', expected none, frozen, black, bright, "
-                                   "slow, stopped or beside"));
+                                   "slow, stopped, beside, late or turned"));
 }
 
 }  // namespace
