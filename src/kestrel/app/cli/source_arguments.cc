@@ -75,8 +75,7 @@ void SourceArguments::AddReadingTo(CLI::App* command) {
                    "Calibration: EuRoC sensor.yaml, Kalibr camchain.yaml, ROS camera_info YAML or "
                    "OpenCV YAML or XML, camodocal, ORB-SLAM; overrides the source's")
       ->type_name("FILE")
-      ->expected(1)
-      ->take_all();
+      ->allow_extra_args(false);  // what follows it is a SOURCE
   command
       ->add_option("--fov", fov_deg,
                    "Field of view of the lens, from the left edge to the right (degrees): a guess "
