@@ -7,7 +7,7 @@
 //   const CameraCalibration calibration = ReadCalibration("camera.yaml");
 //   ObservationSinks sinks;
 //   sinks.Add(OpenMcapSink("flight.mcap", /*replace=*/true, *MakeTask("land", TaskOptions()),
-//                          calibration, [](const std::string& text) { std::cerr << text << "\n";
-//                          }));
+//                          calibration, /*further=*/{},
+//                          [](const std::string& text) { std::cerr << text << "\n"; }));
 
 #include "kestrel/app/foxglove/mcap_sink.h"  // IWYU pragma: export
