@@ -113,7 +113,7 @@ std::vector<Sequence> SequencesIn(const fs::path& folder) {
   return sequences;
 }
 
-// What a tracker finds in an image.
+// A tracker's result for an image.
 struct Found {
   std::optional<cv::Rect2d> box;      // nothing where the region is lost
   std::optional<double> probability;  // of a region that is followed, where the tracker has one
@@ -209,7 +209,7 @@ class Reliability {
   double count_ = 0;
 };
 
-// Of regions below 20 px, and of others.
+// Reliability for regions below 20 px, and for others.
 struct Calibration {
   Reliability small, large;
 };

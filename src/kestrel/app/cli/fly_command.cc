@@ -154,7 +154,7 @@ class Flight {
       source_.Open(choice, arguments_.loop);
     }
     if (source_.live.further.empty() || task_->takes_several_cameras()) return;
-    throw WrongUsage("--hunt: expected one camera");
+    throw WrongUsage(fmt::format("--{}: expected one camera", arguments_.task.name));
   }
 
   // A simulated camera renders where the autopilot says that the UAV is: without one, nothing.

@@ -205,6 +205,17 @@ foxglove::Target TargetMessage(const TargetEstimate& target) {
   return message;
 }
 
+// Returns the part of a result that all tasks have.
+template <class Observation>
+foxglove::FrameResult ResultOf(const Observation& observation, const ViewStatus& status) {
+  foxglove::FrameResult result;
+  result.timestamp = observation.time;
+  result.detect_ms = 1e3 * ToSeconds(observation.detect_time);
+  result.state = status.state;
+  result.reason = status.reason;
+  return result;
+}
+
 // The track of the target: its position, its path, and a text above it.
 foxglove::SceneEntity& AddTrack(const TargetEstimate& target, const TurnNoise& noise, Time time,
                                 const char* state, foxglove::SceneUpdate* scene) {
@@ -295,12 +306,7 @@ foxglove::SceneUpdate FoxgloveScene(const HuntView& view, const HuntObservation&
 }
 
 foxglove::FrameResult FoxgloveResult(const LandingObservation& observation) {
-  const ViewStatus status = LandingStatus(observation);
-  foxglove::FrameResult result;
-  result.timestamp = observation.time;
-  result.detect_ms = 1e3 * ToSeconds(observation.detect_time);
-  result.state = status.state;
-  result.reason = status.reason;
+  foxglove::FrameResult result = ResultOf(observation, LandingStatus(observation));
   if (const auto& found = observation.report.detection) {
     result.detections.push_back(DetectionMessage(*found, observation.center_in_world));
   }
@@ -309,12 +315,7 @@ foxglove::FrameResult FoxgloveResult(const LandingObservation& observation) {
 }
 
 foxglove::FrameResult FoxgloveResult(const FollowObservation& observation) {
-  const ViewStatus status = FollowStatus(observation);
-  foxglove::FrameResult result;
-  result.timestamp = observation.time;
-  result.detect_ms = 1e3 * ToSeconds(observation.detect_time);
-  result.state = status.state;
-  result.reason = status.reason;
+  foxglove::FrameResult result = ResultOf(observation, FollowStatus(observation));
   if (const auto& region = observation.region; region && region->state != RegionState::kLost) {
     const cv::Rect2d& box = region->box_px;
     foxglove::Detection& found = result.detections.emplace_back();
@@ -331,12 +332,7 @@ foxglove::FrameResult FoxgloveResult(const FollowObservation& observation) {
 }
 
 foxglove::FrameResult FoxgloveResult(const HuntView& view, const HuntObservation& observation) {
-  const ViewStatus status = HuntStatus(observation);
-  foxglove::FrameResult result;
-  result.timestamp = observation.time;
-  result.detect_ms = 1e3 * ToSeconds(observation.detect_time);
-  result.state = status.state;
-  result.reason = status.reason;
+  foxglove::FrameResult result = ResultOf(observation, HuntStatus(observation));
   const std::vector<ObjectDetection>& detections = observation.report.detections;
   for (std::size_t i = 0; i < detections.size(); ++i) {
     const bool has_place = i < observation.in_world.size();

@@ -20,12 +20,6 @@ std::vector<cv::Point2f> OutlineOf(const cv::Rect2d& box) {
           corner + cv::Point2f(0, height)};
 }
 
-double DistanceOf(const FollowObservation& observation) {
-  if (!observation.target || !observation.world_from_camera) return kNotKnown;
-  return (observation.target->motion.position() - observation.world_from_camera->translation)
-      .norm();
-}
-
 }  // namespace
 
 std::vector<SeriesDescription> FollowSeries() {
@@ -39,7 +33,7 @@ std::vector<SeriesDescription> FollowSeries() {
 ViewSample FollowSample(const FollowObservation& observation) {
   const auto& [region, target] = std::tie(observation.region, observation.target);
   return {observation.time,
-          {region ? region->probability : kNotKnown, DistanceOf(observation),
+          {region ? region->probability : kNotKnown, observation.distance_m().value_or(kNotKnown),
            target ? target->speed() : kNotKnown, 1e3 * ToSeconds(observation.detect_time)}};
 }
 

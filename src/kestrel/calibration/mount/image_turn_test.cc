@@ -21,9 +21,9 @@ CameraIntrinsics Camera() {
           .distortion = {}};
 }
 
-// What a camera sees of a far texture: 'world_from_camera' is its attitude.
+// Draws a far texture as a camera sees it: 'world_from_camera' is its attitude.
 cv::Mat View(const Eigen::Matrix3d& world_from_camera, Random* random) {
-  // Of fine and of coarse patches, as ground has them.
+  // The texture has fine and coarse patches, as ground has.
   static const cv::Mat texture = [] {
     Random random_of_texture(3);
     cv::Mat sum(1600, 1600, CV_8UC1, cv::Scalar(0));

@@ -196,7 +196,8 @@ std::optional<ClockEstimate> VideoDelay::Estimate(Time begin) const {
   }
   auto estimate = Fit(used);
   if (!estimate) return std::nullopt;
-  // What the residuals do not show, as the motion past a near scene: the halves differ by it.
+  // The two halves differ by errors that the residuals do not show, as of the motion past a near
+  // scene.
   const auto middle = used.begin() + static_cast<std::ptrdiff_t>(used.size() / 2);
   const auto first = Fit({used.begin(), middle});
   const auto second = Fit({middle, used.end()});

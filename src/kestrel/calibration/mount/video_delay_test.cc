@@ -45,7 +45,7 @@ class TurningFlight {
     pose.rotation = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
                     Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitY()) *
                     Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX());
-    // What the tilt accelerates, and gusts.
+    // The tilt accelerates the UAV, and gusts do.
     pose.translation = {0.4 * turning_ * Sum(3, s - 0.3) + 0.5 * Sum(9, s),
                         -0.4 * turning_ * Sum(0, s - 0.3) + 0.5 * Sum(9, s + 2), kHeight_m};
     return pose;

@@ -213,7 +213,7 @@ void FlightProgram::See() {
       continue;
     }
     const auto& frame = std::get<Frame>(event);
-    // Of several cameras the vision itself judges which ones it can use.
+    // The vision itself judges which one of several cameras it can use.
     if (parts_.cameras == 1 && !parts_.sees_repeated && IsFrozen(frame)) continue;
     latency_.step(kVision).Add(Now() - frame.time);
     const TrackSnapshot snapshot = See(frame);

@@ -34,7 +34,8 @@ class LateVideo : public LiveSource {
   void Add(const PoseSample& pose);
   void Add(const GimbalSample& report);
 
-  // What is known about the delay, in a line for the user; changes in flight. Called by any thread.
+  // Returns in a line for the user what is known about the delay; it changes in flight. Called by
+  // any thread.
   std::string InWords() const;
   // The clock offset of the images as they come; nothing as long as it is not known. By any thread.
   std::optional<ClockEstimate> offset() const;

@@ -173,7 +173,7 @@ TEST(NetworkCameraTest, SmearedImagesAreLeftOut) {
   }
 }
 
-TEST(NetworkCameraTest, RefusedAddressIsOneLineWithoutPassword) {
+TEST(NetworkCameraTest, ReportsRefusedAddressWithoutPassword) {
   const Stream stream({.user = "pilot", .password = "correct"});
   const std::string host = "@127.0.0.1:" + std::to_string(stream.server().port());
   for (const auto& [address, words] :

@@ -50,6 +50,11 @@ TargetTrackerOptions FollowPipelineOptions::Tracker() const {
   return tracker;
 }
 
+std::optional<double> FollowObservation::distance_m() const {
+  if (!target || !world_from_camera) return std::nullopt;
+  return (target->motion.position() - world_from_camera->translation).norm();
+}
+
 class FollowPipeline::Impl {
  public:
   Impl(const CameraCalibration& calibration, const FollowPipelineOptions& options)
@@ -90,7 +95,7 @@ class FollowPipeline::Impl {
   const FollowPipelineOptions& options() const { return options_; }
 
  private:
-  FollowObservation Begin(Time time) const;
+  FollowObservation Begin(Time time);
   std::optional<RegionHint> HintFor(const FollowObservation& seen) const;
   void Locate(FollowObservation* seen);
   std::optional<Eigen::Vector3d> FootRay(const RigidTransform& world_from_camera,
@@ -103,17 +108,19 @@ class FollowPipeline::Impl {
   CameraPoses poses_;
   RegionTracker region_;
   bool is_marked_ = false;
+  PoseUncertainty pose_uncertainty_;  // of the present frame, where it has a pose
   TargetTracker tracker_;
   Eigen::Vector2d foot_px_ = Eigen::Vector2d::Zero();  // from the middle of the box, last seen
   double size_px_ = 0;                                 // of the box, last seen
 };
 
-FollowObservation FollowPipeline::Impl::Begin(Time time) const {
+FollowObservation FollowPipeline::Impl::Begin(Time time) {
   FollowObservation seen;
   seen.time = time;
   if (const auto camera = poses_.At(time)) {
     seen.world_from_camera = camera->world_from_camera;
     seen.camera_from_body = camera->camera_from_body;
+    pose_uncertainty_ = camera->uncertainty;
   }
   return seen;
 }
@@ -193,8 +200,7 @@ void FollowPipeline::Impl::Place(double angle_per_px, double size_px, FollowObse
                                        world_from_camera, options_.ground_height_m);
   if (!ground) return;
   const Eigen::Vector3d sight = *ground - world_from_camera.translation;
-  MeasurementNoise noise;
-  if (const auto camera = poses_.At(seen->time)) noise = WithPose(noise, camera->uncertainty);
+  const MeasurementNoise noise = WithPose({}, pose_uncertainty_);
   const double size_rad = angle_per_px * size_px;
   const double level = seen->bearing->head<2>().norm();
   const double stays_rad = std::hypot(kBoxDrift, kFootShare * level) * size_rad;

@@ -58,6 +58,9 @@ struct FollowObservation {
   TrackState track_state = TrackState::kSearching;
   std::optional<TargetEstimate> target;
   Duration detect_time{};  // time of RegionTracker::Mark or Track alone
+
+  // Returns the distance from the camera to the target; nothing when one of them is not known.
+  std::optional<double> distance_m() const;
 };
 
 // Follows what a person has marked in an image, and locates it on the ground: region tracker, pose

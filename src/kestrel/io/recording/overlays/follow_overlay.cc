@@ -27,10 +27,8 @@ cv::Scalar ColorOf(RegionState state) {
 std::string InWords(const FollowObservation& observation) {
   if (!observation.region) return "not marked yet";
   std::string words = ToString(observation.region->state);
-  if (observation.target && observation.world_from_camera) {
-    const double distance_m =
-        (observation.target->motion.position() - observation.world_from_camera->translation).norm();
-    words += fmt::format(", {:.1f} m, {:.1f} m/s", distance_m, observation.target->speed());
+  if (const auto distance_m = observation.distance_m()) {
+    words += fmt::format(", {:.1f} m, {:.1f} m/s", *distance_m, observation.target->speed());
   }
   return words;
 }
