@@ -44,12 +44,13 @@ GstreamerCamera::GstreamerCamera(const std::string& camera, const CameraIntrinsi
       images_(std::make_unique<ImagePool>(kPooledImages)),
       back_off_(DurationFromSeconds(options.reopen_s)) {
   constexpr Duration kFirstFrame = std::chrono::seconds(10);
+  constexpr Duration kStep = std::chrono::milliseconds(100);  // after which a fault is reported
   if (camera.starts_with(kVideoDevice) && options.exposure_property.empty()) {
     v4l2_exposure_ = std::make_unique<V4l2ExposureActuator>(camera);
   }
   Open();
   const Time deadline = Now() + kFirstFrame;
-  while (!first_ && Now() < deadline) first_ = TakeFrame(deadline - Now());
+  while (!first_ && Now() < deadline) first_ = TakeFrame(kStep);
   if (!first_) throw InputError(name_ + ": no frame within 10 s");
 }
 
@@ -131,7 +132,8 @@ std::optional<Event> GstreamerCamera::TakeFrame(Duration timeout) {
     has_ended_ = has_ended && !pipeline_->is_live();
     if (has_ended_) return EndOfStream{};
     if (has_ended) throw InputError(name_ + ": the camera has stopped");
-    if (now - last_arrival_ > DurationFromSeconds(options_.stall_s)) {
+    const bool has_begun = last_time_ > Time::min();
+    if (has_begun && now - last_arrival_ > DurationFromSeconds(options_.stall_s)) {
       throw InputError(fmt::format("{}: no frame for {} s", name_, options_.stall_s));
     }
     return std::nullopt;
