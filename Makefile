@@ -19,7 +19,7 @@ export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
 export CCACHE_BASEDIR ?= $(CURDIR)
 export CCACHE_SLOPPINESS ?= locale
 
-.PHONY: demo console test dds python test-python python-module wheel interop browser bench accuracy figures check-figures options format check asan tsan fuzz install command tests build configure configure-tests \
+.PHONY: demo console test dds python test-python python-module wheel interop browser bench accuracy figures check-figures options format check asan sanitized tsan fuzz install command tests build configure configure-tests \
   package repository package-test
 
 demo: command  ## a simulated landing, or with DATA=<folder> [CAMERA=<file>] your own images
@@ -98,6 +98,11 @@ asan:  ## the unit tests, of all ROOMS or of some, with the address and undefine
 	cmake --preset asan
 	cmake --build --preset asan $(if $(ROOMS),--target $(ROOMS:%=kestrel_%_test))
 	ctest --preset asan -j $$(nproc) $(if $(ROOMS),-R '^($(subst $(space),|,$(strip $(ROOMS))))/')
+
+sanitized:  ## builds what `make asan` of ROOMS and `make fuzz` run
+	scripts/install-deps --check
+	cmake --preset asan
+	cmake --build --preset asan --target $(ROOMS:%=kestrel_%_test) fuzzers
 
 tsan:  ## the unit tests of all ROOMS or of some, `sessions` of whole sessions, with the thread sanitizer
 	scripts/install-deps --check
