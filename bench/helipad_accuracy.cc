@@ -29,7 +29,7 @@ namespace {
 
 constexpr std::array<double, 9> kBinEdges{0.3, 0.6, 1, 2, 4, 6, 8, 11, 15};  // altitude, m
 constexpr std::size_t kBins = kBinEdges.size() - 1;
-const std::array<std::string, 4> kConditions{"calm", "dust", "motion", "shadow's edge"};
+const std::array<std::string, 5> kConditions{"calm", "dust", "motion", "shadow's edge", "glare"};
 const std::array<std::string, 3> kHints{"none", "place known", "followed"};
 
 struct Frame {
@@ -67,6 +67,7 @@ PadImageOptions Conditions(std::size_t condition, Random* random) {
   if (condition == 1) taken.contrast = random->Uniform(0.2, 0.5);
   if (condition == 2) taken.motion_px = random->Uniform(2, 6);
   if (condition == 3) taken.shadow = RandomShadow(random);
+  if (condition == 4) taken.glare = RandomGlare(random);
   return taken;
 }
 
@@ -206,7 +207,7 @@ void PrintLookalikes(const HelipadDetector& detector, const PadRenderer& rendere
     const LookalikeBoard board = RandomLookalikeBoard(white, &random);
     const double altitude = random.Uniform(1.2, 8);
     const RigidTransform pose = RandomPadBelow(altitude, &random);
-    const PadImageOptions taken = Conditions(random.Integer(0, 3), &random);
+    const PadImageOptions taken = Conditions(random.Integer(0, kConditions.size() - 1), &random);
     const cv::Mat image = renderer.Render(board.print, pose, taken, random.Bits());
     const auto look = [&](const TargetHint& hint, const std::string& how) {
       const TargetReport report = detector.Detect(image, hint, *workspace);

@@ -41,6 +41,10 @@ class HelipadFinder {
     return borders_.Covers(pass, least_px, most_px);
   }
   void Begin(const cv::Mat& image, const cv::Rect& part, HelipadCandidateBuffers* buffers) const;
+  void BeginLinear(const cv::Mat& image, const cv::Rect& part,
+                   HelipadCandidateBuffers* buffers) const {
+    borders_.BeginLinear(image, part, &buffers->borders);
+  }
 
   // Writes what one pass finds to 'buffers->candidates'.
   void Find(const cv::Rect& part, int pass, HelipadCandidateBuffers* buffers) const;

@@ -62,16 +62,23 @@ bool HelipadSearch::MayHaveSize(int pass, double distance_m, double error) const
   return helipad_.finder.Covers(pass, kSlant * size_px / (1 + error), size_px / (1 - error));
 }
 
-// Strokes in any light are looked for where no pass finds intact borders: that takes longer.
-int HelipadSearch::Steps() const { return 2 * PlaneBorders::kPasses; }
+// Where no pass finds intact borders, strokes in any light are looked for, which takes longer; then
+// gray values are searched, whose logarithms glare brings together.
+int HelipadSearch::Steps() const { return 3 * PlaneBorders::kPasses; }
 
 void HelipadSearch::SearchStep(const cv::Rect& part, int step) {
   {
     const SearchLog::Timer timer = log_.Time(LandingStage::kAreas);
-    if (step < PlaneBorders::kPasses) {
-      helipad_.finder.Find(part, step, &candidates_);
+    const int pass = step % PlaneBorders::kPasses;
+    const int round = step / PlaneBorders::kPasses;
+    if (round == 1) {
+      helipad_.finder.FindNarrow(part, pass, &candidates_);
     } else {
-      helipad_.finder.FindNarrow(part, step - PlaneBorders::kPasses, &candidates_);
+      if (round == 2 && !is_linear_) {
+        helipad_.finder.BeginLinear(image_, part, &candidates_);
+        is_linear_ = true;
+      }
+      helipad_.finder.Find(part, pass, &candidates_);
     }
   }
   ExamineBorders(candidates_.examined, "no border has the moments of an H or its frame");

@@ -66,6 +66,28 @@ inline PadShadow RandomShadow(Random* random) {
   return shadow;
 }
 
+// Light that glossy paint reflects: a highlight that fades out.
+struct PadGlare {
+  double gray = 0;  // that it adds in its middle
+  Eigen::Vector2d center = Eigen::Vector2d::Zero();
+  double sigma_m = 1;
+
+  double At(const Eigen::Vector2d& place) const {
+    return gray * std::exp(-0.5 * (place - center).squaredNorm() / (sigma_m * sigma_m));
+  }
+};
+
+// Returns a highlight on the pad, or near it.
+inline PadGlare RandomGlare(Random* random) {
+  PadGlare glare;
+  glare.gray = random->Uniform(60, 200);
+  const double x = random->Uniform(-0.5, 0.5);
+  const double y = random->Uniform(-0.5, 0.5);
+  glare.center = {x, y};
+  glare.sigma_m = random->Uniform(0.2, 2);
+  return glare;
+}
+
 // Conditions under which an image of a pad is taken.
 struct PadImageOptions {
   double blur_px = 0.6;  // sigma of the lens
@@ -73,6 +95,7 @@ struct PadImageOptions {
   double noise = 3;      // sigma, gray values
   double contrast = 1;   // of all that is seen
   PadShadow shadow = {};
+  PadGlare glare = {};
 };
 
 // Returns the conditions of a common image.
@@ -154,7 +177,7 @@ class PadRenderer {
       gray = kBlack + ink * (kWhite - kBlack);
     }
     gray = kMiddle + options.contrast * (gray - kMiddle);
-    return gray * options.shadow.LightAt(*place);
+    return gray * options.shadow.LightAt(*place) + options.glare.At(*place);
   }
 
   // Blotches of several sizes.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -11,6 +13,10 @@
 #include "kestrel/vision/search/pad_samples.h"
 
 namespace kestrel {
+
+// Where light is dimmed, the logarithms of gray values keep the contrast of a print; where glare
+// veils it, the gray values themselves.
+enum class Tone { kLogarithm, kLinear };
 
 // Agreement of the gray values of samples with a pad.
 struct InkAgreement {
@@ -46,7 +52,7 @@ class InkSamples {
 
   // Returns how much gray values look like the pad: the mean contrast of a sample over its root
   // mean square, 1 where all have the same; negative when few are in view.
-  double LikenessOf(std::span<const float> gray) const;
+  double LikenessOf(std::span<const float> gray, Tone tone = Tone::kLogarithm) const;
 
  private:
   struct Sample {
@@ -60,8 +66,22 @@ class InkSamples {
     float mean, largest;
   };
 
-  Contrast ContrastAt(std::span<const float> gray, std::size_t i) const;
-  double EvidenceOf(std::span<const float> gray, double area_px2) const;
+  Contrast ContrastAt(std::span<const float> gray, std::size_t i, Tone tone) const;
+  // Of each sample what the tones show at most; NaN where it is out of view.
+  static constexpr std::size_t kMostSamples = 256;
+  struct SampleContrasts {
+    SampleContrasts() {
+      of_usual.fill(NAN);
+      largest.fill(NAN);
+    }
+    std::array<float, kMostSamples> of_usual;  // contrast, as a share of the median of its tone
+    std::array<float, kMostSamples> largest;
+  };
+
+  bool AddTone(std::span<const float> gray, Tone tone, SampleContrasts* seen) const;
+  bool IsClipped(std::span<const float> gray, std::size_t i) const;
+  float ToneAt(float gray, Tone tone) const;
+  double EvidenceOf(std::span<const float> gray, double area_px2, Tone tone) const;
 
   bool white_;
   std::vector<Eigen::Vector2d> places_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/vision/search/ink_samples.h"
 
+#include <algorithm>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -47,6 +48,26 @@ TEST(InkSamples, FindPadLikelyInEvenLightAndAtShadowEdge) {
     EXPECT_EQ(agreement.worst_share, 1);
     EXPECT_EQ(agreement.parts, 2);
   }
+}
+
+// A highlight adds the same to ink and ground, up to what a pixel can hold.
+TEST(InkSamples, FindEachPartUnderGlare) {
+  const InkSamples stripe = Stripe();
+  for (const float veil : {50.F, 120.F}) {
+    std::vector<float> gray = GraysOf(stripe, Even);
+    for (std::size_t i = 0; i < gray.size() / 2; ++i) gray[i] = std::min(255.F, gray[i] + veil);
+    const InkAgreement agreement = stripe.Compare(gray, kArea, DimSample::kWrong);
+    EXPECT_GT(agreement.evidence, 20) << veil;
+    EXPECT_EQ(agreement.worst_share, 1) << veil;
+  }
+}
+
+// A board without the stripe is as bright as a highlight.
+TEST(InkSamples, OverexposedGroundIsNoInk) {
+  const InkSamples stripe = Stripe();
+  std::vector<float> gray = GraysOf(stripe, Even);
+  for (std::size_t i = 0; i < gray.size() / 3; ++i) gray[i] = 255;
+  EXPECT_LT(stripe.Compare(gray, kArea, DimSample::kWrong).worst_share, 0.8);
 }
 
 TEST(InkSamples, DetectExchangedColours) {
