@@ -180,6 +180,8 @@ class PointedFlight : public TestAutopilot {
     SendFromGround(command);
   }
 
+  void ResumePointing() { pointed_->Resume(); }
+
   int set_points = 0;  // sent to the gimbal
   std::string reported;
 
