@@ -44,6 +44,11 @@ export function takeSnapshot(): void {
   command("snapshot");
 }
 
+/** Points the gimbal again that was left to somebody else. */
+export function pointGimbal(): void {
+  command("point");
+}
+
 /** A live image is frozen here, a recording is held by the server. */
 export function togglePlaying(): void {
   if (!isOffered("play")) store.set({ isFrozen: !store.state.isFrozen });

@@ -64,7 +64,8 @@ export type CommandName =
   | "lens-stop"
   | "lens-save"
   | "settings"
-  | "mark";
+  | "mark"
+  | "point";
 
 export interface Hello {
   kind: "hello";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-import { nextTheme, takeSnapshot, toggleHelp, toggleMute, toggleRecording } from "../actions";
+import { nextTheme, pointGimbal, takeSnapshot, toggleHelp, toggleMute, toggleRecording } from "../actions";
 import { nextColorStep } from "../color_view";
 import { silenceInWords } from "../freshness";
 import type { Status } from "../protocol";
@@ -225,6 +225,7 @@ function Actions() {
         </button>
       )}
       {offers?.includes("snapshot") && <button onClick={takeSnapshot}>Snapshot</button>}
+      {offers?.includes("point") && <button onClick={pointGimbal}>Point gimbal</button>}
       {canAlarm && (
         <button aria-pressed={isMuted} onClick={toggleMute}>
           Mute

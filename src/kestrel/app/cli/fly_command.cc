@@ -13,6 +13,7 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
@@ -191,9 +192,15 @@ class Flight {
         options_.fly.recorder.free_space_mb);
     console_ = sinks_.Add(
         std::make_unique<FlightConsole>(options, WithoutPassword(arguments_.source.sources.front()),
-                                        views, examination, live->channels(), Colors()));
+                                        views, examination, live->channels(), Colors(), Points()));
     PrintLinks(console_->urls());
     Log("for Foxglove: " + console_->viewer_url());
+  }
+
+  // True where the session points a gimbal.
+  bool Points() const {
+    return (arguments_.point || arguments_.guide) && source_.live.calibration.gimbal &&
+           std::holds_alternative<LandingView>(View());
   }
 
   // Folders where the page of colours of a hunt keeps frames and models.
@@ -289,6 +296,11 @@ class Flight {
                   session_->Mark(captured, box);
                   return logged(
                       fmt::format("follows a box of {:.0f} x {:.0f} px", box.width, box.height));
+                },
+            .point =
+                [this, logged] {
+                  session_->ResumePointing();
+                  return logged("requests the gimbal again");
                 },
             .settings =
                 [this](const std::vector<std::string>& settings) {

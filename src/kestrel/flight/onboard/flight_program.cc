@@ -12,6 +12,7 @@
 
 #include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/comms/mavlink/silence.h"
+#include "kestrel/core/base/error.h"
 #include "kestrel/core/base/options.h"
 #include "kestrel/flight/session/autopilot_report.h"
 
@@ -299,7 +300,7 @@ void FlightProgram::Communicate() {
     const Time now = Now();
     parts_.autopilot->Tick(now);
     SendTarget(now);
-    if (gimbal_) gimbal_->Point(now, track_.Get(), poses_);
+    if (gimbal_) Point(now);
     WatchFlight(now);
     if (guard_ && !guard_->Watch(now, *guided_)) {
       End({FlightOutcome::kNotLanded, {}, guard_->reason()});
@@ -308,6 +309,16 @@ void FlightProgram::Communicate() {
   const auto severity = ExitStatus(end_) == 0 ? mavlink::kSeverityInfo : mavlink::kSeverityWarning;
   parts_.autopilot->Announce(severity, "Kestrel: " + InWords(end_));
   if (parts_.guard != nullptr) parts_.guard->SendGoodbye();
+}
+
+void FlightProgram::Point(Time now) {
+  if (resumes_pointing_.exchange(false)) gimbal_->Resume();
+  gimbal_->Point(now, track_.Get(), poses_);
+}
+
+void FlightProgram::ResumePointing() {
+  if (parts_.pointed == nullptr) throw InputError("no gimbal is pointed: expected --point");
+  resumes_pointing_ = true;
 }
 
 void FlightProgram::SendTarget(Time now) {

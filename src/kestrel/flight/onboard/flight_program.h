@@ -87,6 +87,10 @@ class FlightProgram {
   // Calls 'action' between two frames: the vision waits for it. By any thread.
   void BetweenFrames(const std::function<void()>& action);
 
+  // Points the gimbal again that was left alone. Throws InputError where none is pointed. Called by
+  // any thread.
+  void ResumePointing();
+
   // Returns the present state. Called by any thread.
   FlightReport Report() const;
 
@@ -113,6 +117,7 @@ class FlightProgram {
   void Take(Event event);
   void TakePose(const PoseSample& pose);
   void TakeGimbal(const GimbalSample& report);
+  void Point(Time now);
   void SendTarget(Time now);
   void WatchFlight(Time now);
   LandingWatchInput LandingInput(Time now);
@@ -146,7 +151,8 @@ class FlightProgram {
   std::optional<TargetSender> sender_;
   std::optional<GuidedFlight> guided_;
   std::optional<PointedGimbal> gimbal_;
-  TurnNoise noise_;  // of the predicted track
+  std::atomic<bool> resumes_pointing_{false};  // set by any thread
+  TurnNoise noise_;                            // of the predicted track
   std::optional<GuardWatch> guard_;
   LandingWatch landing_;
   Time landing_due_{};   // when the landing is looked at next

@@ -95,6 +95,7 @@ class Flight : public LiveSession {
   void Mark(Time frame, const cv::Rect2d& box_px) override {
     BetweenFrames([&] { mutable_vision().Mark(frame, box_px); });
   }
+  void ResumePointing() override { program_->ResumePointing(); }
   void BetweenFrames(const std::function<void()>& action) override {
     program_->BetweenFrames(action);
   }

@@ -80,6 +80,10 @@ void PointedGimbal::Point(Time now, const TrackSnapshot& track, const PoseHistor
   WatchFollowing(now, aim, HeadingOf(world_from_pivot.rotation));
 }
 
+void PointedGimbal::Resume() {
+  if (manager_.control() == Control::kTaken) manager_.TakeControl();
+}
+
 // Control is requested when the UAV flies, and again when the pilot gives the guided mode.
 void PointedGimbal::WatchFlight() {
   const bool is_guided = autopilot_.is_here() ? autopilot_.is_guided_mode() : was_guided_;
@@ -111,8 +115,8 @@ void PointedGimbal::ReportControl(Time now) {
   if (control == Control::kOwn) Notify(mavlink::kSeverityInfo, "points the gimbal at the pattern");
   if (control != Control::kTaken) return;
   Notify(mavlink::kSeverityWarning,
-         fmt::format("{} moves the gimbal: it is left alone until control is handed back, or the "
-                     "guided mode given anew",
+         fmt::format("{} moves the gimbal: it is left alone until control is handed back, the "
+                     "guided mode given anew, or pointing requested on the page",
                      manager_.taken_by()));
 }
 

@@ -25,8 +25,8 @@ namespace kestrel {
 GimbalView GimbalViewOf(const CameraCalibration& calibration, const PadInSight& pad);
 
 // Points the camera's gimbal at the target while the UAV flies, and informs the user. A gimbal that
-// somebody else moves is left alone until control is handed back, or the pilot gives the guided
-// mode anew. Used by the link's thread only.
+// somebody else moves is left alone until control is handed back, the pilot gives the guided mode
+// anew, or the user requests it. Used by the link's thread only.
 class PointedGimbal {
  public:
   // 'calibration' has a gimbal. 'report': receives lines for the user. The pointers must outlive
@@ -38,6 +38,9 @@ class PointedGimbal {
   // Takes a packet of the link, and a report of the gimbal.
   void Handle(const mavlink::Packet& packet) { manager_.Handle(packet); }
   void TakeReport(const GimbalSample& report) { report_sample_ = report; }
+
+  // Takes a gimbal that was left alone, as the user requests.
+  void Resume();
 
   // Sends what is due at 'now'.
   void Point(Time now, const TrackSnapshot& track, const PoseHistory& poses);

@@ -96,6 +96,9 @@ class LiveSession : public Session {
   virtual void Change(const TaskOptions& options, std::optional<double> altitude_m) = 0;
   // As Vision::Mark: a person's mark on a picture may be two seconds late.
   virtual void Mark(Time frame, const cv::Rect2d& box_px) = 0;
+  // Points the gimbal again that was left to somebody else. Throws InputError where none is
+  // pointed.
+  virtual void ResumePointing() = 0;
   // Calls 'action' between two frames: the vision waits for it.
   virtual void BetweenFrames(const std::function<void()>& action) = 0;
   // Starts and stops recordings.

@@ -102,6 +102,9 @@ TEST_P(PointedGimbalTest, LeavesGimbalToGroundStationInControl) {
   flight.set_points = 0;
   flight.Fly(10);
   EXPECT_EQ(flight.set_points, 0);
+  flight.ResumePointing();
+  flight.Fly(5);
+  EXPECT_GT(flight.set_points, 60);
 }
 
 // ArduPilot obeys whoever sends last: two of them would share the gimbal.

@@ -56,12 +56,14 @@ class TestAutopilot {
     model.Handle(message, 1, kOnboardComputer, now);
   }
 
-  // Continues for 'seconds'; 'act' is called every 20 ms.
+  static constexpr double kStep_s = 0.02;
+
+  // Continues for 'seconds'; 'act' is called every kStep_s.
   template <class Act>
   void Run(double seconds, Act&& act) {
     const Time end = now + DurationFromSeconds(seconds);
     while (now < end) {
-      now += std::chrono::milliseconds(20);
+      now += DurationFromSeconds(kStep_s);
       model.Step(now);
       act();
     }

@@ -12,6 +12,7 @@
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <opencv2/core.hpp>
@@ -81,6 +82,13 @@ class TrueDetector : public TargetDetector {
   mutable Random random_{1};
 };
 
+// What a camera sees, and what is wrong with it.
+struct TestEye {
+  double sight_range_m = kTestSightRange_m;
+  double late_s = 0;      // of the stamps
+  double turned_deg = 0;  // of the mount, about the body's x axis
+};
+
 // Statistics of the angle between the camera's axis and the target, deg.
 struct PointingErrors {
   double rms = 0;
@@ -95,6 +103,7 @@ class PointedFlight : public TestAutopilot {
   struct Choice {
     bool has_gimbal = true;  // the camera is on one
     double half_view_deg = kTestHalfView_deg;
+    std::vector<TestEye> cameras = std::vector<TestEye>(1);
     bool guides = false;
     std::uint64_t seed = 1;
   };
@@ -107,8 +116,8 @@ class PointedFlight : public TestAutopilot {
       : TestAutopilot(firmware, options, vehicle, choice.seed),
         half_view_(Radians(choice.half_view_deg)),
         camera_(TestCamera(choice.has_gimbal, choice.half_view_deg)),
-        pipeline_(camera_, std::make_unique<TrueDetector>(CameraModel(camera_.intrinsics), &seen_),
-                  PipelineOptions()),
+        eyes_(EyesOf(choice.cameras)),
+        pipeline_(std::vector(choice.cameras.size(), camera_), Detectors(), PipelineOptions()),
         connection_("udpout://127.0.0.1:9", {},
                     [this](std::span<const std::uint8_t> frame, Time) { Carry(frame); }),
         autopilot_(LinkOptions(choice.has_gimbal), &connection_, Listener()) {
@@ -153,8 +162,11 @@ class PointedFlight : public TestAutopilot {
 
   // Angle between the camera's axis and the target, deg.
   double Error() const {
-    return Degrees(AngleOff(WorldFromCamera().Inverse() * world.PatternAt(now)));
+    return Degrees(AngleOff(WorldFromCamera(eyes_.front()).Inverse() * world.PatternAt(now)));
   }
+  const CameraState& StateOf(std::size_t camera) const { return pipeline_.camera_state(camera); }
+  // Time for which a camera has been left out because it contradicts the other, s.
+  double LeftOutFor(std::size_t camera) const { return eyes_[camera].left_out_s; }
   bool has_track() const { return track_.state == TrackState::kTracking; }
 
   // A message of a ground station.
@@ -168,6 +180,8 @@ class PointedFlight : public TestAutopilot {
     SendFromGround(command);
   }
 
+  void ResumePointing() { pointed_->Resume(); }
+
   int set_points = 0;  // sent to the gimbal
   std::string reported;
 
@@ -177,7 +191,30 @@ class PointedFlight : public TestAutopilot {
     Time captured;
     std::optional<RigidTransform> camera_from_target;  // where the pad is in view
   };
+  struct Eye {
+    TestEye own;
+    Time capture_due;
+    std::deque<Image> images;
+    std::optional<RigidTransform> seen;  // of the image that the vision has
+    double left_out_s = 0;
+  };
 
+  // Their images come one after the other.
+  static std::vector<Eye> EyesOf(const std::vector<TestEye>& cameras) {
+    std::vector<Eye> eyes;
+    for (const TestEye& each : cameras) {
+      eyes.push_back({each, kTestStart + eyes.size() * std::chrono::milliseconds(20), {}, {}, 0});
+    }
+    return eyes;
+  }
+  std::vector<std::unique_ptr<const TargetDetector>> Detectors() const {
+    std::vector<std::unique_ptr<const TargetDetector>> detectors;
+    for (const Eye& eye : eyes_) {
+      detectors.push_back(
+          std::make_unique<TrueDetector>(CameraModel(camera_.intrinsics), &eye.seen));
+    }
+    return detectors;
+  }
   static LandingPipelineOptions PipelineOptions() {
     LandingPipelineOptions options;
     options.pose_extrapolation_s = 0.1;
@@ -204,9 +241,12 @@ class PointedFlight : public TestAutopilot {
     return listener;
   }
 
-  RigidTransform WorldFromCamera() const {
+  RigidTransform WorldFromCamera(const Eye& eye) const {
     const RigidTransform& body = model.truth().world_from_body;
-    if (!camera_.gimbal) return body * *camera_.body_from_camera;
+    if (!camera_.gimbal) {
+      const RigidTransform turn{RotationBy({Radians(eye.own.turned_deg), 0, 0}), {0, 0, 0}};
+      return body * turn * *camera_.body_from_camera;
+    }
     const GimbalAttitude attitude{model.world_from_platform(), YawFrame::kEarth};
     return WorldFromPlatform(body, camera_.gimbal->body_from_pivot, attitude) *
            camera_.gimbal->platform_from_camera;
@@ -235,33 +275,40 @@ class PointedFlight : public TestAutopilot {
       std::visit([this](const auto& typed) { Deliver(typed); }, message);
     }
     autopilot_.Tick(now);
-    Capture();
-    See();
+    for (std::size_t i = 0; i < eyes_.size(); ++i) {
+      Capture(&eyes_[i]);
+      See(i);
+      if (StateOf(i).health == CameraHealth::kContradicts) eyes_[i].left_out_s += kStep_s;
+    }
     if (guided_) guided_->Fly(now, track_, poses_);
     if (pointed_) pointed_->Point(now, track_, poses_);
   }
-  void Capture() {
+  void Capture(Eye* eye) {
     constexpr Duration kPeriod = std::chrono::milliseconds(60);
     constexpr double kNearest_m = 0.45;
-    if (now < capture_due_) return;
-    capture_due_ = now + kPeriod;
-    const RigidTransform camera_from_target = WorldFromCamera().Inverse() * world.PatternAt(now);
+    if (now < eye->capture_due) return;
+    eye->capture_due = now + kPeriod;
+    const RigidTransform camera_from_target =
+        WorldFromCamera(*eye).Inverse() * world.PatternAt(now);
     const double distance_m = camera_from_target.translation.norm();
-    Image image{now, std::nullopt};
-    if (AngleOff(camera_from_target) < half_view_ && distance_m < kTestSightRange_m &&
+    Image image{now + DurationFromSeconds(eye->own.late_s), std::nullopt};
+    if (AngleOff(camera_from_target) < half_view_ && distance_m < eye->own.sight_range_m &&
         distance_m > kNearest_m) {
       image.camera_from_target = camera_from_target;
     }
-    images_.push_back(image);
+    eye->images.push_back(image);
   }
   // The vision is done some time after the exposure.
-  void See() {
+  void See(std::size_t camera) {
     constexpr Duration kLatency = std::chrono::milliseconds(40);
-    if (images_.empty() || now < images_.front().captured + kLatency) return;
-    const Image image = images_.front();
-    images_.pop_front();
-    seen_ = image.camera_from_target;
-    const LandingObservation seen = pipeline_.Process(cv::Mat(), image.captured);
+    Eye& eye = eyes_[camera];
+    if (eye.images.empty() || now < eye.images.front().captured + kLatency) return;
+    const Image image = eye.images.front();
+    eye.images.pop_front();
+    eye.seen = image.camera_from_target;
+    picture_.setTo(++pictures_ % 256);
+    const LandingObservation seen = pipeline_.Process(picture_, image.captured, camera);
+    if (!StateOf(camera).is_used()) return;
     track_.captured = image.captured;
     track_.state = seen.track_state;
     track_.target = seen.target;
@@ -278,8 +325,10 @@ class PointedFlight : public TestAutopilot {
 
   double half_view_;
   CameraCalibration camera_;
-  std::optional<RigidTransform> seen_;
+  std::vector<Eye> eyes_;  // their places do not change
   LandingPipeline pipeline_;
+  cv::Mat picture_{8, 8, CV_8UC1};  // differs from one to the next
+  int pictures_ = 0;
   mavlink::PacketParser companion_, from_autopilot_;
   mavlink::PacketWriter writer_{1, 1};
   PoseHistory poses_{512, std::chrono::milliseconds(500)};
@@ -288,8 +337,6 @@ class PointedFlight : public TestAutopilot {
   std::optional<PointedGimbal> pointed_;
   std::optional<GuidedFlight> guided_;
   TrackSnapshot track_;
-  std::deque<Image> images_;
-  Time capture_due_{};
 };
 
 }  // namespace kestrel

@@ -69,41 +69,58 @@ bool CameraWatch::IsSeenByOthers(std::size_t camera, Time time, Duration age) co
   });
 }
 
-void CameraWatch::AddSighting(std::size_t camera, Time time, SightingPlace place, double offset_m,
-                              const std::function<bool(std::size_t)>& has_wrong_tilt) {
+bool CameraWatch::AddSighting(std::size_t camera, Time time, SightingPlace place, double offset_m,
+                              const Refutes& refutes) {
   Watched& own = cameras_[camera];
-  if (own.state.health == CameraHealth::kContradicts) return Reconsider(&own, time, place);
+  if (own.state.health == CameraHealth::kContradicts) {
+    return Reconsider(camera, time, place, offset_m, refutes);
+  }
   own.seen = time;
   if (place == SightingPlace::kStart) {
-    moved_by_ = own.outside > 0 ? std::optional(camera) : std::nullopt;
+    const bool are_all_used = std::none_of(
+        cameras_.begin(), cameras_.end(),
+        [](const Watched& each) { return each.state.health == CameraHealth::kContradicts; });
+    moved_by_ = own.outside > 0 && are_all_used ? std::optional(camera) : std::nullopt;
     own.outside = 0;
     confirmed_ = camera;
   }
   if (place == SightingPlace::kInside) Confirm(camera);
-  if (place != SightingPlace::kOutside) return;
-  if (own.outside == 0) own.confirmed_by_others = 0;
-  own.offsets_m[static_cast<std::size_t>(own.outside++ % kSightings)] = offset_m;
-  if (own.outside < kSightings || own.confirmed_by_others < kConfirmations) return;
-  auto offsets_m = own.offsets_m;
-  LeaveOut(Contradicting(camera, has_wrong_tilt), MedianInPlace(offsets_m), time);
+  if (place != SightingPlace::kOutside || !CountOutside(&own, offset_m)) return false;
+  LeaveOut(Contradicting(camera, refutes), MedianInPlace(own.offsets_m), time);
+  return true;
+}
+
+// True when the camera has contradicted the others for long enough.
+bool CameraWatch::CountOutside(Watched* camera, double offset_m) {
+  if (camera->outside == 0) camera->confirmed_by_others = 0;
+  camera->offsets_m[static_cast<std::size_t>(camera->outside++ % kSightings)] = offset_m;
+  return camera->outside >= kSightings && camera->confirmed_by_others >= kConfirmations;
 }
 
 // A camera that comes and goes must agree for longer each time.
-void CameraWatch::Reconsider(Watched* camera, Time time, SightingPlace place) {
+bool CameraWatch::Reconsider(std::size_t camera, Time time, SightingPlace place, double offset_m,
+                             const Refutes& refutes) {
+  Watched& own = cameras_[camera];
   if (place != SightingPlace::kInside) {
-    camera->agreements = 0;
-    return;
+    own.agreements = 0;
+    if (!CountOutside(&own, offset_m)) return false;
+    own.outside = 0;
+    if (!refutes(confirmed_, camera)) return false;
+    LeaveOut(confirmed_, MedianInPlace(own.offsets_m), time);
+    own.state = {CameraHealth::kGood, time};
+    return true;
   }
-  if (camera->agreements++ == 0) {
-    camera->agrees_since = time;
-    camera->confirmed_by_others = 0;
+  if (own.agreements++ == 0) {
+    own.agrees_since = time;
+    own.confirmed_by_others = 0;
   }
-  if (camera->agreements < kSightings || camera->confirmed_by_others < kConfirmations ||
-      time - camera->agrees_since < camera->probation) {
-    return;
+  if (own.agreements < kSightings || own.confirmed_by_others < kConfirmations ||
+      time - own.agrees_since < own.probation) {
+    return false;
   }
-  camera->state = {CameraHealth::kGood, time};
-  camera->probation *= 2;
+  own.state = {CameraHealth::kGood, time};
+  own.probation *= 2;
+  return false;
 }
 
 void CameraWatch::Confirm(std::size_t camera) {
@@ -113,11 +130,10 @@ void CameraWatch::Confirm(std::size_t camera) {
   confirmed_ = camera;
 }
 
-std::size_t CameraWatch::Contradicting(
-    std::size_t camera, const std::function<bool(std::size_t)>& has_wrong_tilt) const {
-  const bool is_other =
-      moved_by_ == confirmed_ || (has_wrong_tilt(confirmed_) && !has_wrong_tilt(camera));
-  return is_other ? confirmed_ : camera;
+std::size_t CameraWatch::Contradicting(std::size_t camera, const Refutes& refutes) const {
+  if (refutes(confirmed_, camera)) return confirmed_;
+  if (refutes(camera, confirmed_)) return camera;
+  return moved_by_ == confirmed_ ? confirmed_ : camera;
 }
 
 void CameraWatch::LeaveOut(std::size_t camera, double offset_m, Time time) {

@@ -25,20 +25,24 @@ enum class SightingPlace {
 
 // Decides which of several cameras with one track can be used. A camera contradicts when several of
 // its sightings in a row are outside of the track while those of another camera are inside. Of the
-// two, the one is left out that has moved the track before, or whose views alone contradict the
-// UAV's attitude, or else the one that is outside. It is used again when it has agreed for a while,
-// and as long as no other camera sees the target.
+// two, the one is left out whose own views refute it, or that has moved the track before, or else
+// the one that is outside; as long as they contradict each other, what refutes the one that is used
+// exchanges them. A camera that is left out is used again when it has agreed for a while, and as
+// long as no other camera sees the target.
 class CameraWatch {
  public:
+  // Whether the own views of 'camera' show that it is the one of the two that is wrong.
+  using Refutes = std::function<bool(std::size_t camera, std::size_t other)>;
+
   explicit CameraWatch(std::size_t cameras) : cameras_(cameras) {}
 
   // Takes a frame; all times are on one clock. Does not allocate.
   void AddFrame(std::size_t camera, const cv::Mat& image, Time time);
 
   // Takes the place where the newest frame of 'camera' showed the target. 'offset_m': distance from
-  // the track. 'has_wrong_tilt': whether the views of a camera contradict the attitude.
-  void AddSighting(std::size_t camera, Time time, SightingPlace place, double offset_m,
-                   const std::function<bool(std::size_t camera)>& has_wrong_tilt);
+  // the track. True when a camera is left out for it.
+  bool AddSighting(std::size_t camera, Time time, SightingPlace place, double offset_m,
+                   const Refutes& refutes);
 
   // True when the newest frame of the camera can be used.
   bool IsUsed(std::size_t camera) const;
@@ -69,16 +73,18 @@ class CameraWatch {
 
   static void Set(Watched* camera, CameraHealth health, Time time);
   void UseThoseThatAreAlone(Time time);
-  void Reconsider(Watched* camera, Time time, SightingPlace place);
+  static bool CountOutside(Watched* camera, double offset_m);
+  bool Reconsider(std::size_t camera, Time time, SightingPlace place, double offset_m,
+                  const Refutes& refutes);
   void Confirm(std::size_t camera);
-  std::size_t Contradicting(std::size_t camera,
-                            const std::function<bool(std::size_t)>& has_wrong_tilt) const;
+  std::size_t Contradicting(std::size_t camera, const Refutes& refutes) const;
   void LeaveOut(std::size_t camera, double offset_m, Time time);
 
   std::vector<Watched> cameras_;
   std::optional<Time> begin_;
-  std::size_t confirmed_ = 0;            // camera of the newest sighting inside
-  std::optional<std::size_t> moved_by_;  // camera that moved the track; nothing once another agreed
+  std::size_t confirmed_ = 0;  // camera of the newest sighting inside
+  // Camera that moved the track while all others were used; nothing once another agreed.
+  std::optional<std::size_t> moved_by_;
 };
 
 }  // namespace kestrel

@@ -22,7 +22,7 @@ class CameraWatchTest : public ::testing::Test {
     watch_.AddFrame(camera, cv::Mat(8, 8, CV_8UC1, cv::Scalar(++frames_ % 256)), time_);
     if (!watch_.IsJudged(camera)) return;
     watch_.AddSighting(camera, time_, place, offset_m,
-                       [this](std::size_t each) { return each == tilted_; });
+                       [this](std::size_t each, std::size_t) { return each == refuted_; });
   }
   // The second camera sees the target elsewhere than the first one, until it is left out.
   void Contradict() {
@@ -37,7 +37,7 @@ class CameraWatchTest : public ::testing::Test {
   CameraWatch watch_{2};
   Time time_ = TimeFromNanoseconds(1'000'000'000);
   int frames_ = 0;
-  std::size_t tilted_ = 2;  // camera whose views contradict the attitude; none
+  std::size_t refuted_ = 2;  // camera that its own views refute; none
 };
 
 TEST_F(CameraWatchTest, SilentCameraIsLeftOutUntilItSendsAgain) {
@@ -153,8 +153,8 @@ TEST_F(CameraWatchTest, CameraThatHasMovedTheTrackIsTheOneThatIsLeftOut) {
   EXPECT_EQ(HealthOf(kSecond), CameraHealth::kContradicts);
 }
 
-TEST_F(CameraWatchTest, CameraThatContradictsTheAttitudeIsTheOneThatIsLeftOut) {
-  tilted_ = kSecond;
+TEST_F(CameraWatchTest, CameraThatItsOwnViewsRefuteIsTheOneThatIsLeftOut) {
+  refuted_ = kSecond;
   See(kSecond, SightingPlace::kStart);
   for (int i = 0; i < 10; ++i, Step()) {
     See(kSecond, SightingPlace::kInside);
@@ -162,6 +162,38 @@ TEST_F(CameraWatchTest, CameraThatContradictsTheAttitudeIsTheOneThatIsLeftOut) {
   }
   EXPECT_EQ(HealthOf(kFirst), CameraHealth::kGood);
   EXPECT_EQ(HealthOf(kSecond), CameraHealth::kContradicts);
+}
+
+// What shows the fault comes later than the decision: the UAV has not turned before.
+TEST_F(CameraWatchTest, CameraThatItsOwnViewsRefuteLaterIsExchanged) {
+  Contradict();
+  ASSERT_EQ(HealthOf(kSecond), CameraHealth::kContradicts);
+  refuted_ = kFirst;
+  Contradict();
+  EXPECT_EQ(HealthOf(kFirst), CameraHealth::kContradicts);
+  EXPECT_EQ(HealthOf(kSecond), CameraHealth::kGood);
+}
+
+// The camera that has come in draws the track to where it sees the target; when the other one
+// agrees for a while and contradicts again, nobody has moved the track against it.
+TEST_F(CameraWatchTest, CameraThatWasExchangedHasNotMovedTheTrack) {
+  Contradict();
+  refuted_ = kFirst;
+  Contradict();
+  refuted_ = 2;
+  for (int i = 0; i < 4; ++i, Step()) See(kSecond, SightingPlace::kOutside, 1);
+  See(kSecond, SightingPlace::kStart);
+  for (int i = 0; i < 30; ++i, Step()) {
+    See(kSecond, SightingPlace::kInside);
+    See(kFirst, SightingPlace::kInside);
+  }
+  ASSERT_EQ(HealthOf(kFirst), CameraHealth::kGood);
+  for (int i = 0; i < 10; ++i, Step()) {
+    See(kSecond, SightingPlace::kInside);
+    See(kFirst, SightingPlace::kOutside, 1);
+  }
+  EXPECT_EQ(HealthOf(kFirst), CameraHealth::kContradicts);
+  EXPECT_EQ(HealthOf(kSecond), CameraHealth::kGood);
 }
 
 }  // namespace

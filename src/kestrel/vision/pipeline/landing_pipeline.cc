@@ -15,6 +15,7 @@
 #include "kestrel/vision/pipeline/camera_poses.h"
 #include "kestrel/vision/pipeline/camera_watch.h"
 #include "kestrel/vision/pipeline/input_contradictions.h"
+#include "kestrel/vision/pipeline/stamp_lag.h"
 #include "kestrel/vision/pipeline/world_location.h"
 
 namespace kestrel {
@@ -32,6 +33,13 @@ Eigen::Matrix3d BetweenCameras(const Eigen::Vector3d& center_in_camera,
                                MeasurementNoise noise) {
   noise.pose_bias_m = 0;
   return SharedCovarianceInWorld(center_in_camera, world_from_camera, noise);
+}
+
+std::vector<std::unique_ptr<const TargetDetector>> ListOf(
+    std::unique_ptr<const TargetDetector> detector) {
+  std::vector<std::unique_ptr<const TargetDetector>> list;
+  list.push_back(std::move(detector));
+  return list;
 }
 
 Duration ClockOffset(const CameraCalibration& calibration) {
@@ -57,9 +65,10 @@ std::string MissInWords(const LandingObservation& observation) {
 
 class LandingPipeline::Impl {
  public:
-  // 'own_detector': null for those that the options describe.
+  // 'own_detectors': of each camera; none for those that the options describe.
   Impl(std::span<const CameraCalibration> cameras,
-       std::unique_ptr<const TargetDetector> own_detector, const LandingPipelineOptions& options);
+       std::vector<std::unique_ptr<const TargetDetector>> own_detectors,
+       const LandingPipelineOptions& options);
 
   PoseStatus AddPose(const PoseSample& sample);
   PoseStatus AddGimbal(const GimbalSample& sample);
@@ -115,6 +124,7 @@ class LandingPipeline::Impl {
     CameraPoses poses;
     Duration ahead;  // the first camera's clock minus that of this camera's images
     CameraLag lag;   // of the stamps, beside 'ahead'; none of the first camera, which is the clock
+    StampLag stamp_lag;  // what its sightings alone say about the stamps; of several cameras
     std::optional<RigidTransform> fixed_mount;  // camera from body
     bool is_track_trusted = true;  // the last detection was where the track predicted it
     std::optional<Sighting> last;
@@ -125,6 +135,7 @@ class LandingPipeline::Impl {
 
   bool has_several() const { return eyes_.size() > 1; }
   bool IsUsed(std::size_t camera) const { return !has_several() || watch_.IsUsed(camera); }
+  bool IsJudged(std::size_t camera) const { return !has_several() || watch_.IsJudged(camera); }
   void Detect(const cv::Mat& image, Eye* eye, LandingObservation* observation) const;
   void LookForOthers(const cv::Mat& image, Eye* eye, LandingObservation* observation);
   GivenView GivenViewOf(const LandingObservation& observation) const;
@@ -142,10 +153,11 @@ class LandingPipeline::Impl {
   void Judge(const TargetMeasurement& measurement, const Eigen::Vector3d& slip_mps,
              const std::optional<TargetEstimate>& expected, const LandingObservation& observation,
              Eye* eye);
+  bool IsRefuted(std::size_t camera, std::size_t other) const;
   void Remember(const LandingObservation& observation, Eye* eye);
 
   LandingPipelineOptions options_;
-  bool is_detector_own_;  // it does not come from the options
+  bool are_detectors_own_;  // they do not come from the options
   std::vector<Eye> eyes_;
   CameraWatch watch_;  // of several cameras
   double pose_time_sigma_s_ = 0;
@@ -166,19 +178,19 @@ LandingPipeline::Impl::Eye::Eye(const CameraCalibration& camera,
       fixed_mount(CameraFromBody(camera)) {}
 
 LandingPipeline::Impl::Impl(std::span<const CameraCalibration> cameras,
-                            std::unique_ptr<const TargetDetector> own_detector,
+                            std::vector<std::unique_ptr<const TargetDetector>> own_detectors,
                             const LandingPipelineOptions& options)
     : options_(Checked(options)),
-      is_detector_own_(own_detector != nullptr),
+      are_detectors_own_(!own_detectors.empty()),
       watch_(cameras.size()),
       tracker_(options.tracker) {
-  for (const CameraCalibration& camera : cameras) {
-    eyes_.emplace_back(camera,
-                       is_detector_own_ ? std::move(own_detector)
-                                        : MakeTargetDetector(CameraModel(camera.intrinsics),
-                                                             options.target, options.detector),
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    eyes_.emplace_back(cameras[i],
+                       are_detectors_own_ ? std::move(own_detectors.at(i))
+                                          : MakeTargetDetector(CameraModel(cameras[i].intrinsics),
+                                                               options.target, options.detector),
                        options, ClockOffset(cameras.front()));
-    if (is_detector_own_) continue;
+    if (are_detectors_own_) continue;
     eyes_.back().others = OthersOf(eyes_.back().detector->camera(), options.target);
   }
 }
@@ -186,7 +198,7 @@ LandingPipeline::Impl::Impl(std::span<const CameraCalibration> cameras,
 void LandingPipeline::Impl::ChangeOptions(const LandingPipelineOptions& options) {
   RequireValid(options);
   for (Eye& eye : eyes_) {
-    if (is_detector_own_) break;
+    if (are_detectors_own_) break;
     eye.detector = MakeTargetDetector(eye.detector->camera(), options.target, options.detector);
     eye.workspace = eye.detector->MakeWorkspace();
     eye.others = OthersOf(eye.detector->camera(), options.target);
@@ -271,10 +283,8 @@ void LandingPipeline::Impl::Detect(const cv::Mat& image, Eye* eye,
   eye->next_step = observation->report.diagnostics.next_step;
   auto& detection = observation->report.detection;
   if (!detection) return;
-  if (IsUsed(observation->camera)) {
-    eye->contradictions.Add(given, *detection);
-    eye->calibration.Add(*detection);
-  }
+  if (IsJudged(observation->camera)) eye->contradictions.Add(given, *detection);
+  if (IsUsed(observation->camera)) eye->calibration.Add(*detection);
   if (!options_.still) AddErrorOfFocalLength(*eye, &*detection);
 }
 
@@ -424,6 +434,9 @@ void LandingPipeline::Impl::Track(Eye* eye, LandingObservation* observation) {
 void LandingPipeline::Impl::TrackWithOthers(TargetMeasurement measurement, Eye* eye,
                                             LandingObservation* observation) {
   if (!watch_.IsJudged(observation->camera)) return;
+  eye->stamp_lag.Add(eye->OwnTime(*observation),
+                     observation->report.detection->camera_from_target.translation,
+                     std::sqrt(measurement.covariance.topLeftCorner<2, 2>().trace() / 2));
   const auto expected = tracker_.Predict(observation->time);
   Eigen::Vector3d slip_mps = Eigen::Vector3d::Zero();
   if (expected) {
@@ -461,9 +474,22 @@ void LandingPipeline::Impl::Judge(const TargetMeasurement& measurement,
                    measurement.covariance + expected->motion.covariance.topLeftCorner<3, 3>());
     }
   }
-  watch_.AddSighting(
+  const bool is_one_left_out = watch_.AddSighting(
       observation.camera, observation.time, place, offset_m.norm(),
-      [this](std::size_t camera) { return eyes_[camera].contradictions.Attitude().has_value(); });
+      [this](std::size_t camera, std::size_t other) { return IsRefuted(camera, other); });
+  if (!is_one_left_out) return;
+  for (Eye& each : eyes_) each.lag = {};  // it was learnt from the wrong camera, too
+}
+
+// Whether the own views of 'camera' show that it is the one of the two that is wrong: by its clock,
+// or by its mount, which lets the pad seem tilted.
+bool LandingPipeline::Impl::IsRefuted(std::size_t camera, std::size_t other) const {
+  const Eye& own = eyes_[camera];
+  const Eye& others = eyes_[other];
+  const bool is_late = own.stamp_lag.Contradiction(own.poses).has_value();
+  const bool is_other_late = others.stamp_lag.Contradiction(others.poses).has_value();
+  if (is_late != is_other_late) return is_late;
+  return own.contradictions.IsMoreTilted(others.contradictions);
 }
 
 void LandingPipeline::Impl::Remember(const LandingObservation& observation, Eye* eye) {
@@ -488,10 +514,15 @@ LandingPipeline::LandingPipeline(const CameraCalibration& calibration,
 LandingPipeline::LandingPipeline(const CameraCalibration& calibration,
                                  std::unique_ptr<const TargetDetector> detector,
                                  const LandingPipelineOptions& options)
-    : impl_(std::make_unique<Impl>(std::span(&calibration, 1), std::move(detector), options)) {}
+    : impl_(std::make_unique<Impl>(std::span(&calibration, 1), ListOf(std::move(detector)),
+                                   options)) {}
 LandingPipeline::LandingPipeline(std::span<const CameraCalibration> cameras,
                                  const LandingPipelineOptions& options)
-    : impl_(std::make_unique<Impl>(cameras, nullptr, options)) {}
+    : LandingPipeline(cameras, {}, options) {}
+LandingPipeline::LandingPipeline(std::span<const CameraCalibration> cameras,
+                                 std::vector<std::unique_ptr<const TargetDetector>> detectors,
+                                 const LandingPipelineOptions& options)
+    : impl_(std::make_unique<Impl>(cameras, std::move(detectors), options)) {}
 LandingPipeline::~LandingPipeline() = default;
 LandingPipeline::LandingPipeline(LandingPipeline&&) noexcept = default;
 LandingPipeline& LandingPipeline::operator=(LandingPipeline&&) noexcept = default;

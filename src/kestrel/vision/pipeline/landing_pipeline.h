@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
@@ -133,6 +134,10 @@ class LandingPipeline {
   // synchronised. A camera that repeats its image, sends none, or contradicts the others is left
   // out, see camera_state().
   LandingPipeline(std::span<const CameraCalibration> cameras,
+                  const LandingPipelineOptions& options);
+  // The same with detectors of one's own, one for each camera.
+  LandingPipeline(std::span<const CameraCalibration> cameras,
+                  std::vector<std::unique_ptr<const TargetDetector>> detectors,
                   const LandingPipelineOptions& options);
   ~LandingPipeline();
   LandingPipeline(LandingPipeline&&) noexcept;

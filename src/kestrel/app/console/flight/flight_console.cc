@@ -28,7 +28,7 @@ constexpr Duration kReturn = std::chrono::seconds(20);
 constexpr Duration kLastWords = std::chrono::milliseconds(300);
 
 ConsoleFeed::Description DescriptionOf(const std::string& title, const TaskView& view,
-                                       bool has_colors) {
+                                       bool has_colors, bool points_gimbal) {
   const ViewParts parts = PartsOf(view);
   ConsoleFeed::Description description{
       .title = title,
@@ -42,6 +42,7 @@ ConsoleFeed::Description DescriptionOf(const std::string& title, const TaskView&
   if (std::holds_alternative<FollowView>(view)) {
     description.offers.push_back(ConsoleCommandKind::kMark);
   }
+  if (points_gimbal) description.offers.push_back(ConsoleCommandKind::kPoint);
   description.series.push_back({"latency", "ms", "Capture to result", {ValueSource::kFrames}});
   description.series.push_back({"link", "1/s", "Packets", {ValueSource::kAutopilot}});
   return description;
@@ -173,8 +174,9 @@ class FlightConsole::Page : public SinkWriter {
 
 FlightConsole::FlightConsole(const ConsoleOptions& options, const std::string& title,
                              const std::vector<TaskView>& views, FlightExamination examination,
-                             ChannelFeed* channels, std::optional<FlightColors> colors)
-    : feed_(DescriptionOf(title, views.front(), colors.has_value())),
+                             ChannelFeed* channels, std::optional<FlightColors> colors,
+                             bool points_gimbal)
+    : feed_(DescriptionOf(title, views.front(), colors.has_value(), points_gimbal)),
       arrivals_(kArrivals),
       server_(ServeConsole(options, &feed_, WebAssets(), channels)),
       pictures_({.thread_name = "console frames",
@@ -252,6 +254,8 @@ void FlightConsole::Answer(const FlightRequests& requests, const ConsoleCommand&
       feed_.Add(requests.settings(command.settings));
     } else if (command.kind == ConsoleCommandKind::kMark) {
       Mark(requests, command.settings);
+    } else if (command.kind == ConsoleCommandKind::kPoint) {
+      Report(EventLevel::kInfo, requests.point());
     }
   } catch (const InputError& error) {
     Report(EventLevel::kError, error.what());

@@ -179,6 +179,24 @@ TEST_F(FlightConsoleTest, KeepsNoImageWithoutViewer) {
   EXPECT_EQ(frame.image.u->refcount, 1);
 }
 
+TEST(PointedConsoleTest, GimbalIsPointedAgainOnRequest) {
+  FlightConsole console(FreePort(), "a flight",
+                        {LandingView{CameraModel(PaperCamera()), {}, TurnNoise()}},
+                        FlightExamination(PaperCalibration(), ".", 0), nullptr, std::nullopt, true);
+  TestSocket socket(PortOf(console));
+  const auto hello = socket.Next("hello");
+  ASSERT_TRUE(hello);
+  EXPECT_THAT((*hello)["offers"], testing::Contains("point"));
+  console.Answer({.record = {},
+                  .keep_snapshot = {},
+                  .point = [] { return "requests the gimbal again"; },
+                  .settings = [](const auto&) { return ConsoleSettings(); }});
+  socket.Send(R"({"command": "point"})");
+  const auto event = socket.Next("event");
+  ASSERT_TRUE(event);
+  EXPECT_EQ((*event)["text"], "requests the gimbal again");
+}
+
 TEST(FollowConsoleTest, MarkNamesThePictureAndTheBox) {
   FlightConsole console(FreePort(), "a flight", {FollowView()},
                         FlightExamination(PaperCalibration(), ".", 0));

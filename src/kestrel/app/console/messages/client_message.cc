@@ -28,7 +28,8 @@ constexpr std::array kCommands = {ConsoleCommandKind::kRecord,
                                   ConsoleCommandKind::kLensStop,
                                   ConsoleCommandKind::kLensSave,
                                   ConsoleCommandKind::kSettings,
-                                  ConsoleCommandKind::kMark};
+                                  ConsoleCommandKind::kMark,
+                                  ConsoleCommandKind::kPoint};
 // A list in an object. Deeper text would use up the parser's stack.
 constexpr int kMaxDepth = 2;
 // True for the commands with a list of settings.
@@ -132,6 +133,8 @@ const char* ToString(ConsoleCommandKind kind) {
       return "settings";
     case ConsoleCommandKind::kMark:
       return "mark";
+    case ConsoleCommandKind::kPoint:
+      return "point";
   }
   return "";
 }

@@ -45,10 +45,11 @@ enum class ConsoleCommandKind {
   kLensSave,         // save its result: a name, and "replace" to replace a file
   kSettings,         // save these settings for the next start
   kMark,             // follow what is marked: the picture's time (ns), x, y, width, height (px)
+  kPoint,            // point the gimbal again that was left to somebody else; no value
 };
 // Returns "record", "snapshot", "play", "seek", "step", "detect", "cancel", "calibrate",
 // "calibrate-cancel", "calibrate-save", "compare", "open", "lens", "lens-stop", "lens-save",
-// "settings" or "mark".
+// "settings", "mark" or "point".
 const char* ToString(ConsoleCommandKind kind);
 struct ConsoleCommand {
   ConsoleCommandKind kind = ConsoleCommandKind::kSnapshot;
