@@ -28,6 +28,7 @@
 #include "kestrel/flight/onboard/recording_switch.h"
 #include "kestrel/flight/onboard/sign_of_life.h"
 #include "kestrel/flight/onboard/target_sender.h"
+#include "kestrel/flight/onboard/tracking_camera.h"
 #include "kestrel/flight/session/flight_report.h"
 #include "kestrel/flight/session/live_events.h"
 #include "kestrel/flight/session/live_source.h"
@@ -52,9 +53,11 @@ struct FlightParts {
   ObservationSink* tables = nullptr;
   ObservationSink* sink = nullptr;
   const CameraCalibration* pointed = nullptr;  // with the gimbal to point; null: none is pointed
-  bool guides = false;                         // flies by set-points when the pilot gives the mode
-  bool source_has_poses = false;               // the autopilot's poses are then not used
-  bool sees_repeated = false;                  // processes images that equal the one before
+  // Of the camera in which ground stations mark what is followed; null: there is none.
+  const CameraCalibration* tracking = nullptr;
+  bool guides = false;            // flies by set-points when the pilot gives the mode
+  bool source_has_poses = false;  // the autopilot's poses are then not used
+  bool sees_repeated = false;     // processes images that equal the one before
   std::size_t cameras = 1;
   std::optional<LinkProfile> profile;  // nothing: chosen by the heartbeat
   // Returns the true pattern at the time of a frame, in a simulation that knows it.
@@ -135,6 +138,7 @@ class FlightProgram {
   LatestValue<PoseSample> source_pose_;
   PoseHistory poses_;  // from the link
   LatencyStatistics latency_;
+  std::atomic<Duration> arrival_{Duration::zero()};  // of the newest frame, after its capture
   ServiceManager service_manager_;
   SignOfLife capture_life_, vision_life_, link_life_;
   std::once_flag ended_;
@@ -146,7 +150,8 @@ class FlightProgram {
   std::optional<TargetSender> sender_;
   std::optional<GuidedFlight> guided_;
   std::optional<PointedGimbal> gimbal_;
-  TurnNoise noise_;  // of the predicted track
+  std::optional<TrackingCamera> camera_;  // its marks are applied by the vision's thread
+  TurnNoise noise_;                       // of the predicted track
   std::optional<GuardWatch> guard_;
   LandingWatch landing_;
   Time landing_due_{};   // when the landing is looked at next

@@ -53,11 +53,15 @@ class Vision {
   // changes nothing when the options are not valid.
   virtual void Change(const TaskOptions& /*options*/, std::optional<double> /*altitude_m*/) {}
 
-  // Follows from now on what a person has marked in the frame of this time. Throws InputError when
-  // that frame is not kept any more, or this task follows nothing.
+  // True when this task follows what a person marks.
+  virtual bool takes_marks() const { return false; }
+  // Follows from now on what a person has marked in the frame that was the newest one at this time.
+  // Throws InputError when that frame is not kept any more, or this task follows nothing.
   virtual void Mark(Time /*frame*/, const cv::Rect2d& /*box_px*/) {
     throw InputError("this task follows nothing that is marked");
   }
+  // Follows nothing until the next mark.
+  virtual void Unmark() {}
 
   // Called after the source's last frame. Throws InputError when there are results of more frames.
   virtual void Finish() {}
