@@ -53,9 +53,11 @@ FlightProgram::FlightProgram(const FlightOptions& options, const FlightParts& pa
     gimbal_.emplace(options, *parts.pointed, pad_, parts.autopilot, parts.connection, report_);
   }
   if (parts.tracking != nullptr) {
-    camera_.emplace(
-        options, *parts.tracking, [this] { return arrival_.load(); }, parts.autopilot,
-        parts.connection, report_);
+    const CameraStream stream =
+        parts.stream != nullptr
+            ? *parts.stream
+            : CameraStream{.uri = {}, .delay = [this] { return arrival_.load(); }};
+    camera_.emplace(options, *parts.tracking, stream, parts.autopilot, parts.connection, report_);
   }
   if (parts.guard != nullptr) {
     guard_.emplace(parts.guard, parts.autopilot, parts.connection, options.guard, report_);

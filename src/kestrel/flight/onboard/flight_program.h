@@ -17,6 +17,7 @@
 #include "kestrel/core/base/service_manager.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/poses/pose_history.h"
+#include "kestrel/flight/onboard/camera_stream.h"
 #include "kestrel/flight/onboard/exposure_drive.h"
 #include "kestrel/flight/onboard/flight_options.h"
 #include "kestrel/flight/onboard/guard_watch.h"
@@ -55,9 +56,10 @@ struct FlightParts {
   const CameraCalibration* pointed = nullptr;  // with the gimbal to point; null: none is pointed
   // Of the camera in which ground stations mark what is followed; null: there is none.
   const CameraCalibration* tracking = nullptr;
-  bool guides = false;            // flies by set-points when the pilot gives the mode
-  bool source_has_poses = false;  // the autopilot's poses are then not used
-  bool sees_repeated = false;     // processes images that equal the one before
+  const CameraStream* stream = nullptr;  // in which they do so; null: the source's own
+  bool guides = false;                   // flies by set-points when the pilot gives the mode
+  bool source_has_poses = false;         // the autopilot's poses are then not used
+  bool sees_repeated = false;            // processes images that equal the one before
   std::size_t cameras = 1;
   std::optional<LinkProfile> profile;  // nothing: chosen by the heartbeat
   // Returns the true pattern at the time of a frame, in a simulation that knows it.

@@ -280,6 +280,7 @@ FlightParts Flight::ProgramParts() {
           .sink = &sinks(),
           .pointed = Points() ? &live_.calibration : nullptr,
           .tracking = autopilot_ && vision().takes_marks() ? &live_.calibration : nullptr,
+          .stream = options_.stream ? &*options_.stream : nullptr,
           .guides = options_.guides,
           .source_has_poses = live_.has_poses,
           .sees_repeated = live_.sees_repeated,

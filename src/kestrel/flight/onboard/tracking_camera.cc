@@ -38,8 +38,8 @@ double FieldOfView_deg(const CameraModel& camera, const Eigen::Vector2d& edge,
   return Degrees(angle);
 }
 
-CameraDescription DescriptionOf(const ConnectionOptions& link,
-                                const CameraCalibration& calibration) {
+CameraDescription DescriptionOf(const ConnectionOptions& link, const CameraCalibration& calibration,
+                                const CameraStream& stream) {
   const CameraModel camera(calibration.intrinsics);
   const CameraIntrinsics& lens = calibration.intrinsics;
   const double right = lens.width_px - 1, bottom = lens.height_px - 1;
@@ -50,7 +50,9 @@ CameraDescription DescriptionOf(const ConnectionOptions& link,
           .horizontal_fov_deg = FieldOfView_deg(camera, {0, lens.cy_px}, {right, lens.cy_px}),
           .vertical_fov_deg = FieldOfView_deg(camera, {lens.cx_px, 0}, {lens.cx_px, bottom}),
           .gimbal_device_id =
-              static_cast<std::uint8_t>(calibration.gimbal ? calibration.gimbal->device_id : 0)};
+              static_cast<std::uint8_t>(calibration.gimbal ? calibration.gimbal->device_id : 0),
+          .stream_uri = stream.uri,
+          .stream_rate_hz = stream.rate_hz};
 }
 
 // The pixel (x, y) of a box is its upper left one.
@@ -71,18 +73,18 @@ ImageRegion RegionOf(const cv::Rect2d& box, const cv::Size& size) {
 }  // namespace
 
 TrackingCamera::TrackingCamera(const FlightOptions& options, const CameraCalibration& calibration,
-                               std::function<Duration()> delay, Autopilot* autopilot,
+                               const CameraStream& stream, Autopilot* autopilot,
                                Connection* connection,
                                std::function<void(const std::string&)> report)
     : options_(options),
       size_px_(calibration.intrinsics.width_px, calibration.intrinsics.height_px),
-      delay_(std::move(delay)),
+      delay_(stream.delay),
       autopilot_(*autopilot),
       connection_(*connection),
       report_(std::move(report)),
       writer_(connection->system(), static_cast<std::uint8_t>(options.link.camera_id)),
       component_(
-          DescriptionOf(options.link, calibration),
+          DescriptionOf(options.link, calibration, stream),
           {.send =
                [this](const CameraMessage& message) {
                  std::visit([this](const auto& one) { connection_.SendBy(&writer_, one); },

@@ -16,6 +16,7 @@
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/core/poses/pose_history.h"
+#include "kestrel/flight/onboard/camera_stream.h"
 #include "kestrel/flight/onboard/flight_options.h"
 #include "kestrel/flight/onboard/send_schedule.h"
 #include "kestrel/flight/session/track_snapshot.h"
@@ -29,11 +30,10 @@ namespace kestrel {
 // thread only, but for ApplyMarks.
 class TrackingCamera {
  public:
-  // 'delay': from the capture of a picture until a ground station gets it. 'report': receives lines
-  // for the user. The pointers must outlive this. Throws InputError when the camera has the id of
-  // this program.
+  // 'stream': in which the ground stations mark. 'report': receives lines for the user. The
+  // pointers must outlive this. Throws InputError when the camera has the id of this program.
   TrackingCamera(const FlightOptions& options, const CameraCalibration& calibration,
-                 std::function<Duration()> delay, Autopilot* autopilot, Connection* connection,
+                 const CameraStream& stream, Autopilot* autopilot, Connection* connection,
                  std::function<void(const std::string&)> report);
 
   // Takes a packet of the link.

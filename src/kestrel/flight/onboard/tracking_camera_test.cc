@@ -51,7 +51,8 @@ class TrackingCameraTest : public AutopilotTest {
     CameraCalibration calibration;
     calibration.intrinsics = {640, 480, 500, 500, 319.5, 239.5, DistortionModel::kNone, {}};
     camera_ = std::make_unique<TrackingCamera>(
-        options, calibration, [] { return Duration(50ms); }, autopilot_.get(), connection_.get(),
+        options, calibration, CameraStream{.uri = {}, .delay = [] { return Duration(50ms); }},
+        autopilot_.get(), connection_.get(),
         [this](const std::string& text) { reported_ += text + "\n"; });
     PassAll(1);
   }

@@ -102,6 +102,12 @@ class FollowVision : public Vision {
   std::unique_ptr<ObservationSink> MakeTables(const OutputOptions& output) const override {
     return std::make_unique<FollowFiles>(output);
   }
+  ObservationPainter MakePainter() const override {
+    return [](const Observation& observation) {
+      return DrawFollowOverlay(observation.frame.image,
+                               std::get<FollowObservation>(observation.seen));
+    };
+  }
   // Throws InputError where the recording ends before the marked frame.
   void Finish() override;
   std::string Found() const override;

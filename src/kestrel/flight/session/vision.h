@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -22,6 +23,9 @@
 namespace kestrel {
 
 struct TaskOptions;
+
+// Returns the image of an observation with the results drawn in, as CV_8UC3 (BGR).
+using ObservationPainter = std::function<cv::Mat(const Observation&)>;
 
 // The vision of a session: a pipeline, or its earlier results. Called by one thread at a time.
 class Vision {
@@ -70,6 +74,15 @@ class Vision {
   // null: there are none. Its functions throw InputError when they cannot write.
   virtual std::unique_ptr<ObservationSink> MakeTables(const OutputOptions& /*output*/) const {
     return nullptr;
+  }
+
+  // Returns what draws the observations of the first camera. It may outlive this, and be called by
+  // another thread. Usually nothing is drawn.
+  virtual ObservationPainter MakePainter() const {
+    return [](const Observation& observation) {
+      return observation.frame.color.empty() ? observation.frame.image.clone()
+                                             : observation.frame.color.clone();
+    };
   }
 
   // Reports which part of the set-up contradicts the images, and what to do, as far as it is known
