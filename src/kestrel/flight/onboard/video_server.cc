@@ -40,7 +40,7 @@ constexpr Encoder kEncoders[] = {
 
 // Whether it encodes an image: an element may be there without its hardware.
 bool Works(const Encoder& encoder) {
-  constexpr Duration kPatience = std::chrono::seconds(3), kLook = std::chrono::milliseconds(10);
+  constexpr Duration kLongest = std::chrono::seconds(3), kLook = std::chrono::milliseconds(10);
   GstElementFactory* const factory = gst_element_factory_find(encoder.element);
   if (factory == nullptr) return false;
   gst_object_unref(factory);
@@ -53,7 +53,7 @@ bool Works(const Encoder& encoder) {
     GstWatch watch(pipeline.get());
     gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
     for (const Time start = Now(); !watch.has_ended() && watch.fault().empty();) {
-      if (Now() - start > kPatience) break;
+      if (Now() - start > kLongest) break;
       watch.Poll(kLook);
     }
     gst_element_set_state(pipeline.get(), GST_STATE_NULL);
