@@ -9,8 +9,10 @@ target_link_libraries(camera_pair_accuracy PRIVATE kestrel::recordings kestrel::
                                                    CLI11::CLI11 fmt::fmt yaml-cpp)
 
 # Landings through a camera over a network.
-if(GSTREAMER_RTSP_SERVER_FOUND)
-  add_executable(late_video_accuracy late_video_accuracy.cc)
-  target_link_libraries(late_video_accuracy PRIVATE kestrel::fly PkgConfig::GSTREAMER
-                                                    PkgConfig::GSTREAMER_RTSP_SERVER CLI11::CLI11 fmt::fmt)
-endif()
+add_executable(late_video_accuracy late_video_accuracy.cc)
+target_link_libraries(late_video_accuracy PRIVATE kestrel::fly PkgConfig::GSTREAMER
+                                                  PkgConfig::GSTREAMER_RTSP_SERVER CLI11::CLI11 fmt::fmt)
+
+# The video of a flight.
+add_executable(video_cost video_cost.cc)
+target_link_libraries(video_cost PRIVATE kestrel::onboard opencv_imgproc PkgConfig::GSTREAMER fmt::fmt)

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// For any input of a link, the parser, the signatures and the autopilot behind it neither crash nor
-// throw, and their results are finite. The first byte selects how the bytes are cut into datagrams.
-// Each packet is also given to the autopilot as if its checksum and its sender were right, so that
-// the contents of messages need not pass these checks.
+// For any input of a link, the parser, the signatures, the autopilot behind it and the camera for
+// ground stations neither crash nor throw, and their results are finite. The first byte selects how
+// the bytes are cut into datagrams. Each packet is also given to the autopilot as if its checksum
+// and its sender were right, and to the camera as a command to it, so that the contents of messages
+// need not pass these checks.
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
@@ -12,6 +13,7 @@
 #include <span>
 
 #include "kestrel/comms/mavlink/autopilot.h"
+#include "kestrel/comms/mavlink/camera_component.h"
 #include "kestrel/comms/mavlink/message_table.h"
 #include "kestrel/comms/mavlink/signing.h"
 
@@ -24,6 +26,11 @@ void RequireFinite(const kestrel::PoseSample& pose) {
       !pose.world_from_body.rotation.coeffs().allFinite()) {
     std::abort();
   }
+}
+
+void RequireMiddleInImage(int /*request*/, const kestrel::ImageRegion& region, kestrel::Time) {
+  const double x = 0.5 * (region.left + region.right), y = 0.5 * (region.top + region.bottom);
+  if (!(x > -1e-6 && x < 1 + 1e-6 && y > -1e-6 && y < 1 + 1e-6)) std::abort();
 }
 
 kestrel::Connection& Line() {
@@ -40,11 +47,28 @@ Packet FromAutopilot(const Packet& packet) {
   return forged;
 }
 
+Packet ToCamera(const Packet& packet) {
+  using kestrel::mavlink::CommandLong;
+  auto command = kestrel::mavlink::ReadPayload<CommandLong>(packet.payload());
+  command.target_system = 1;
+  command.target_component = 100;
+  Packet forged = packet;
+  forged.id = CommandLong::kId;
+  forged.header_size = kestrel::mavlink::kHeaderSize2;
+  forged.payload_size = kestrel::mavlink::WritePayload(
+      command, std::span<std::uint8_t, kestrel::mavlink::kMaxPayload>(
+                   forged.bytes.data() + forged.header_size, kestrel::mavlink::kMaxPayload));
+  return forged;
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   kestrel::Autopilot autopilot({}, &Line(), {RequireFinite, RequireFinite, {}, {}});
+  kestrel::CameraComponent camera(
+      {.width_px = 640, .height_px = 480, .stream_uri = "rtsp://127.0.0.1:8554/kestrel"},
+      {[](const auto&) {}, RequireMiddleInImage, [] {}, [](const auto&, bool) {}});
   kestrel::mavlink::Signing signing({1, 2, 3}, 0);
   const auto parser = std::make_unique<kestrel::mavlink::PacketParser>();
   kestrel::Time now = kestrel::TimeFromNanoseconds(1'000'000'000);
@@ -53,6 +77,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     signing.Check(packet, 1'700'000'000'000'000'000);
     autopilot.Handle(packet, now);
     autopilot.Handle(FromAutopilot(packet), now);
+    camera.Handle(packet, 1, now);
+    camera.Handle(ToCamera(packet), 1, now);
+    camera.Tick(now, {});
   };
   const std::size_t chunk = 1 + data[0];
   std::span<const std::uint8_t> bytes(data + 1, size - 1);

@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "kestrel/comms/mavlink/camera_messages.h"
 #include "kestrel/comms/mavlink/messages.h"
 #include "kestrel/comms/mavlink/packet_parser.h"
 #include "kestrel/comms/mavlink/packet_writer.h"
@@ -106,7 +107,9 @@ void ForEachMessage(const Visitor& visitor) {
             CommandAck, SetAttitudeTarget, SetPositionTargetLocalNed, SimState, Timesync,
             HilStateQuaternion, DistanceSensor, FollowTarget, AutopilotVersion, LandingTarget,
             EkfStatusReport, EstimatorStatus, HomePosition, MessageInterval, ExtendedSysState,
-            Statustext, CurrentMode, TargetRelative>(visitor);
+            Statustext, CameraInformation, CameraSettings, CameraCaptureStatus,
+            VideoStreamInformation, VideoStreamStatus, CameraFovStatus, CameraTrackingImageStatus,
+            CameraTrackingGeoStatus, CurrentMode, TargetRelative>(visitor);
 }
 
 void Print(std::uint32_t id, std::string_view name, const std::string& fields,

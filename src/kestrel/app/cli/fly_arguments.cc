@@ -87,6 +87,11 @@ void FlyArguments::AddTo(CLI::App* command) {
           "Serve the web page (default address 127.0.0.1:8080)")
       ->type_name("[ADDRESS:PORT]")
       ->expected(0, 1);
+  command
+      ->add_option("--video", video,
+                   "Serve the images with the results drawn in as a video (H.264): "
+                   "rtsp://ADDRESS:PORT/PATH")
+      ->type_name("URL");
   CLI::Option* guide_flag = command->add_flag(
       "--guide", guide, "Fly the UAV by set-points when the pilot gives it GUIDED or OFFBOARD");
   command

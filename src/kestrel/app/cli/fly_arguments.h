@@ -24,6 +24,7 @@ struct FlyArguments {
   std::string signing_key;
   std::string record;
   std::optional<std::string> console;  // ADDRESS:PORT; empty: as in the options
+  std::string video;                   // rtsp://ADDRESS:PORT/PATH; empty: none
   bool guide = false;
   bool point = false;
   bool no_guard = false;

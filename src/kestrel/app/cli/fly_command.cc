@@ -23,6 +23,7 @@
 #include "kestrel/app/cli/interrupt.h"
 #include "kestrel/app/cli/page_links.h"
 #include "kestrel/app/cli/terminal.h"
+#include "kestrel/app/cli/video_argument.h"
 #include "kestrel/app/console/flight/flight_console.h"
 #include "kestrel/app/fly/fly_autopilot.h"
 #include "kestrel/app/fly/fly_source.h"
@@ -36,6 +37,8 @@
 #include "kestrel/flight/onboard/camera_automatics.h"
 #include "kestrel/flight/onboard/flight_keeper.h"
 #include "kestrel/flight/onboard/session.h"
+#include "kestrel/flight/onboard/video_server.h"
+#include "kestrel/flight/onboard/video_sink.h"
 #include "kestrel/flight/ros/ros2_result_connection.h"
 #include "kestrel/flight/ros/ros_sink.h"
 #include "kestrel/flight/session/observation_sinks.h"
@@ -104,12 +107,14 @@ class Flight {
     RequireAutopilot();
     log_ = sinks_.Add(std::make_unique<FlightLog>());
     OpenConsole();
+    OpenVideo();
     OpenTeam();
     OpenMcap();
     OpenDds();
     autopilot_ = MakeFlyAutopilot(arguments.autopilot, options_.fly, arguments.guide, &source_);
     session_ = MakeSession(source_.live, *task_, Options());
     session_->sinks().Add(std::move(own_sinks_));
+    if (video_) ShowVideo();
     if (team_) ShareWithTeam();
   }
 
@@ -203,6 +208,21 @@ class Flight {
            std::holds_alternative<LandingView>(View());
   }
 
+  // As early as the page, for the same reason.
+  void OpenVideo() {
+    if (arguments_.video.empty()) return;
+    const VideoServerOptions options = ParseVideoUrl(arguments_.video, options_.console);
+    video_ = std::make_unique<VideoServer>(options);
+    video_urls_ = VideoUrls(options, video_->port());
+    for (const std::string& url : video_urls_) fmt::print(stderr, "video: {}\n", url);
+  }
+
+  void ShowVideo() {
+    session_->sinks().Add(MakeVideoSink(
+        video_.get(), session_->vision().MakePainter(),
+        [this](const std::string& text) { Notify("video: " + text, EventLevel::kWarning); }));
+  }
+
   // Folders where the page of colours of a hunt keeps frames and models.
   std::optional<FlightColors> Colors() const {
     const TaskView view = View();
@@ -267,6 +287,11 @@ class Flight {
     options.output = arguments_.source.output;
     options.record = arguments_.record;
     options.replace = arguments_.source.force;
+    if (video_) {
+      options.stream = CameraStream{.uri = video_urls_.back(),
+                                    .rate_hz = kVideoRate_hz,
+                                    .delay = [video = video_.get()] { return video->delay(); }};
+    }
     return options;
   }
 
@@ -325,6 +350,8 @@ class Flight {
   ObservationSinks& sinks_ = *own_sinks_;  // of the session, once there is one
   FlightLog* log_ = nullptr;               // of the sinks
   FlightConsole* console_ = nullptr;       // of the sinks; null: none
+  std::unique_ptr<VideoServer> video_;     // null: none
+  std::vector<std::string> video_urls_;    // for other devices last
   std::unique_ptr<TeamLink> team_;         // until 'sharing_' has it; null: none
   FlyAutopilot autopilot_;
   std::unique_ptr<LiveSession> session_;
@@ -345,7 +372,8 @@ void RequireNoResults(const FlyArguments& arguments, const std::string& advice) 
                                                   {"--dds", source.dds.is_given()},
                                                   {"--team", !arguments.team.team.empty()},
                                                   {"--output", !source.output.empty()},
-                                                  {"--mcap", !source.mcap.empty()}};
+                                                  {"--mcap", !source.mcap.empty()},
+                                                  {"--video", !arguments.video.empty()}};
   for (const auto& [option, is_given] : results) {
     if (is_given) throw WrongUsage(fmt::format("{}: nothing to send or write: {}", option, advice));
   }

@@ -107,6 +107,24 @@ gimbal:
                    "expected sim:ardupilot or sim:px4");
 }
 
+TEST_F(FlyCommandTest, RejectsMalformedVideoAddress) {
+  const std::string fly = "fly sim:standing --autopilot sim:px4 --video ";
+  for (const char* url : {"http://127.0.0.1:8554/kestrel", "rtsp://127.0.0.1:8554",
+                          "rtsp://127.0.0.1:8554/", "kestrel"}) {
+    ExpectInputError(fly + url + kNear, "expected rtsp://ADDRESS:PORT/PATH");
+  }
+  ExpectInputError(fly + "rtsp://127.0.0.1/kestrel" + kNear, "--video '127.0.0.1': expected");
+  ExpectInputError(fly + "rtsp://uav:8554/kestrel" + kNear, "expected ADDRESS:PORT");
+}
+
+TEST_F(FlyCommandTest, ServesVideoOfLanding) {
+  const Outcome outcome = Succeed(
+      std::string("fly sim:standing --autopilot sim:ardupilot --video rtsp://127.0.0.1:0/kestrel") +
+      kNear);
+  EXPECT_THAT(outcome.err, testing::ContainsRegex("video: rtsp://127.0.0.1:[0-9]+/kestrel"));
+  EXPECT_LT(MissOf(outcome), 0.15) << outcome.err;
+}
+
 // ArduPilot's own landing trails behind what drives in a curve.
 TEST_F(FlyCommandTest, LandingBesidePatternIsNoSuccess) {
   const Outcome outcome = Run(std::string("fly sim:figure8 --autopilot sim:ardupilot") + kNear);

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <boost/asio/ip/address.hpp>
 #include <cctype>
+#include <ifaddrs.h>
+#include <net/if.h>
+#include <netinet/in.h>
 #include <random>
 #include <sstream>
 #include <unistd.h>
@@ -92,6 +95,20 @@ std::string OwnHostName() {
   char name[HOST_NAME_MAX + 1] = {};
   gethostname(name, sizeof(name) - 1);
   return InLowerCase(name);
+}
+
+std::vector<std::string> OwnAddresses() {
+  std::vector<std::string> addresses;
+  ifaddrs* interfaces = nullptr;
+  if (getifaddrs(&interfaces) != 0) return addresses;
+  for (const ifaddrs* one = interfaces; one != nullptr; one = one->ifa_next) {
+    const bool is_up = (one->ifa_flags & IFF_UP) != 0 && (one->ifa_flags & IFF_LOOPBACK) == 0;
+    if (!is_up || one->ifa_addr == nullptr || one->ifa_addr->sa_family != AF_INET) continue;
+    const auto* const address = reinterpret_cast<const sockaddr_in*>(one->ifa_addr);
+    addresses.push_back(boost::asio::ip::address_v4(ntohl(address->sin_addr.s_addr)).to_string());
+  }
+  freeifaddrs(interfaces);
+  return addresses;
 }
 
 ConsoleOptions WithToken(ConsoleOptions options) {

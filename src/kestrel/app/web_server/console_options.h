@@ -11,6 +11,9 @@ namespace kestrel {
 // Returns the name of this computer in lower case.
 std::string OwnHostName();
 
+// Returns the IPv4 addresses at which other devices reach this computer.
+std::vector<std::string> OwnAddresses();
+
 // Address of the web page, who may use it, and the limits of its cost.
 struct ConsoleOptions {
   std::string address = "127.0.0.1";

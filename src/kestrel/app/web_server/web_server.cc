@@ -4,9 +4,6 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <ifaddrs.h>
-#include <net/if.h>
-#include <netinet/in.h>
 #include <sys/resource.h>
 #include <thread>
 #include <utility>
@@ -45,21 +42,6 @@ Tcp::acceptor Listen(asio::io_context& context, const ConsoleOptions& options) {
 
 std::string HostOf(const asio::ip::address& address) {
   return address.is_v6() ? "[" + address.to_string() + "]" : address.to_string();
-}
-
-// IPv4 addresses at which other devices reach this computer.
-std::vector<std::string> OwnAddresses() {
-  std::vector<std::string> addresses;
-  ifaddrs* interfaces = nullptr;
-  if (getifaddrs(&interfaces) != 0) return addresses;
-  for (const ifaddrs* one = interfaces; one != nullptr; one = one->ifa_next) {
-    const bool is_up = (one->ifa_flags & IFF_UP) != 0 && (one->ifa_flags & IFF_LOOPBACK) == 0;
-    if (!is_up || one->ifa_addr == nullptr || one->ifa_addr->sa_family != AF_INET) continue;
-    const auto* const address = reinterpret_cast<const sockaddr_in*>(one->ifa_addr);
-    addresses.push_back(asio::ip::address_v4(ntohl(address->sin_addr.s_addr)).to_string());
-  }
-  freeifaddrs(interfaces);
-  return addresses;
 }
 
 }  // namespace

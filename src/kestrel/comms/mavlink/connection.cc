@@ -32,9 +32,10 @@ Connection::Connection(const std::string& url, const ConnectionOptions& options,
   if (!transport_) transport_ = OpenTransport(ParseLinkUrl(url));
 }
 
-bool Connection::SendFrame(std::span<const std::uint8_t> frame) {
+bool Connection::SendFrame(std::span<const std::uint8_t> frame,
+                           std::span<std::uint8_t, mavlink::kMaxFrame> memory) {
   if (signing_) {
-    frame = signing_->Sign(frame, writer_.memory(), mavlink::UnixNanoseconds());
+    frame = signing_->Sign(frame, memory, mavlink::UnixNanoseconds());
     timestamp_file_->Set(signing_->timestamp());
   }
   const bool is_sent = transport_->Send(frame);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "kestrel/comms/mavlink/connection_counters.h"
+#include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/comms/mavlink/packet.h"
 #include "kestrel/comms/mavlink/packet_parser.h"
 #include "kestrel/comms/mavlink/packet_writer.h"
@@ -27,6 +28,7 @@ namespace kestrel {
 struct ConnectionOptions {
   int system_id = 0;
   int component_id = 191;
+  int camera_id = mavlink::kComponentCamera;
   std::string signing_key;
 
   static void Visit(auto& self, auto&& visit) {
@@ -34,6 +36,8 @@ struct ConnectionOptions {
           "MAVLink system of this program; 0: the autopilot's");
     visit("component_id", self.component_id, Range{1, 255},
           "MAVLink component of this program; 191 is an on-board computer");
+    visit("camera_id", self.camera_id, Range{7, 255},
+          "MAVLink component of the camera in which a ground station marks what is followed");
     visit("signing_key", self.signing_key,
           "file with the key of signed packets (mode 0600); empty: not signed");
   }
@@ -57,7 +61,14 @@ class Connection {
   template <class Message>
   bool Send(const Message& message) {
     const std::lock_guard lock(send_mutex_);
-    return SendFrame(writer_.Write(message, signing_.has_value()));
+    return SendFrame(message, &writer_);
+  }
+  // Sends by the writer of another component of this system.
+  template <class Message>
+  bool SendBy(mavlink::PacketWriter* writer, const Message& message) {
+    const std::lock_guard lock(send_mutex_);
+    writer->set_system(writer_.system());
+    return SendFrame(message, writer);
   }
 
   // Waits at most 'timeout' for data from the other end or for Wake, and passes the packets to
@@ -83,7 +94,12 @@ class Connection {
   ConnectionCounters counters() const;
 
  private:
-  bool SendFrame(std::span<const std::uint8_t> frame);
+  template <class Message>
+  bool SendFrame(const Message& message, mavlink::PacketWriter* writer) {
+    return SendFrame(writer->Write(message, signing_.has_value()), writer->memory());
+  }
+  bool SendFrame(std::span<const std::uint8_t> frame,
+                 std::span<std::uint8_t, mavlink::kMaxFrame> memory);
   bool IsTrusted(const mavlink::Packet& packet);
   bool ReceiveOnce(Duration timeout, const Handler& handler);
 

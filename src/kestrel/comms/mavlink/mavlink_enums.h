@@ -22,6 +22,7 @@ inline constexpr std::uint8_t kTypeOnboardController = 18;
 inline constexpr std::uint8_t kTypeVtolFirst = 19;  // to kTypeVtolLast: with wings and rotors
 inline constexpr std::uint8_t kTypeVtolLast = 25;
 inline constexpr std::uint8_t kTypeDodecarotor = 29;
+inline constexpr std::uint8_t kTypeCamera = 30;
 inline constexpr std::uint8_t kTypeDecarotor = 35;
 
 // MAV_AUTOPILOT
@@ -31,6 +32,7 @@ inline constexpr std::uint8_t kAutopilotPx4 = 12;
 
 // MAV_COMPONENT
 inline constexpr std::uint8_t kComponentAutopilot = 1;
+inline constexpr std::uint8_t kComponentCamera = 100;
 inline constexpr std::uint8_t kComponentOnboardComputer = 191;
 
 // GIMBAL_DEVICE_FLAGS and GIMBAL_MANAGER_FLAGS
@@ -39,6 +41,25 @@ inline constexpr std::uint16_t kGimbalPitchLock = 8;
 inline constexpr std::uint16_t kGimbalYawLock = 16;
 inline constexpr std::uint16_t kGimbalYawInVehicleFrame = 32;
 inline constexpr std::uint16_t kGimbalYawInEarthFrame = 64;
+
+// CAMERA_CAP_FLAGS
+inline constexpr std::uint32_t kCameraHasStream = 256;
+inline constexpr std::uint32_t kCameraTracksPoint = 512;
+inline constexpr std::uint32_t kCameraTracksRectangle = 1024;
+inline constexpr std::uint32_t kCameraTracksOnEarth = 2048;
+
+// CAMERA_MODE, VIDEO_STREAM_STATUS_FLAGS, VIDEO_STREAM_ENCODING
+inline constexpr std::uint8_t kCameraModeVideo = 1;
+inline constexpr std::uint16_t kStreamIsRunning = 1;
+inline constexpr std::uint8_t kStreamH264 = 1;
+
+// CAMERA_TRACKING_STATUS_FLAGS, CAMERA_TRACKING_MODE, CAMERA_TRACKING_TARGET_DATA
+inline constexpr std::uint8_t kTrackingActive = 1;
+inline constexpr std::uint8_t kTrackingError = 2;
+inline constexpr std::uint8_t kTrackingCoasting = 8;
+inline constexpr std::uint8_t kTrackingRectangle = 2;
+inline constexpr std::uint8_t kTargetRendered = 2;
+inline constexpr std::uint8_t kTargetInStatus = 4;
 
 // MAV_MODE_FLAG
 inline constexpr std::uint8_t kModeFlagCustom = 1;
@@ -54,10 +75,20 @@ inline constexpr std::uint8_t kStateEmergency = 6;
 inline constexpr std::uint16_t kCommandTakeOff = 22;
 inline constexpr std::uint16_t kCommandDoSetMode = 176;
 inline constexpr std::uint16_t kCommandArmDisarm = 400;
+inline constexpr std::uint16_t kCommandGetMessageInterval = 510;
 inline constexpr std::uint16_t kCommandSetMessageInterval = 511;
 inline constexpr std::uint16_t kCommandRequestMessage = 512;
+// Older requests of one message each, which ground stations still send.
+inline constexpr std::uint16_t kCommandRequestCameraInformation = 521;
+inline constexpr std::uint16_t kCommandRequestCameraSettings = 522;
+inline constexpr std::uint16_t kCommandRequestCaptureStatus = 527;
+inline constexpr std::uint16_t kCommandRequestStreamInformation = 2504;
+inline constexpr std::uint16_t kCommandRequestStreamStatus = 2505;
 inline constexpr std::uint16_t kCommandGimbalPitchyaw = 1000;
 inline constexpr std::uint16_t kCommandGimbalConfigure = 1001;
+inline constexpr std::uint16_t kCommandTrackPoint = 2004;
+inline constexpr std::uint16_t kCommandTrackRectangle = 2005;
+inline constexpr std::uint16_t kCommandStopTracking = 2010;
 
 // MAV_RESULT
 inline constexpr std::uint8_t kResultAccepted = 0;

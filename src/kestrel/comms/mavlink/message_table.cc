@@ -5,6 +5,7 @@
 #include <array>
 #include <tuple>
 
+#include "kestrel/comms/mavlink/camera_messages.h"
 #include "kestrel/comms/mavlink/messages.h"
 
 namespace kestrel::mavlink {
@@ -23,7 +24,9 @@ constexpr auto kTable =
               CommandAck, SetAttitudeTarget, SetPositionTargetLocalNed, SimState, Timesync,
               HilStateQuaternion, DistanceSensor, FollowTarget, AutopilotVersion, LandingTarget,
               EkfStatusReport, EstimatorStatus, HomePosition, MessageInterval, ExtendedSysState,
-              Statustext, MountOrientation, GimbalManagerInformation, GimbalManagerStatus,
+              Statustext, CameraInformation, CameraSettings, CameraCaptureStatus, MountOrientation,
+              VideoStreamInformation, VideoStreamStatus, CameraFovStatus, CameraTrackingImageStatus,
+              CameraTrackingGeoStatus, GimbalManagerInformation, GimbalManagerStatus,
               GimbalDeviceAttitudeStatus, GimbalManagerSetPitchyaw, CurrentMode, TargetRelative>();
 
 constexpr bool IsSortedById() {
@@ -73,7 +76,15 @@ static_assert(Is<HomePosition>(104, 52, 60));
 static_assert(Is<MessageInterval>(95, 6, 6));
 static_assert(Is<ExtendedSysState>(130, 2, 2));
 static_assert(Is<Statustext>(83, 51, 54));
+static_assert(Is<CameraInformation>(92, 235, 237));
+static_assert(Is<CameraSettings>(146, 5, 14));
+static_assert(Is<CameraCaptureStatus>(12, 18, 23));
 static_assert(Is<MountOrientation>(26, 16, 20));
+static_assert(Is<VideoStreamInformation>(109, 213, 215));
+static_assert(Is<VideoStreamStatus>(59, 19, 20));
+static_assert(Is<CameraFovStatus>(22, 52, 53));
+static_assert(Is<CameraTrackingImageStatus>(126, 31, 32));
+static_assert(Is<CameraTrackingGeoStatus>(18, 49, 50));
 static_assert(Is<GimbalManagerInformation>(70, 33, 33));
 static_assert(Is<GimbalManagerStatus>(48, 13, 13));
 static_assert(Is<GimbalDeviceAttitudeStatus>(137, 40, 49));

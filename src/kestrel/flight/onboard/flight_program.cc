@@ -53,6 +53,13 @@ FlightProgram::FlightProgram(const FlightOptions& options, const FlightParts& pa
   if (parts.pointed != nullptr) {
     gimbal_.emplace(options, *parts.pointed, pad_, parts.autopilot, parts.connection, report_);
   }
+  if (parts.tracking != nullptr) {
+    const CameraStream stream =
+        parts.stream != nullptr
+            ? *parts.stream
+            : CameraStream{.uri = {}, .delay = [this] { return arrival_.load(); }};
+    camera_.emplace(options, *parts.tracking, stream, parts.autopilot, parts.connection, report_);
+  }
   if (parts.guard != nullptr) {
     guard_.emplace(parts.guard, parts.autopilot, parts.connection, options.guard, report_);
   }
@@ -174,7 +181,8 @@ void FlightProgram::Take(Event event) {
   }
   if (const auto* report = std::get_if<GimbalSample>(&event)) return TakeGimbal(*report);
   auto& frame = std::get<Frame>(event);
-  latency_.step(kArrival).Add(Now() - frame.time);
+  arrival_ = Now() - frame.time;
+  latency_.step(kArrival).Add(arrival_);
   if (const auto recorder = Recorder()) {
     const bool has_truth = parts_.truth && frame.camera == 0;
     recorder->AddFrame(frame, has_truth ? parts_.truth(frame) : std::nullopt);
@@ -217,6 +225,7 @@ void FlightProgram::See() {
     // The vision itself judges which one of several cameras it can use.
     if (parts_.cameras == 1 && !parts_.sees_repeated && IsFrozen(frame)) continue;
     latency_.step(kVision).Add(Now() - frame.time);
+    if (camera_) camera_->ApplyMarks(Now(), parts_.vision);
     const TrackSnapshot snapshot = See(frame);
     latency_.step(kDetection).Add(snapshot.detect_time);
     frames_ = snapshot.frames;
@@ -295,12 +304,14 @@ void FlightProgram::Communicate() {
     parts_.connection->Receive(kLinkPatience, [this](const mavlink::Packet& packet, Time received) {
       parts_.autopilot->Handle(packet, received);
       if (gimbal_) gimbal_->Handle(packet);
+      if (camera_) camera_->Handle(packet, received);
     });
     if (parts_.source_has_poses) poses_.Add(source_pose_.Get());  // a repeated one is ignored
     const Time now = Now();
     parts_.autopilot->Tick(now);
     SendTarget(now);
     if (gimbal_) Point(now);
+    if (camera_) camera_->Tick(now, track_.Get(), poses_);
     WatchFlight(now);
     if (guard_ && !guard_->Watch(now, *guided_)) {
       End({FlightOutcome::kNotLanded, {}, guard_->reason()});

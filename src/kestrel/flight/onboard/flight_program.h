@@ -17,6 +17,7 @@
 #include "kestrel/core/base/service_manager.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/poses/pose_history.h"
+#include "kestrel/flight/onboard/camera_stream.h"
 #include "kestrel/flight/onboard/exposure_drive.h"
 #include "kestrel/flight/onboard/flight_options.h"
 #include "kestrel/flight/onboard/guard_watch.h"
@@ -28,6 +29,7 @@
 #include "kestrel/flight/onboard/recording_switch.h"
 #include "kestrel/flight/onboard/sign_of_life.h"
 #include "kestrel/flight/onboard/target_sender.h"
+#include "kestrel/flight/onboard/tracking_camera.h"
 #include "kestrel/flight/session/flight_report.h"
 #include "kestrel/flight/session/live_events.h"
 #include "kestrel/flight/session/live_source.h"
@@ -52,9 +54,12 @@ struct FlightParts {
   ObservationSink* tables = nullptr;
   ObservationSink* sink = nullptr;
   const CameraCalibration* pointed = nullptr;  // with the gimbal to point; null: none is pointed
-  bool guides = false;                         // flies by set-points when the pilot gives the mode
-  bool source_has_poses = false;               // the autopilot's poses are then not used
-  bool sees_repeated = false;                  // processes images that equal the one before
+  // Of the camera in which ground stations mark what is followed; null: there is none.
+  const CameraCalibration* tracking = nullptr;
+  const CameraStream* stream = nullptr;  // in which they do so; null: the source's own
+  bool guides = false;                   // flies by set-points when the pilot gives the mode
+  bool source_has_poses = false;         // the autopilot's poses are then not used
+  bool sees_repeated = false;            // processes images that equal the one before
   std::size_t cameras = 1;
   std::optional<LinkProfile> profile;  // nothing: chosen by the heartbeat
   // Returns the true pattern at the time of a frame, in a simulation that knows it.
@@ -140,6 +145,7 @@ class FlightProgram {
   LatestValue<PoseSample> source_pose_;
   PoseHistory poses_;  // from the link
   LatencyStatistics latency_;
+  std::atomic<Duration> arrival_{Duration::zero()};  // of the newest frame, after its capture
   ServiceManager service_manager_;
   SignOfLife capture_life_, vision_life_, link_life_;
   std::once_flag ended_;
@@ -152,6 +158,7 @@ class FlightProgram {
   std::optional<GuidedFlight> guided_;
   std::optional<PointedGimbal> gimbal_;
   std::atomic<bool> resumes_pointing_{false};  // set by any thread
+  std::optional<TrackingCamera> camera_;       // its marks are applied by the vision's thread
   TurnNoise noise_;                            // of the predicted track
   std::optional<GuardWatch> guard_;
   LandingWatch landing_;

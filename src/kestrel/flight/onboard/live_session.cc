@@ -280,6 +280,8 @@ FlightParts Flight::ProgramParts() {
           .tables = tables_ ? &*tables_ : nullptr,
           .sink = &sinks(),
           .pointed = Points() ? &live_.calibration : nullptr,
+          .tracking = autopilot_ && vision().takes_marks() ? &live_.calibration : nullptr,
+          .stream = options_.stream ? &*options_.stream : nullptr,
           .guides = options_.guides,
           .source_has_poses = live_.has_poses,
           .sees_repeated = live_.sees_repeated,

@@ -11,6 +11,7 @@
 #include <opencv2/core.hpp>
 
 #include "kestrel/comms/mavlink/target_profile.h"
+#include "kestrel/flight/onboard/camera_stream.h"
 #include "kestrel/flight/onboard/flight_options.h"
 #include "kestrel/flight/onboard/open_live_source.h"
 #include "kestrel/flight/session/flight_end.h"
@@ -48,6 +49,8 @@ struct SessionOptions {
   // gimbal.
   bool points = false;
   std::string record = {};  // folder of a recording that begins at once; empty: none
+  // The video in which ground stations mark what is followed; nothing: that of the source.
+  std::optional<CameraStream> stream = {};
 };
 
 // A source, the vision of a task, and sinks, put together: what `kestrel land`, `hunt`, `follow`

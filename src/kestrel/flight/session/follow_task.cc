@@ -60,12 +60,13 @@ class KeptImages {
     next_ = (next_ + 1) % kMost;
   }
 
-  // From the one of this time on, oldest first; none when it is not kept any more.
+  // From the newest one at this time on, oldest first; none when it is not kept any more.
   std::vector<const Image*> From(Time time) const {
     std::vector<const Image*> from;
     for (std::size_t i = 0; i < images_.size(); ++i) {
       const Image& image = images_[(next_ + i) % images_.size()];
-      if (!from.empty() || image.time == time) from.push_back(&image);
+      if (image.time <= time) from.clear();
+      if (!from.empty() || image.time <= time) from.push_back(&image);
     }
     return from;
   }
@@ -75,8 +76,7 @@ class KeptImages {
   std::size_t next_ = 0;
 };
 
-// The pipeline of a marked thing in a session. No target for the autopilot is in its snapshot: what
-// a person marks is nothing to land on.
+// The pipeline of a marked thing in a session. Its snapshot has no target to land on.
 class FollowVision : public Vision {
  public:
   FollowVision(const SessionCamera& camera, const FollowPipelineOptions& options,
@@ -96,9 +96,17 @@ class FollowVision : public Vision {
   void Change(const TaskOptions& options, std::optional<double> /*altitude_m*/) override {
     pipeline_.ChangeOptions(InFlight(options.follow, is_live_));
   }
+  bool takes_marks() const override { return true; }
   void Mark(Time frame, const cv::Rect2d& box_px) override;
+  void Unmark() override { pipeline_.Unmark(); }
   std::unique_ptr<ObservationSink> MakeTables(const OutputOptions& output) const override {
     return std::make_unique<FollowFiles>(output);
+  }
+  ObservationPainter MakePainter() const override {
+    return [](const Observation& observation) {
+      return DrawFollowOverlay(observation.frame.image,
+                               std::get<FollowObservation>(observation.seen));
+    };
   }
   // Throws InputError where the recording ends before the marked frame.
   void Finish() override;
@@ -124,6 +132,7 @@ Observation FollowVision::Process(const Frame& frame) {
   ++snapshot_.frames;
   snapshot_.captured = frame.time + clock_offset_;
   snapshot_.detect_time = seen.detect_time;
+  snapshot_.followed = seen;
   if (seen.region) {
     ++frames_[static_cast<std::size_t>(seen.region->state)];
     snapshot_.detections += seen.region->state == RegionState::kFollowing;
@@ -155,7 +164,7 @@ void FollowVision::Mark(Time frame, const cv::Rect2d& box_px) {
     throw InputError(fmt::format("the marked picture is older than {} images: mark a newer one",
                                  KeptImages::kMost));
   }
-  pipeline_.Mark(since.front()->pixels, frame, box_px);
+  pipeline_.Mark(since.front()->pixels, since.front()->time, box_px);
   for (std::size_t i = 1; i < since.size(); ++i) {
     pipeline_.Process(since[i]->pixels, since[i]->time);
   }

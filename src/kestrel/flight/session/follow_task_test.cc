@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/flight/session/follow_task.h"
 
+#include <chrono>
 #include <cmath>
 #include <memory>
 
@@ -103,6 +104,37 @@ TEST(FollowTaskTest, MarkOnALatePictureIsAppliedToThatPicture) {
                 vision->Mark(marked, {-90, 0, 9, 9});
               }),
               HasSubstr("expected one within the image"));
+}
+
+// A ground station knows the time of its click, not that of a picture.
+TEST(FollowTaskTest, MarkBetweenTwoPicturesCountsInTheOneBefore) {
+  RegionScene scene(3);
+  SessionCamera camera;
+  camera.calibration.intrinsics = Intrinsics();
+  camera.is_live = true;
+  const auto vision = FollowTask({}).MakeVision(camera);
+  Time marked;
+  cv::Rect2d box;
+  for (int i = 0; i < 10; ++i) {
+    scene.target.center_px += Eigen::Vector2d(9, 0);
+    const cv::Mat image = scene.Take();
+    if (i == 4) marked = scene.time;
+    if (i == 4) box = scene.Box();
+    vision->Process({"", scene.time, image});
+  }
+  vision->Mark(marked + std::chrono::milliseconds(5), box);
+  const auto follow = [&] {
+    const cv::Mat image = scene.Take();
+    const Observation seen = vision->Process({"", scene.time, image});
+    EXPECT_TRUE(vision->snapshot().followed);
+    return std::get<FollowObservation>(seen.seen).region;
+  };
+  const auto region = follow();
+  ASSERT_TRUE(region);
+  EXPECT_EQ(region->state, RegionState::kFollowing);
+  EXPECT_GT((region->box_px & scene.Box()).area(), 0.6 * scene.Box().area());
+  vision->Unmark();
+  EXPECT_FALSE(follow()) << "nothing is marked any more";
 }
 
 }  // namespace

@@ -91,6 +91,7 @@ class HuntVision : public Vision {
   bool has_world() const override { return has_world_ && !pipeline_.options().still; }
   void Change(const TaskOptions& options, std::optional<double> altitude_m) override;
   std::unique_ptr<ObservationSink> MakeTables(const OutputOptions& output) const override;
+  ObservationPainter MakePainter() const override;
 
   // Reports how the objects' sizes contradict the given height of the ground; not in flight.
   std::string Warning() const override;
@@ -159,6 +160,13 @@ void HuntVision::Change(const TaskOptions& options, std::optional<double> altitu
 
 std::unique_ptr<ObservationSink> HuntVision::MakeTables(const OutputOptions& output) const {
   return std::make_unique<HuntFiles>(output, &pipeline_, has_world(), origin_);
+}
+
+ObservationPainter HuntVision::MakePainter() const {
+  return [model = pipeline_.detector().model()](const Observation& observation) {
+    return DrawObjectOverlay(observation.frame.image, model,
+                             std::get<HuntObservation>(observation.seen));
+  };
 }
 
 std::string HuntVision::Warning() const {

@@ -12,6 +12,7 @@
 #include "kestrel/flight/session/frame_period.h"
 #include "kestrel/flight/session/landing_files.h"
 #include "kestrel/flight/session/task.h"
+#include "kestrel/io/recording/overlays/landing_overlay.h"
 #include "kestrel/vision/pipeline/calibration_monitor.h"
 #include "kestrel/vision/pipeline/input_contradictions.h"
 #include "kestrel/vision/pipeline/measurement_noise.h"
@@ -56,6 +57,7 @@ class LandingVision : public Vision {
   bool has_world() const override { return has_world_ && !pipeline_.options().still; }
   void Change(const TaskOptions& options, std::optional<double> altitude_m) override;
   std::unique_ptr<ObservationSink> MakeTables(const OutputOptions& output) const override;
+  ObservationPainter MakePainter() const override;
 
   // Reports how the detections contradict the given height and attitude; in flight, the lens.
   std::string Warning() const override;
@@ -218,6 +220,15 @@ std::unique_ptr<ObservationSink> LandingVision::MakeTables(const OutputOptions& 
   std::vector<std::string> further;
   for (std::size_t i = 1; i < cameras_.size(); ++i) further.push_back(cameras_[i].name);
   return std::make_unique<LandingFiles>(output, &pipeline_, has_world(), horizons_s, further);
+}
+
+ObservationPainter LandingVision::MakePainter() const {
+  const TargetDetector& detector = pipeline_.detector(0);
+  return [camera = detector.camera(), shape = detector.shape()](const Observation& observation) {
+    const Frame& frame = observation.frame;
+    return DrawLandingOverlay(frame.color.empty() ? frame.image : frame.color, camera, shape,
+                              std::get<LandingObservation>(observation.seen));
+  };
 }
 
 std::string LandingVision::Warning() const {

@@ -8,6 +8,7 @@
 #include "kestrel/comms/mavlink/target_profile.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/vision/pipeline/follow_pipeline.h"
 #include "kestrel/vision/pipeline/landing_pipeline.h"
 #include "kestrel/vision/tracking/target_tracker.h"
 
@@ -32,6 +33,8 @@ struct TrackSnapshot {
   int frames = 0;                          // so far
   int detections = 0;                      // frames that showed the target
   std::optional<OtherTag> other_tag = {};  // as LandingObservation's
+  // What a person has marked, in this frame: nothing to land on.
+  std::optional<FollowObservation> followed = {};
 };
 
 // A pad as guidance and the autopilot's messages know it.

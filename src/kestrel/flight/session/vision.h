@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -22,6 +23,9 @@
 namespace kestrel {
 
 struct TaskOptions;
+
+// Returns the image of an observation with the results drawn in, as CV_8UC3 (BGR).
+using ObservationPainter = std::function<cv::Mat(const Observation&)>;
 
 // The vision of a session: a pipeline, or its earlier results. Called by one thread at a time.
 class Vision {
@@ -53,11 +57,15 @@ class Vision {
   // changes nothing when the options are not valid.
   virtual void Change(const TaskOptions& /*options*/, std::optional<double> /*altitude_m*/) {}
 
-  // Follows from now on what a person has marked in the frame of this time. Throws InputError when
-  // that frame is not kept any more, or this task follows nothing.
+  // True when this task follows what a person marks.
+  virtual bool takes_marks() const { return false; }
+  // Follows from now on what a person has marked in the frame that was the newest one at this time.
+  // Throws InputError when that frame is not kept any more, or this task follows nothing.
   virtual void Mark(Time /*frame*/, const cv::Rect2d& /*box_px*/) {
     throw InputError("this task follows nothing that is marked");
   }
+  // Follows nothing until the next mark.
+  virtual void Unmark() {}
 
   // Called after the source's last frame. Throws InputError when there are results of more frames.
   virtual void Finish() {}
@@ -66,6 +74,15 @@ class Vision {
   // null: there are none. Its functions throw InputError when they cannot write.
   virtual std::unique_ptr<ObservationSink> MakeTables(const OutputOptions& /*output*/) const {
     return nullptr;
+  }
+
+  // Returns what draws the observations of the first camera. It may outlive this, and be called by
+  // another thread. Usually nothing is drawn.
+  virtual ObservationPainter MakePainter() const {
+    return [](const Observation& observation) {
+      return observation.frame.color.empty() ? observation.frame.image.clone()
+                                             : observation.frame.color.clone();
+    };
   }
 
   // Reports which part of the set-up contradicts the images, and what to do, as far as it is known

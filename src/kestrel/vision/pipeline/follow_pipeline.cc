@@ -80,6 +80,8 @@ class FollowPipeline::Impl {
     return seen;
   }
 
+  void Unmark() { is_marked_ = false; }
+
   FollowObservation Process(const cv::Mat& image, Time time) {
     FollowObservation seen = Begin(time);
     if (!is_marked_) return seen;
@@ -236,6 +238,7 @@ void FollowPipeline::ChangeOptions(const FollowPipelineOptions& options) {
 FollowObservation FollowPipeline::Mark(const cv::Mat& image, Time time, const cv::Rect2d& box_px) {
   return impl_->Mark(image, time, box_px);
 }
+void FollowPipeline::Unmark() { impl_->Unmark(); }
 FollowObservation FollowPipeline::Process(const cv::Mat& image, Time time) {
   return impl_->Process(image, time);
 }

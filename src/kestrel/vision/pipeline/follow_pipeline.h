@@ -89,6 +89,9 @@ class FollowPipeline {
   // images.
   FollowObservation Mark(const cv::Mat& image, Time time, const cv::Rect2d& box_px);
 
+  // Follows nothing until the next mark.
+  void Unmark();
+
   // Processes a later frame. Does not throw, and does not allocate once it has warmed up.
   FollowObservation Process(const cv::Mat& image, Time time);
 

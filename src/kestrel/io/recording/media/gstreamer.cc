@@ -129,6 +129,17 @@ bool CopyPixels(GstSample* sample, const GstVideoInfo& info, cv::Mat* image) {
   return true;
 }
 
+GstBufferPointer BufferOf(const cv::Mat& image, const GstVideoInfo& info) {
+  GstBufferPointer buffer(gst_buffer_new_allocate(nullptr, info.size, nullptr));
+  GstVideoFrame frame;
+  if (gst_video_frame_map(&frame, &info, buffer.get(), GST_MAP_WRITE) == FALSE) return nullptr;
+  cv::Mat pixels(image.size(), CV_8UC3, GST_VIDEO_FRAME_PLANE_DATA(&frame, 0),
+                 static_cast<std::size_t>(GST_VIDEO_FRAME_PLANE_STRIDE(&frame, 0)));
+  image.copyTo(pixels);
+  gst_video_frame_unmap(&frame);
+  return buffer;
+}
+
 void GstWatch::Poll(Duration timeout) {
   constexpr auto kKinds =
       static_cast<GstMessageType>(GST_MESSAGE_ERROR | GST_MESSAGE_EOS | GST_MESSAGE_ELEMENT);

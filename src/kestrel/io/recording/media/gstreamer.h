@@ -55,6 +55,10 @@ GstSamplePointer PullSample(GstElement* sink, Duration timeout);
 // cannot be read.
 bool CopyPixels(GstSample* sample, const GstVideoInfo& info, cv::Mat* image);
 
+// Returns a buffer with the pixels of a BGR image. 'info': the format BGR, of the image's size.
+// Null when there is no memory.
+GstBufferPointer BufferOf(const cv::Mat& image, const GstVideoInfo& info);
+
 // Watches the messages of a pipeline.
 class GstWatch {
  public:

@@ -60,18 +60,11 @@ class VideoFile::Encoder {
   void Write(const cv::Mat& image) {
     looks_ = 0;
     WaitForRoom();
-    GstBufferPointer buffer(gst_buffer_new_allocate(nullptr, info_.size, nullptr));
+    GstBufferPointer buffer = BufferOf(image, info_);
+    if (!buffer) throw InputError(path_ + ": no memory for an image");
     GST_BUFFER_PTS(buffer.get()) = TimeOf(count_);
     GST_BUFFER_DURATION(buffer.get()) = TimeOf(count_ + 1) - TimeOf(count_);
     ++count_;
-    GstVideoFrame frame;
-    if (gst_video_frame_map(&frame, &info_, buffer.get(), GST_MAP_WRITE) == FALSE) {
-      throw InputError(path_ + ": no memory for an image");
-    }
-    cv::Mat pixels(image.size(), CV_8UC3, GST_VIDEO_FRAME_PLANE_DATA(&frame, 0),
-                   static_cast<std::size_t>(GST_VIDEO_FRAME_PLANE_STRIDE(&frame, 0)));
-    image.copyTo(pixels);
-    gst_video_frame_unmap(&frame);
     gst_app_src_push_buffer(source(), buffer.release());
   }
 
