@@ -64,7 +64,9 @@ export type CommandName =
   | "lens-stop"
   | "lens-save"
   | "settings"
-  | "mark";
+  | "mark"
+  | "confirm"
+  | "stop";
 
 export interface Hello {
   kind: "hello";

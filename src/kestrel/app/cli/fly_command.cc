@@ -191,10 +191,13 @@ class Flight {
         options_.fly.recorder.free_space_mb);
     console_ = sinks_.Add(
         std::make_unique<FlightConsole>(options, WithoutPassword(arguments_.source.sources.front()),
-                                        views, examination, live->channels(), Colors()));
+                                        views, examination, live->channels(), Colors(), Follows()));
     PrintLinks(console_->urls());
     Log("for Foxglove: " + console_->viewer_url());
   }
+
+  // True when the UAV flies to what is marked.
+  bool Follows() const { return arguments_.guide && arguments_.task.name == "follow"; }
 
   // Folders where the page of colours of a hunt keeps frames and models.
   std::optional<FlightColors> Colors() const {
@@ -289,6 +292,16 @@ class Flight {
                   session_->Mark(captured, box);
                   return logged(
                       fmt::format("follows a box of {:.0f} x {:.0f} px", box.width, box.height));
+                },
+            .confirm =
+                [this, logged] {
+                  session_->Confirm();
+                  return logged("confirmed: the UAV may fly to what is marked");
+                },
+            .stop =
+                [this, logged] {
+                  session_->StopFollowing();
+                  return logged("stopped: the UAV stands still and looks");
                 },
             .settings =
                 [this](const std::vector<std::string>& settings) {

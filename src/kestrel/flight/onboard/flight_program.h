@@ -52,7 +52,7 @@ struct FlightParts {
   ObservationSink* tables = nullptr;
   ObservationSink* sink = nullptr;
   const CameraCalibration* pointed = nullptr;  // with the gimbal to point; null: none is pointed
-  bool guides = false;                         // flies by set-points when the pilot gives the mode
+  GuidanceMaker guidance = {};  // flies by set-points when the pilot gives the mode; null: does not
   bool source_has_poses = false;               // the autopilot's poses are then not used
   bool sees_repeated = false;                  // processes images that equal the one before
   std::size_t cameras = 1;
@@ -86,6 +86,10 @@ class FlightProgram {
 
   // Calls 'action' between two frames: the vision waits for it. By any thread.
   void BetweenFrames(const std::function<void()>& action);
+
+  // Orders guidance to fly to the mark with this number, from when the pilot has given the mode; 0:
+  // to stand still. Called by any thread.
+  void Order(int mark);
 
   // Returns the present state. Called by any thread.
   FlightReport Report() const;
@@ -142,8 +146,9 @@ class FlightProgram {
   FlightEnd end_;  // valid once the flight is over
 
   // Used by the link's thread only.
-  PadInSight pad_;
-  std::optional<TargetSender> sender_;
+  std::optional<PadInSight> pad_;
+  TargetTrackerOptions tracker_;
+  std::optional<TargetSender> sender_;  // nothing: there is nothing to land on
   std::optional<GuidedFlight> guided_;
   std::optional<PointedGimbal> gimbal_;
   TurnNoise noise_;  // of the predicted track
@@ -166,6 +171,8 @@ class FlightProgram {
   std::atomic<TargetPhase> phase_{TargetPhase::kSearching};
   std::atomic<GuidancePhase> guidance_phase_{GuidancePhase::kIdle};
   std::atomic<int> set_points_{0};
+  std::atomic<int> orders_{0};
+  std::atomic<FollowOrder> order_{FollowOrder()};
   mutable std::mutex autopilot_mutex_;
   AutopilotState autopilot_state_;  // guarded by autopilot_mutex_
   std::atomic<double> height_m_{0};

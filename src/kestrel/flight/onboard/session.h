@@ -96,6 +96,10 @@ class LiveSession : public Session {
   virtual void Change(const TaskOptions& options, std::optional<double> altitude_m) = 0;
   // As Vision::Mark: a person's mark on a picture may be two seconds late.
   virtual void Mark(Time frame, const cv::Rect2d& box_px) = 0;
+  // A person's confirmation that the UAV is to fly to what is marked now, and the order to stop.
+  // Throws InputError when guidance does not fly, or nothing is marked.
+  virtual void Confirm() = 0;
+  virtual void StopFollowing() = 0;
   // Calls 'action' between two frames: the vision waits for it.
   virtual void BetweenFrames(const std::function<void()>& action) = 0;
   // Starts and stops recordings.

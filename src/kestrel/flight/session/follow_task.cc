@@ -75,8 +75,8 @@ class KeptImages {
   std::size_t next_ = 0;
 };
 
-// The pipeline of a marked thing in a session. No target for the autopilot is in its snapshot: what
-// a person marks is nothing to land on.
+// The pipeline of a marked thing in a session. It has no pad: what a person marks is nothing to land
+// on.
 class FollowVision : public Vision {
  public:
   FollowVision(const SessionCamera& camera, const FollowPipelineOptions& options,
@@ -92,6 +92,9 @@ class FollowVision : public Vision {
   Duration pose_lead() const override { return clock_offset_; }
   Observation Process(const Frame& frame) override;
   TrackSnapshot snapshot() const override { return snapshot_; }
+  std::optional<TargetTrackerOptions> marked() const override {
+    return pipeline_.options().Tracker();
+  }
   bool has_world() const override { return has_world_; }
   void Change(const TaskOptions& options, std::optional<double> /*altitude_m*/) override {
     pipeline_.ChangeOptions(InFlight(options.follow, is_live_));
@@ -128,6 +131,11 @@ Observation FollowVision::Process(const Frame& frame) {
     ++frames_[static_cast<std::size_t>(seen.region->state)];
     snapshot_.detections += seen.region->state == RegionState::kFollowing;
   }
+  snapshot_.state = seen.track_state;
+  snapshot_.target = seen.target;
+  const bool is_placed =
+      seen.fate == MeasurementFate::kStarted || seen.fate == MeasurementFate::kAccepted;
+  if (is_placed) snapshot_.seen = snapshot_.captured;
   return {frame, std::move(seen)};
 }
 
@@ -156,6 +164,9 @@ void FollowVision::Mark(Time frame, const cv::Rect2d& box_px) {
                                  KeptImages::kMost));
   }
   pipeline_.Mark(since.front()->pixels, frame, box_px);
+  ++snapshot_.mark;
+  snapshot_.target.reset();
+  snapshot_.seen.reset();
   for (std::size_t i = 1; i < since.size(); ++i) {
     pipeline_.Process(since[i]->pixels, since[i]->time);
   }

@@ -8,21 +8,14 @@
 #include <deque>
 #include <memory>
 #include <optional>
-#include <span>
-#include <string>
-#include <utility>
-#include <variant>
 
 #include <Eigen/Geometry>
 #include <opencv2/core.hpp>
 
 #include "kestrel/comms/mavlink/mavlink_enums.h"
-#include "kestrel/comms/mavlink/packet_parser.h"
-#include "kestrel/comms/mavlink/packet_writer.h"
 #include "kestrel/core/geometry/angles.h"
-#include "kestrel/flight/onboard/guided_flight.h"
-#include "kestrel/flight/onboard/pointed_gimbal.h"
-#include "kestrel/simulation/autopilots/test_autopilot.h"
+#include "kestrel/flight/guidance/landing_guidance.h"
+#include "kestrel/simulation/autopilots/test_linked_flight.h"
 #include "kestrel/vision/pipeline/landing_pipeline.h"
 
 namespace kestrel {
@@ -87,10 +80,8 @@ struct PointingErrors {
   double largest = 0;
 };
 
-// A simulated autopilot, and over MAVLink all of Kestrel that flies but for the images: the landing
-// pipeline, guidance where there is any, and the pointed gimbal where the camera is on one. In
-// simulated time.
-class PointedFlight : public TestAutopilot {
+// A linked flight with the landing pipeline, which gets the truth instead of images.
+class PointedFlight : public LinkedFlight {
  public:
   struct Choice {
     bool has_gimbal = true;  // the camera is on one
@@ -104,27 +95,19 @@ class PointedFlight : public TestAutopilot {
       : PointedFlight(firmware, options, vehicle, Choice()) {}
   PointedFlight(AutopilotFirmware firmware, const AutopilotModelOptions& options,
                 const VehicleWorldOptions& vehicle, const Choice& choice)
-      : TestAutopilot(firmware, options, vehicle, choice.seed),
+      : LinkedFlight(firmware, options, vehicle, choice.seed,
+                     TestCamera(choice.has_gimbal, choice.half_view_deg)),
         half_view_(Radians(choice.half_view_deg)),
-        camera_(TestCamera(choice.has_gimbal, choice.half_view_deg)),
         pipeline_(camera_, std::make_unique<TrueDetector>(CameraModel(camera_.intrinsics), &seen_),
-                  PipelineOptions()),
-        connection_("udpout://127.0.0.1:9", {},
-                    [this](std::span<const std::uint8_t> frame, Time) { Carry(frame); }),
-        autopilot_(LinkOptions(choice.has_gimbal), &connection_, Listener()) {
-    const auto report = [this](const std::string& text) { reported += text + "\n"; };
+                  PipelineOptions()) {
     const PadInSight pad{1.2, kTestSightRange_m, TargetTrackerOptions()};
-    if (choice.has_gimbal) {
-      pointed_.emplace(FlightOptions(), camera_, pad, &autopilot_, &connection_, report);
-    }
-    if (choice.guides) {
-      guided_.emplace(FlightOptions(), pad.tracker, true, &autopilot_, &connection_, report);
-    }
+    if (choice.has_gimbal) Point(pad, pad.tracker);
+    if (!choice.guides) return;
+    Guide(FlightOptions(), pad.tracker, [](const GuidanceOptions& guidance) {
+      return std::make_unique<LandingGuidance>(guidance);
+    });
   }
 
-  void Fly(double seconds) {
-    Run(seconds, [this] { Step(); });
-  }
   PointingErrors FlyAndMeasure(double seconds) {
     PointingErrors errors;
     int steps = 0;
@@ -168,9 +151,6 @@ class PointedFlight : public TestAutopilot {
     SendFromGround(command);
   }
 
-  int set_points = 0;  // sent to the gimbal
-  std::string reported;
-
  private:
   // An image waits for the vision.
   struct Image {
@@ -183,62 +163,17 @@ class PointedFlight : public TestAutopilot {
     options.pose_extrapolation_s = 0.1;
     return options;
   }
-  static AutopilotOptions LinkOptions(bool has_gimbal) {
-    constexpr double kMode_hz = 20;
-    AutopilotOptions options;
-    options.mode_rate_hz = kMode_hz;
-    options.points_gimbal = has_gimbal;
-    if (has_gimbal) options.gimbal_device_id = 0;
-    return options;
-  }
-  AutopilotListener Listener() {
-    AutopilotListener listener;
-    listener.pose = [this](const PoseSample& pose) {
-      poses_.Add(pose);
-      pipeline_.AddPose(pose);
-    };
-    listener.gimbal = [this](const GimbalSample& report) {
-      pointed_->TakeReport(report);
-      pipeline_.AddGimbal(report);
-    };
-    return listener;
-  }
+  void TakePose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
+  void TakeGimbal(const GimbalSample& report) override { pipeline_.AddGimbal(report); }
 
-  RigidTransform WorldFromCamera() const {
-    const RigidTransform& body = model.truth().world_from_body;
-    if (!camera_.gimbal) return body * *camera_.body_from_camera;
-    const GimbalAttitude attitude{model.world_from_platform(), YawFrame::kEarth};
-    return WorldFromPlatform(body, camera_.gimbal->body_from_pivot, attitude) *
-           camera_.gimbal->platform_from_camera;
-  }
   static double AngleOff(const RigidTransform& camera_from_target) {
     const Eigen::Vector3d& center = camera_from_target.translation;
     return std::atan2(center.head<2>().norm(), center.z());
   }
 
-  void Carry(std::span<const std::uint8_t> frame) {
-    companion_.Parse(frame, [this](const mavlink::Packet& packet) {
-      set_points += packet.id == mavlink::GimbalManagerSetPitchyaw::kId ? 1 : 0;
-      if (const auto message = CompanionMessageOf(packet)) Send(*message);
-    });
-  }
-  template <class Message>
-  void Deliver(const Message& message) {
-    from_autopilot_.Parse(writer_.Write(message), [this](const mavlink::Packet& packet) {
-      autopilot_.Handle(packet, now);
-      if (pointed_) pointed_->Handle(packet);
-    });
-  }
-
-  void Step() {
-    for (const AutopilotMessage& message : std::exchange(sent, {})) {
-      std::visit([this](const auto& typed) { Deliver(typed); }, message);
-    }
-    autopilot_.Tick(now);
+  void See() override {
     Capture();
-    See();
-    if (guided_) guided_->Fly(now, track_, poses_);
-    if (pointed_) pointed_->Point(now, track_, poses_);
+    Process();
   }
   void Capture() {
     constexpr Duration kPeriod = std::chrono::milliseconds(60);
@@ -255,7 +190,7 @@ class PointedFlight : public TestAutopilot {
     images_.push_back(image);
   }
   // The vision is done some time after the exposure.
-  void See() {
+  void Process() {
     constexpr Duration kLatency = std::chrono::milliseconds(40);
     if (images_.empty() || now < images_.front().captured + kLatency) return;
     const Image image = images_.front();
@@ -277,17 +212,8 @@ class PointedFlight : public TestAutopilot {
   }
 
   double half_view_;
-  CameraCalibration camera_;
   std::optional<RigidTransform> seen_;
   LandingPipeline pipeline_;
-  mavlink::PacketParser companion_, from_autopilot_;
-  mavlink::PacketWriter writer_{1, 1};
-  PoseHistory poses_{512, std::chrono::milliseconds(500)};
-  Connection connection_;
-  Autopilot autopilot_;
-  std::optional<PointedGimbal> pointed_;
-  std::optional<GuidedFlight> guided_;
-  TrackSnapshot track_;
   std::deque<Image> images_;
   Time capture_due_{};
 };

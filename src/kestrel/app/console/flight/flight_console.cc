@@ -28,7 +28,7 @@ constexpr Duration kReturn = std::chrono::seconds(20);
 constexpr Duration kLastWords = std::chrono::milliseconds(300);
 
 ConsoleFeed::Description DescriptionOf(const std::string& title, const TaskView& view,
-                                       bool has_colors) {
+                                       bool has_colors, bool follows) {
   const ViewParts parts = PartsOf(view);
   ConsoleFeed::Description description{
       .title = title,
@@ -41,6 +41,10 @@ ConsoleFeed::Description DescriptionOf(const std::string& title, const TaskView&
       .has_colors = has_colors};
   if (std::holds_alternative<FollowView>(view)) {
     description.offers.push_back(ConsoleCommandKind::kMark);
+  }
+  if (follows) {
+    description.offers.push_back(ConsoleCommandKind::kConfirm);
+    description.offers.push_back(ConsoleCommandKind::kStop);
   }
   description.series.push_back({"latency", "ms", "Capture to result", {ValueSource::kFrames}});
   description.series.push_back({"link", "1/s", "Packets", {ValueSource::kAutopilot}});
@@ -173,8 +177,9 @@ class FlightConsole::Page : public SinkWriter {
 
 FlightConsole::FlightConsole(const ConsoleOptions& options, const std::string& title,
                              const std::vector<TaskView>& views, FlightExamination examination,
-                             ChannelFeed* channels, std::optional<FlightColors> colors)
-    : feed_(DescriptionOf(title, views.front(), colors.has_value())),
+                             ChannelFeed* channels, std::optional<FlightColors> colors,
+                             bool follows)
+    : feed_(DescriptionOf(title, views.front(), colors.has_value(), follows)),
       arrivals_(kArrivals),
       server_(ServeConsole(options, &feed_, WebAssets(), channels)),
       pictures_({.thread_name = "console frames",
@@ -252,6 +257,10 @@ void FlightConsole::Answer(const FlightRequests& requests, const ConsoleCommand&
       feed_.Add(requests.settings(command.settings));
     } else if (command.kind == ConsoleCommandKind::kMark) {
       Mark(requests, command.settings);
+    } else if (command.kind == ConsoleCommandKind::kConfirm) {
+      Report(EventLevel::kInfo, requests.confirm());
+    } else if (command.kind == ConsoleCommandKind::kStop) {
+      Report(EventLevel::kInfo, requests.stop());
     }
   } catch (const InputError& error) {
     Report(EventLevel::kError, error.what());

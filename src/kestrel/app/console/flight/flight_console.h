@@ -31,6 +31,8 @@ struct FlightRequests {
   std::function<std::string(const cv::Mat& image, Time captured)> keep_snapshot;
   // Follows what was marked in the picture of this time.
   std::function<std::string(Time captured, const cv::Rect2d& box_px)> mark = {};
+  std::function<std::string()> confirm = {};  // lets the UAV fly to what is marked
+  std::function<std::string()> stop = {};     // lets it stand still
   // Saves settings, each as "key=value", and returns the state of all that can be changed, with
   // what was saved or why not; none: only returns it. Does not throw InputError.
   std::function<ConsoleSettings(const std::vector<std::string>& settings)> settings;
@@ -49,11 +51,12 @@ class FlightConsole : public ObservationSink {
  public:
   // Starts the server. 'title': title of the page. 'views': of each camera. The page shows the
   // camera that sees the target, and checks the first one. 'channels' as for WebServer. 'colors':
-  // for a hunt only; the page then teaches its model's colours. Throws InputError as WebServer and
-  // ColorPage do.
+  // for a hunt only; the page then teaches its model's colours. 'follows': the UAV flies to what is
+  // marked, once a person confirms it. Throws InputError as WebServer and ColorPage do.
   FlightConsole(const ConsoleOptions& options, const std::string& title,
                 const std::vector<TaskView>& views, FlightExamination examination,
-                ChannelFeed* channels = nullptr, std::optional<FlightColors> colors = std::nullopt);
+                ChannelFeed* channels = nullptr, std::optional<FlightColors> colors = std::nullopt,
+                bool follows = false);
   ~FlightConsole() override { Finish(); }
   FlightConsole(const FlightConsole&) = delete;
   FlightConsole& operator=(const FlightConsole&) = delete;

@@ -28,7 +28,9 @@ constexpr std::array kCommands = {ConsoleCommandKind::kRecord,
                                   ConsoleCommandKind::kLensStop,
                                   ConsoleCommandKind::kLensSave,
                                   ConsoleCommandKind::kSettings,
-                                  ConsoleCommandKind::kMark};
+                                  ConsoleCommandKind::kMark,
+                                  ConsoleCommandKind::kConfirm,
+                                  ConsoleCommandKind::kStop};
 // A list in an object. Deeper text would use up the parser's stack.
 constexpr int kMaxDepth = 2;
 // True for the commands with a list of settings.
@@ -132,6 +134,10 @@ const char* ToString(ConsoleCommandKind kind) {
       return "settings";
     case ConsoleCommandKind::kMark:
       return "mark";
+    case ConsoleCommandKind::kConfirm:
+      return "confirm";
+    case ConsoleCommandKind::kStop:
+      return "stop";
   }
   return "";
 }

@@ -45,10 +45,12 @@ enum class ConsoleCommandKind {
   kLensSave,         // save its result: a name, and "replace" to replace a file
   kSettings,         // save these settings for the next start
   kMark,             // follow what is marked: the picture's time (ns), x, y, width, height (px)
+  kConfirm,          // the UAV may fly to what is marked
+  kStop,             // it stands still
 };
 // Returns "record", "snapshot", "play", "seek", "step", "detect", "cancel", "calibrate",
 // "calibrate-cancel", "calibrate-save", "compare", "open", "lens", "lens-stop", "lens-save",
-// "settings" or "mark".
+// "settings", "mark", "confirm" or "stop".
 const char* ToString(ConsoleCommandKind kind);
 struct ConsoleCommand {
   ConsoleCommandKind kind = ConsoleCommandKind::kSnapshot;

@@ -41,6 +41,10 @@ TEST(ClientMessageTest, ReadsMessagesOfPage) {
       R"({"command": "mark", "settings": ["1700000000000000000", "1", "2", "30", "40"]})"));
   EXPECT_EQ(mark.kind, ConsoleCommandKind::kMark);
   EXPECT_EQ(mark.settings.size(), 5u);
+  EXPECT_EQ(std::get<ConsoleCommand>(*ParseClientMessage(R"({"command": "confirm"})")).kind,
+            ConsoleCommandKind::kConfirm);
+  EXPECT_EQ(std::get<ConsoleCommand>(*ParseClientMessage(R"({"command": "stop"})")).kind,
+            ConsoleCommandKind::kStop);
 }
 
 TEST(ClientMessageTest, LimitsSettings) {
