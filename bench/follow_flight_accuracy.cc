@@ -48,6 +48,7 @@ AutopilotModelOptions ModelOf(AutopilotFirmware firmware, std::uint64_t seed) {
   options.pilot.land_after_s = -1;
   options.pilot.offset_east_m = 9;
   options.pilot.offset_north_m = -7;
+  options.pilot.heading_deg = -52;  // towards the vehicle
   options.uav.multicopter.max_tilt_deg = 45;
   options.uav.multicopter.max_acceleration = 10;
   if (firmware == AutopilotFirmware::kArduPilot) {

@@ -94,7 +94,8 @@ void FlyArguments::AddTo(CLI::App* command) {
                  "No guard: if Kestrel dies in flight, only the autopilot's own time-out acts")
       ->needs(guide_flag);
   CLI::Option* point_flag = command->add_flag(
-      "--point", point, "Point the camera's gimbal at the pattern, or at what is marked, as --guide does, too");
+      "--point", point,
+      "Point the camera's gimbal at the pattern, or at what is marked, as --guide does, too");
   task.AddTo(command, [](std::string_view) { return true; });
   CLI::Option* hunt_flag = command->get_option("--hunt");
   command->add_option("--model", model, "Objects and their colours (YAML), with --hunt")

@@ -18,36 +18,49 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kCoast_s = 1;     // the UAV flies on by the prediction alone for no longer
+constexpr double kCoast_s = 1;  // the UAV flies on by the prediction alone for no longer
 // Parts of the distance: the largest standard deviation of the target's place to begin with, and to
 // go on with; and the errors of the distance below which it is following, and beyond which not.
 constexpr double kKnown = 0.2, kStillKnown = 0.3;
 constexpr double kNear = 0.1, kFar = 0.2;
 constexpr double kHalted_mps = 0.5;  // a UAV that is slower stands still where it is
-constexpr double kLeastWay_m = 1;      // nearer to the target the nose stays as it is
+constexpr double kLeastWay_m = 1;    // nearer to the target the nose stays as it is
 
 Vector2d WayTo(const TargetEstimate& target, const UavState& uav) {
   return Vector2d(target.motion.position().head<2>()) - uav.world_from_body.translation.head<2>();
+}
+
+// Returns the options with a braking for which a fixed camera, at its place beside the target, does
+// not lose it.
+GuidanceOptions WithinView(GuidanceOptions options, const std::optional<ViewLimits>& view) {
+  constexpr double kShare = 0.6;  // the rest is for the target's own acceleration
+  if (!view) return options;
+  const ViewLimits::Leans leans =
+      view->LeansFor(options.follow.distance_m, options.follow.height_m);
+  const double most = kGravity * std::tan(std::min(leans.forward, leans.back));
+  options.braking = std::min(options.braking, kShare * most);
+  return options;
 }
 
 }  // namespace
 
 FollowGuidance::FollowGuidance(const GuidanceOptions& options,
                                const std::optional<ViewLimits>& view)
-    : Guidance(options, std::nullopt), view_(view), stand_off_(options.follow) {
+    : Guidance(WithinView(options, view), std::nullopt), view_(view), stand_off_(options.follow) {
   const FollowOptions& follow = options.follow;
   const FlightLimitsOptions& limits = options.limits;
   if (!(follow.height_m >= limits.floor_m && follow.height_m <= limits.ceiling_m)) {
-    throw InputError(fmt::format("follow.height_m is {:g}, expected {:g} (limits.floor_m) to {:g} "
-                                 "(limits.ceiling_m)",
-                                 follow.height_m, limits.floor_m, limits.ceiling_m));
+    throw InputError(
+        fmt::format("follow.height_m is {:g}, expected {:g} (limits.floor_m) to {:g} "
+                    "(limits.ceiling_m)",
+                    follow.height_m, limits.floor_m, limits.ceiling_m));
   }
   if (!view || view->Sees(follow.distance_m, follow.height_m)) return;
   throw InputError(fmt::format(
-      "follow.distance_m {:g}, follow.height_m {:g}: the camera, fixed as it is, does not look {:.0f} "
+      "follow.distance_m {:g}, follow.height_m {:g}: the camera, fixed as it is, does not look "
+      "{:.0f} "
       "degrees down, where the target would be",
-      follow.distance_m, follow.height_m,
-      Degrees(std::atan2(follow.height_m, follow.distance_m))));
+      follow.distance_m, follow.height_m, Degrees(std::atan2(follow.height_m, follow.distance_m))));
 }
 
 void FollowGuidance::Begin(const GuidanceInput& input) {
@@ -103,7 +116,8 @@ void FollowGuidance::ChoosePhase(const GuidanceInput& input) {
 // Returns why the UAV may not fly to the target now, a literal; null: it may.
 const char* FollowGuidance::WhyNotFollow(const GuidanceInput& input) {
   const bool is_seen = input.is_camera_up && input.target_age_s <= kCoast_s;
-  if (!input.target || !is_seen) return "what is marked is lost: stands still until it is seen again";
+  if (!input.target || !is_seen)
+    return "what is marked is lost: stands still until it is seen again";
   const double most = (IsFollowing() ? kStillKnown : kKnown) * options().follow.distance_m;
   if (!(input.target->position_sigma_m() <= most)) {
     return "the place of what is marked is too uncertain: stands still";
@@ -166,8 +180,8 @@ SetPoint FollowGuidance::Pursue(const GuidanceInput& input) {
   const TurnState& target = input.target->motion;
   const Vector3d& position = input.uav->world_from_body.translation;
   const Vector3d& velocity = input.uav->velocity_in_world;
-  stand_off_.Update({target.position().head<2>(), target.velocity().head<2>()},
-                    position.head<2>(), SecondsSinceLast(input.now));
+  stand_off_.Update({target.position().head<2>(), target.velocity().head<2>()}, position.head<2>(),
+                    SecondsSinceLast(input.now));
   SetPoint command = pursuit().Beside(*input.target, stand_off_,
                                       {position.head<2>(), velocity.head<2>()}, &flight_model());
   const double height_m = position.z() - target.position().z();
@@ -199,9 +213,8 @@ void FollowGuidance::LimitLean(const GuidanceInput& input, double seconds,
   if (!view_ || !input.target) return;
   const Vector3d& position = input.uav->world_from_body.translation;
   const Vector3d& velocity = input.uav->velocity_in_world;
-  const ViewLimits::Leans leans =
-      view_->LeansFor(WayTo(*input.target, *input.uav).norm(),
-                      position.z() - input.target->motion.position().z());
+  const ViewLimits::Leans leans = view_->LeansFor(
+      WayTo(*input.target, *input.uav).norm(), position.z() - input.target->motion.position().z());
   const Vector2d most = kGravity * Vector2d(std::tan(leans.forward), std::tan(leans.side));
   const Vector2d least = -kGravity * Vector2d(std::tan(leans.back), std::tan(leans.side));
   const Eigen::Rotation2Dd nose(yaw_);

@@ -44,12 +44,12 @@ class FollowGuidance : public Guidance {
 
   std::optional<ViewLimits> view_;
   StandOff stand_off_;
-  int order_ = 0;                     // number of the newest order that was looked at
-  int mark_ = 0;                      // the mark that the UAV may fly to; 0: none
-  std::optional<Time> lost_;          // since when that is lost
+  int order_ = 0;                        // number of the newest order that was looked at
+  int mark_ = 0;                         // the mark that the UAV may fly to; 0: none
+  std::optional<Time> lost_;             // since when that is lost
   std::optional<Eigen::Vector3d> stay_;  // where it stands still; nothing: it still brakes
-  double yaw_ = 0;                    // of the nose, commanded, rad
-  double yaw_rate_ = 0;               // rad/s
+  double yaw_ = 0;                       // of the nose, commanded, rad
+  double yaw_rate_ = 0;                  // rad/s
 };
 
 }  // namespace kestrel

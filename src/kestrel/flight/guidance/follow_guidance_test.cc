@@ -106,8 +106,7 @@ struct FollowFlight {
   bool Sees() const {
     const GuidanceInput input = Input();
     Vector2d pixel;
-    const RigidTransform world_from_camera =
-        input.uav->world_from_body * BodyFromCamera(35);
+    const RigidTransform world_from_camera = input.uav->world_from_body * BodyFromCamera(35);
     return CameraModel(Lens()).Project(world_from_camera.Inverse() * target.Position(time_s),
                                        &pixel) == ProjectionStatus::kOk;
   }

@@ -282,12 +282,10 @@ void Guidance::WatchDemand(const GuidanceInput& input) {
   Remember(demand.is_beyond_limits() && is_behind, input.now, &beyond_since_);
 }
 
-bool Guidance::CannotFollow() const {
-  return IsLongerThan(kBeyondLimits_s, beyond_since_, last_);
-}
+bool Guidance::CannotFollow() const { return IsLongerThan(kBeyondLimits_s, beyond_since_, last_); }
 
 GuidanceOutput Guidance::Output(const std::optional<SetPoint>& set_point,
-                                       GuidanceRequest request) const {
+                                GuidanceRequest request) const {
   return {set_point, phase_, request, reason_, CannotFollow()};
 }
 

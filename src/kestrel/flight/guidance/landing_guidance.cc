@@ -84,8 +84,8 @@ Guidance::Wish LandingGuidance::Choose(const GuidanceInput& input) {
   if (wish.is_flying) {
     wish.set_point = input.target ? Pursue(input, now) : Search(input, now);
   } else {
-    wish.set_point = stay_.Rest(input.now, input.uav->world_from_body.rotation, now.velocity,
-                                model().delay_s());
+    wish.set_point =
+        stay_.Rest(input.now, input.uav->world_from_body.rotation, now.velocity, model().delay_s());
     wish.request = stay_.Request(input.now, input.is_landed, contact_since_);
   }
   if (!wish.set_point.yaw) {
@@ -216,8 +216,8 @@ SetPoint LandingGuidance::Search(const GuidanceInput& input, const Situation& no
   const double seconds = SecondsSinceLast(input.now);
   const Vector2d place = search_.Advance(input.now, road_, now.feet.head<2>(), seconds);
   if (*search_.step() != '\0') set_reason(search_.step());
-  SetPoint command = pursuit().To(place, {now.feet.head<2>(), now.velocity.head<2>()}, &flight_model(),
-                                 options().limits.max_speed_mps);
+  SetPoint command = pursuit().To(place, {now.feet.head<2>(), now.velocity.head<2>()},
+                                  &flight_model(), options().limits.max_speed_mps);
   command.velocity.z() = kHeightGain * (options().search_altitude_m - now.feet.z());
   return command;
 }

@@ -26,11 +26,11 @@ Closing ClosingSpeed(double distance_m, double gain, double braking);
 // Returns the acceleration of a target in its curve 'ahead_s' from now, m/s^2.
 Eigen::Vector3d AccelerationAhead(const TurnState& motion, double ahead_s);
 
-// Horizontal set-points to a place, to above a moving target, or to a place beside it. The wanted velocity is the target's
-// smoothed velocity plus a velocity towards it. Both, and the accelerations that they need (the
-// target's in its curve, that of closing in), are those of the moment at which the set-point takes
-// effect. The UAV's model gives the command for them. The remaining offset is integrated, in a
-// frame that turns with the target.
+// Horizontal set-points to a place, to above a moving target, or to a place beside it. The wanted
+// velocity is the target's smoothed velocity plus a velocity towards it. Both, and the
+// accelerations that they need (the target's in its curve, that of closing in), are those of the
+// moment at which the set-point takes effect. The UAV's model gives the command for them. The
+// remaining offset is integrated, in a frame that turns with the target.
 class TargetPursuit {
  public:
   explicit TargetPursuit(const GuidanceOptions& options);

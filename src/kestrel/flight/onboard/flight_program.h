@@ -53,8 +53,8 @@ struct FlightParts {
   ObservationSink* sink = nullptr;
   const CameraCalibration* pointed = nullptr;  // with the gimbal to point; null: none is pointed
   GuidanceMaker guidance = {};  // flies by set-points when the pilot gives the mode; null: does not
-  bool source_has_poses = false;               // the autopilot's poses are then not used
-  bool sees_repeated = false;                  // processes images that equal the one before
+  bool source_has_poses = false;  // the autopilot's poses are then not used
+  bool sees_repeated = false;     // processes images that equal the one before
   std::size_t cameras = 1;
   std::optional<LinkProfile> profile;  // nothing: chosen by the heartbeat
   // Returns the true pattern at the time of a frame, in a simulation that knows it.

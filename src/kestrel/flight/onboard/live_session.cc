@@ -188,9 +188,8 @@ bool Flight::Points() const {
 GuidanceMaker Flight::Guide() const {
   if (!options_.guides) return nullptr;
   if (!vision().marked()) {
-    return [](const GuidanceOptions& options) {
-      return std::make_unique<LandingGuidance>(options);
-    };
+    return
+        [](const GuidanceOptions& options) { return std::make_unique<LandingGuidance>(options); };
   }
   const CameraCalibration& camera = live_.calibration;
   std::optional<ViewLimits> view;

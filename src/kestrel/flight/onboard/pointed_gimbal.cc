@@ -116,8 +116,8 @@ void PointedGimbal::ReportControl(Time now) {
   if (control == Control::kRequested) requested_ = now;
   following_.reset();
   if (control == Control::kOwn) {
-    Notify(mavlink::kSeverityInfo, has_pad_ ? "points the gimbal at the pattern"
-                                            : "points the gimbal at what is marked");
+    Notify(mavlink::kSeverityInfo,
+           has_pad_ ? "points the gimbal at the pattern" : "points the gimbal at what is marked");
   }
   if (control != Control::kTaken) return;
   Notify(mavlink::kSeverityWarning,

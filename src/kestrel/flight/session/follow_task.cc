@@ -75,8 +75,8 @@ class KeptImages {
   std::size_t next_ = 0;
 };
 
-// The pipeline of a marked thing in a session. It has no pad: what a person marks is nothing to land
-// on.
+// The pipeline of a marked thing in a session. It has no pad: what a person marks is nothing to
+// land on.
 class FollowVision : public Vision {
  public:
   FollowVision(const SessionCamera& camera, const FollowPipelineOptions& options,

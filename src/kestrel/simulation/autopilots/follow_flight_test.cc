@@ -28,6 +28,7 @@ AutopilotModelOptions Guided(bool has_gimbal) {
   options.pilot.land_after_s = -1;
   options.pilot.offset_east_m = 9;
   options.pilot.offset_north_m = -7;
+  options.pilot.heading_deg = -52;  // towards the vehicle
   options.has_gimbal = has_gimbal;
   return options;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -22,7 +23,7 @@ namespace kestrel {
 // A camera of 75 by 60 degrees that is fixed to the body and looks ahead and down, or one on a
 // gimbal.
 inline CameraCalibration FollowCamera(bool has_gimbal) {
-  constexpr double kDown_deg = 35;
+  constexpr double kDown_deg = 25;
   CameraCalibration camera;
   camera.intrinsics = {640, 480, 416, 416, 319.5, 239.5, DistortionModel::kNone, {}};
   Eigen::Matrix3d axes;
@@ -30,14 +31,13 @@ inline CameraCalibration FollowCamera(bool has_gimbal) {
   const Eigen::Quaterniond ahead(axes);
   if (has_gimbal) camera.gimbal.emplace().platform_from_camera.rotation = ahead;
   camera.body_from_camera.emplace().rotation =
-      has_gimbal ? ahead
-                 : Eigen::AngleAxisd(Radians(kDown_deg), Eigen::Vector3d::UnitY()) * ahead;
+      has_gimbal ? ahead : Eigen::AngleAxisd(Radians(kDown_deg), Eigen::Vector3d::UnitY()) * ahead;
   return camera;
 }
 
-// A linked flight that follows the vehicle, which is marked from the beginning. In place of images
-// it gets the vehicle's true place on the ground, with the errors of a region's place: those of one
-// image, and those that stay.
+// A linked flight that follows the vehicle, which a person marks as soon as it is in view; a gimbal
+// looks down to it until then. In place of images it gets the vehicle's true place on the ground,
+// with the errors of a region's place: those of one image, and those that stay.
 class FollowedFlight : public LinkedFlight {
  public:
   FollowedFlight(AutopilotFirmware firmware, const AutopilotModelOptions& options,
@@ -55,7 +55,7 @@ class FollowedFlight : public LinkedFlight {
     });
     if (has_gimbal) Point(std::nullopt, tracker);
     for (double& error : stays_) error = random_.Normal();
-    track_.mark = 1;
+    if (has_gimbal) GiveControl(255, 190);
   }
 
   GuidancePhase phase() const { return guided_->phase(); }
@@ -110,6 +110,7 @@ class FollowedFlight : public LinkedFlight {
   void See() override {
     constexpr Duration kPeriod = std::chrono::milliseconds(60);
     constexpr Duration kLatency = std::chrono::milliseconds(40);
+    if (camera_.gimbal && track_.mark == 0) LookDown();
     if (now >= capture_due_) {
       capture_due_ = now + kPeriod;
       Capture();
@@ -119,22 +120,32 @@ class FollowedFlight : public LinkedFlight {
     images_.pop_front();
   }
 
+  // A person does that at the ground station.
+  void LookDown() {
+    mavlink::GimbalManagerSetPitchyaw slider;
+    slider.pitch = static_cast<float>(Radians(-45.0));
+    slider.yaw = 0;
+    slider.pitch_rate = slider.yaw_rate = std::numeric_limits<float>::quiet_NaN();
+    SendFromGround(slider);
+  }
+
   void Capture() {
     const RigidTransform world_from_camera = WorldFromCamera();
     Eigen::Vector2d pixel;
-    const bool is_in_view = lens_.Project(world_from_camera.Inverse() * Place(), &pixel) ==
-                            ProjectionStatus::kOk;
+    const bool is_in_view =
+        lens_.Project(world_from_camera.Inverse() * Place(), &pixel) == ProjectionStatus::kOk;
     ++images_taken_;
     images_with_it_ += is_in_view ? 1 : 0;
     Image image{now, std::nullopt};
     if (is_in_view) image.sight = Place() - model.truth().world_from_body.translation;
+    if (is_in_view) track_.mark = 1;
     images_.push_back(image);
   }
 
   // The errors are those of the line of sight, in the autopilot's world.
   void Process(const Image& image) {
     constexpr SightErrors kOwn{.direction_rad = 0.005, .position_m = 0.02, .ground_m = 0.05};
-    constexpr SightErrors kShared{.direction_rad = 0.01, .position_m = 0, .ground_m = 0.2};
+    constexpr SightErrors kShared{.direction_rad = 0.005, .position_m = 0, .ground_m = 0.1};
     const auto pose = poses_.Predict(image.captured, std::chrono::milliseconds(100), {});
     if (image.sight && pose) {
       const Eigen::Matrix3d own = GroundCovariance(*image.sight, kOwn);
@@ -148,8 +159,7 @@ class FollowedFlight : public LinkedFlight {
                                                  .position_in_world = place,
                                                  .covariance = own,
                                                  .shared_covariance = shared});
-      const bool is_taken =
-          fate == MeasurementFate::kStarted || fate == MeasurementFate::kAccepted;
+      const bool is_taken = fate == MeasurementFate::kStarted || fate == MeasurementFate::kAccepted;
       if (is_taken) track_.seen = image.captured;
     }
     track_.captured = image.captured;

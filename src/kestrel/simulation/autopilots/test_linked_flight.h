@@ -10,6 +10,7 @@
 #include <utility>
 #include <variant>
 
+#include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/comms/mavlink/packet_parser.h"
 #include "kestrel/comms/mavlink/packet_writer.h"
 #include "kestrel/core/camera/calibration.h"
@@ -25,6 +26,17 @@ class LinkedFlight : public TestAutopilot {
  public:
   void Fly(double seconds) {
     Run(seconds, [this] { Step(); });
+  }
+
+  // A message of a ground station.
+  void SendFromGround(const CompanionMessage& message) { model.Handle(message, 255, 190, now); }
+  void GiveControl(std::uint8_t system, std::uint8_t component) {
+    mavlink::CommandLong command;
+    command.target_system = 1;
+    command.command = mavlink::kCommandGimbalConfigure;
+    command.param1 = system;
+    command.param2 = component;
+    SendFromGround(command);
   }
 
   int set_points = 0;  // sent to the gimbal

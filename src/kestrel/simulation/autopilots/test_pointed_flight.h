@@ -12,7 +12,6 @@
 #include <Eigen/Geometry>
 #include <opencv2/core.hpp>
 
-#include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/flight/guidance/landing_guidance.h"
 #include "kestrel/simulation/autopilots/test_linked_flight.h"
@@ -139,17 +138,6 @@ class PointedFlight : public LinkedFlight {
     return Degrees(AngleOff(WorldFromCamera().Inverse() * world.PatternAt(now)));
   }
   bool has_track() const { return track_.state == TrackState::kTracking; }
-
-  // A message of a ground station.
-  void SendFromGround(const CompanionMessage& message) { model.Handle(message, 255, 190, now); }
-  void GiveControl(std::uint8_t system, std::uint8_t component) {
-    mavlink::CommandLong command;
-    command.target_system = 1;
-    command.command = mavlink::kCommandGimbalConfigure;
-    command.param1 = system;
-    command.param2 = component;
-    SendFromGround(command);
-  }
 
  private:
   // An image waits for the vision.
