@@ -15,6 +15,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 constexpr double kDistance_m = 10, kHeight_m = 7;
+constexpr double kDown_deg = 35;  // of a fixed camera
 
 FlightOptions FollowFrom(const std::string& side) {
   FlightOptions options;
@@ -40,7 +41,8 @@ INSTANTIATE_TEST_SUITE_P(Both, FollowFlightTest,
 TEST_P(FollowFlightTest, KeepsDistanceFromWalkerWithEitherCamera) {
   for (const bool has_gimbal : {false, true}) {
     FollowedFlight flight(GetParam(), Guided(has_gimbal), TestVehicle("stops", 1.4),
-                          FollowFrom("free"), has_gimbal, 1);
+                          FollowFrom("free"), has_gimbal ? std::nullopt : std::optional(kDown_deg),
+                          1);
     ASSERT_TRUE(flight.FollowWithin(40)) << flight.reported;
     flight.Fly(5);
     const FollowedFlight::Result result = flight.FlyAndMeasure(40);
@@ -53,7 +55,7 @@ TEST_P(FollowFlightTest, KeepsDistanceFromWalkerWithEitherCamera) {
 
 TEST_P(FollowFlightTest, DoesNotMoveWithoutConfirmation) {
   FollowedFlight flight(GetParam(), Guided(false), TestVehicle("standing", 0), FollowFrom("free"),
-                        false, 1);
+                        kDown_deg, 1);
   flight.Fly(6);
   ASSERT_EQ(flight.phase(), GuidancePhase::kLook) << flight.reported;
   const Eigen::Vector3d began = flight.model.truth().world_from_body.translation;

@@ -20,18 +20,17 @@
 
 namespace kestrel {
 
-// A camera of 75 by 60 degrees that is fixed to the body and looks ahead and down, or one on a
-// gimbal.
-inline CameraCalibration FollowCamera(bool has_gimbal) {
-  constexpr double kDown_deg = 25;
+// A camera of 75 by 60 degrees that is fixed to the body and looks ahead and down by 'down_deg';
+// nothing: one on a gimbal.
+inline CameraCalibration FollowCamera(const std::optional<double>& down_deg) {
   CameraCalibration camera;
   camera.intrinsics = {640, 480, 416, 416, 319.5, 239.5, DistortionModel::kNone, {}};
   Eigen::Matrix3d axes;
   axes << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   const Eigen::Quaterniond ahead(axes);
-  if (has_gimbal) camera.gimbal.emplace().platform_from_camera.rotation = ahead;
-  camera.body_from_camera.emplace().rotation =
-      has_gimbal ? ahead : Eigen::AngleAxisd(Radians(kDown_deg), Eigen::Vector3d::UnitY()) * ahead;
+  if (!down_deg) camera.gimbal.emplace().platform_from_camera.rotation = ahead;
+  const Eigen::AngleAxisd down(Radians(down_deg.value_or(0)), Eigen::Vector3d::UnitY());
+  camera.body_from_camera.emplace().rotation = down * ahead;
   return camera;
 }
 
@@ -41,21 +40,21 @@ inline CameraCalibration FollowCamera(bool has_gimbal) {
 class FollowedFlight : public LinkedFlight {
  public:
   FollowedFlight(AutopilotFirmware firmware, const AutopilotModelOptions& options,
-                 const VehicleWorldOptions& vehicle, const FlightOptions& flight, bool has_gimbal,
-                 std::uint64_t seed)
-      : LinkedFlight(firmware, options, vehicle, seed, FollowCamera(has_gimbal)),
+                 const VehicleWorldOptions& vehicle, const FlightOptions& flight,
+                 const std::optional<double>& down_deg, std::uint64_t seed)
+      : LinkedFlight(firmware, options, vehicle, seed, FollowCamera(down_deg)),
         lens_(camera_.intrinsics),
         follow_(flight.guidance.follow),
         random_(seed) {
     std::optional<ViewLimits> view;
-    if (!has_gimbal) view.emplace(camera_.intrinsics, *camera_.body_from_camera);
+    if (down_deg) view.emplace(camera_.intrinsics, *camera_.body_from_camera);
     const TargetTrackerOptions tracker = FollowPipelineOptions().Tracker();
     Guide(flight, tracker, [view](const GuidanceOptions& guidance) {
       return std::make_unique<FollowGuidance>(guidance, view);
     });
-    if (has_gimbal) Point(std::nullopt, tracker);
+    if (!down_deg) Point(std::nullopt, tracker);
     for (double& error : stays_) error = random_.Normal();
-    if (has_gimbal) GiveControl(255, 190);
+    if (!down_deg) GiveControl(255, 190);
   }
 
   GuidancePhase phase() const { return guided_->phase(); }
