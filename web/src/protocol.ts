@@ -65,7 +65,9 @@ export type CommandName =
   | "lens-save"
   | "settings"
   | "mark"
-  | "point";
+  | "point"
+  | "confirm"
+  | "stop";
 
 export interface Hello {
   kind: "hello";

@@ -59,6 +59,7 @@ export function ImageView() {
       </div>
       <PictureAge shown={shown} />
       <MarkHint />
+      <FollowButtons />
     </section>
   );
 }
@@ -193,6 +194,18 @@ function pointOf(event: PointerEvent, width: number, height: number): Point {
 function MarkHint() {
   const canMark = useStore((state) => state.hello !== null && isOffered("mark"));
   return canMark ? <p class="hint">Click on what is to be followed, or drag a box around it.</p> : null;
+}
+
+/** Lets the UAV fly to what is marked, or stand still. */
+function FollowButtons() {
+  const canFly = useStore((state) => state.hello !== null && isOffered("confirm"));
+  if (!canFly) return null;
+  return (
+    <div class="switches" role="group" aria-label="Follow">
+      <button onClick={() => connection.command("confirm")}>fly to it</button>
+      <button onClick={() => connection.command("stop")}>stop</button>
+    </div>
+  );
 }
 
 // The canvas is at least so wide that lines and words over a small frame are fine.

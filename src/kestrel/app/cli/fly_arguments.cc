@@ -99,16 +99,17 @@ void FlyArguments::AddTo(CLI::App* command) {
                  "No guard: if Kestrel dies in flight, only the autopilot's own time-out acts")
       ->needs(guide_flag);
   CLI::Option* point_flag = command->add_flag(
-      "--point", point, "Point the camera's gimbal at the pattern, as --guide does, too");
+      "--point", point,
+      "Point the camera's gimbal at the pattern, or at what is marked, as --guide does, too");
   task.AddTo(command, [](std::string_view) { return true; });
   CLI::Option* hunt_flag = command->get_option("--hunt");
   command->add_option("--model", model, "Objects and their colours (YAML), with --hunt")
       ->type_name("FILE")
       ->needs(hunt_flag);
   CLI::Option* follow_flag = command->get_option("--follow");
+  guide_flag->excludes(hunt_flag);
+  point_flag->excludes(hunt_flag);
   for (CLI::Option* other : {hunt_flag, follow_flag}) {
-    guide_flag->excludes(other);
-    point_flag->excludes(other);
     other->excludes("--target")->excludes("--target-id")->excludes("--target-size");
   }
   team.AddTo(command)->needs(hunt_flag);
@@ -142,6 +143,9 @@ KestrelOptions FlyArguments::ReadOptions() {
   if (link_delay != "auto") options.fly.link_delay_s = ParseLinkDelay(link_delay);
   if (guide && autopilot.empty()) throw InputError("--guide: expected --autopilot URL");
   if (point && autopilot.empty()) throw InputError("--point: expected --autopilot URL");
+  if (guide && task.name == "follow" && !console) {
+    throw InputError("--follow --guide: expected --console, on which a person confirms the flight");
+  }
   if (no_guard) options.fly.guard.enabled = false;
   if (console && !console->empty()) {
     options.console = WithAddress(options.console, *console, "--console");

@@ -197,15 +197,22 @@ class Flight {
         options_.fly.recorder.free_space_mb);
     console_ = sinks_.Add(
         std::make_unique<FlightConsole>(options, WithoutPassword(arguments_.source.sources.front()),
-                                        views, examination, live->channels(), Colors(), Points()));
+                                        views, examination, live->channels(), Colors(), Offers()));
     PrintLinks(console_->urls());
     Log("for Foxglove: " + console_->viewer_url());
   }
 
-  // True where the session points a gimbal.
-  bool Points() const {
-    return (arguments_.point || arguments_.guide) && source_.live.calibration.gimbal &&
-           std::holds_alternative<LandingView>(View());
+  // The commands of the page that only some flights have.
+  std::vector<ConsoleCommandKind> Offers() const {
+    std::vector<ConsoleCommandKind> offers;
+    const bool follows = std::holds_alternative<FollowView>(View());
+    if (source_.live.calibration.gimbal && (arguments_.point || (arguments_.guide && !follows))) {
+      offers.push_back(ConsoleCommandKind::kPoint);
+    }
+    if (follows && arguments_.guide) {
+      offers.insert(offers.end(), {ConsoleCommandKind::kConfirm, ConsoleCommandKind::kStop});
+    }
+    return offers;
   }
 
   // As early as the page, for the same reason.
@@ -326,6 +333,16 @@ class Flight {
                 [this, logged] {
                   session_->ResumePointing();
                   return logged("requests the gimbal again");
+                },
+            .confirm =
+                [this, logged] {
+                  session_->Confirm();
+                  return logged("confirmed: the UAV may fly to what is marked");
+                },
+            .stop =
+                [this, logged] {
+                  session_->StopFollowing();
+                  return logged("stopped: the UAV stands still and looks");
                 },
             .settings =
                 [this](const std::vector<std::string>& settings) {

@@ -9,6 +9,7 @@
 #include "kestrel/flight/guidance/contact_detector.h"
 #include "kestrel/flight/guidance/flight_limits.h"
 #include "kestrel/flight/guidance/flight_model.h"
+#include "kestrel/flight/guidance/follow_options.h"
 #include "kestrel/flight/guidance/stale_safety.h"
 
 namespace kestrel {
@@ -65,6 +66,7 @@ struct GuidanceOptions {
   double disarm_after_s = 0;
   double disarm_carried_s = 3;
   bool accept_unsafe_loss = false;
+  FollowOptions follow;
   ContactOptions contact;
   StaleOptions stale;
   FlightLimitsOptions limits;
@@ -129,6 +131,7 @@ struct GuidanceOptions {
           "the same, for time with proof that a deck carries the UAV; 0: never");
     visit("accept_unsafe_loss", self.accept_unsafe_loss,
           "fly although the autopilot does not hold when set-points stop");
+    visit.Group("follow", self.follow);
     visit.Group("stale", self.stale);
     visit.Group("limits", self.limits);
     visit.Group("model", self.model);

@@ -21,6 +21,8 @@ const char* ToString(GuidancePhase phase) {
       return "go-around";
     case GuidancePhase::kLanded:
       return "landed";
+    case GuidancePhase::kLook:
+      return "look";
   }
   return "";
 }

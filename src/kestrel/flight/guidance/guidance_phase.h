@@ -7,14 +7,15 @@ enum class GuidancePhase {
   kIdle,      // not begun, refused, or ended: the pilot flies
   kSearch,    // flies to where the vehicle was last or should pass, waits there, then circles
               // outwards
-  kApproach,  // flies to above the target
-  kFollow,    // follows above it, at follow_height_m, until it may descend
+  kApproach,  // flies to above the target, or to beside what a person has marked
+  kFollow,    // follows it there; at follow_height_m above a pad, until it may descend
   kDescend,   // descends above it
   kCommit,    // the last bit of the descent
   kGoAround,  // climbs again
   kLanded,    // in contact with the deck; stays so until guidance begins anew
+  kLook,      // stands still and looks at what a person has marked
 };
-// "idle", "search", "approach", "follow", "descend", "commit", "go-around", "landed"
+// "idle", "search", "approach", "follow", "descend", "commit", "go-around", "landed", "look"
 const char* ToString(GuidancePhase phase);
 
 }  // namespace kestrel

@@ -68,17 +68,32 @@ SetPoint TargetPursuit::To(const Vector2d& place, const Motion& uav, FlightModel
 }
 
 SetPoint TargetPursuit::Above(const TargetEstimate& target, const Motion& uav, FlightModel* model) {
+  return Follow(target, nullptr, uav, model);
+}
+
+SetPoint TargetPursuit::Beside(const TargetEstimate& target, const StandOff& place,
+                               const Motion& uav, FlightModel* model) {
+  return Follow(target, &place, uav, model);
+}
+
+SetPoint TargetPursuit::Follow(const TargetEstimate& target, const StandOff* place,
+                               const Motion& uav, FlightModel* model) {
   const TurnState& motion = target.motion;
   const double delay_s = model->delay_s();
-  const Vector2d offset = Vector2d(motion.position().head<2>()) - uav.position;
   const Vector3d velocity = Smoothed(target);
-  const Vector2d slip = velocity.head<2>() - uav.velocity;
+  PlaneMotion now{motion.position().head<2>(), velocity.head<2>()};
+  PlaneMotion ahead{now.position, Turned(motion, velocity, delay_s).head<2>(),
+                    AccelerationAhead(motion, delay_s).head<2>()};
+  if (place != nullptr) {
+    now = place->Beside(now);
+    ahead = place->Beside(ahead);
+  }
+  const Vector2d offset = now.position - uav.position;
+  const Vector2d slip = now.velocity - uav.velocity;
   Integrate(target, offset);
   SetPoint command;
-  command.velocity = Turned(motion, velocity, delay_s);
-  command.velocity.z() = 0;
-  command.velocity.head<2>() += integral_;
-  command.acceleration = AccelerationAhead(motion, delay_s);
+  command.velocity.head<2>() = ahead.velocity + integral_;
+  command.acceleration.head<2>() = ahead.acceleration;
   Close(offset + delay_s * slip, slip, uav.velocity, Gain(*model), &command);
   model->Command(&command);
   return command;

@@ -9,6 +9,7 @@
 #include "kestrel/core/poses/set_point.h"
 #include "kestrel/flight/guidance/flight_model.h"
 #include "kestrel/flight/guidance/guidance_options.h"
+#include "kestrel/flight/guidance/stand_off.h"
 #include "kestrel/vision/tracking/target_tracker.h"
 
 namespace kestrel {
@@ -25,11 +26,11 @@ Closing ClosingSpeed(double distance_m, double gain, double braking);
 // Returns the acceleration of a target in its curve 'ahead_s' from now, m/s^2.
 Eigen::Vector3d AccelerationAhead(const TurnState& motion, double ahead_s);
 
-// Horizontal set-points to a place or to above a moving target. The wanted velocity is the target's
-// smoothed velocity plus a velocity towards it. Both, and the accelerations that they need (the
-// target's in its curve, that of closing in), are those of the moment at which the set-point takes
-// effect. The UAV's model gives the command for them. The remaining offset is integrated, in a
-// frame that turns with the target.
+// Horizontal set-points to a place, to above a moving target, or to a place beside it. The wanted
+// velocity is the target's smoothed velocity plus a velocity towards it. Both, and the
+// accelerations that they need (the target's in its curve, that of closing in), are those of the
+// moment at which the set-point takes effect. The UAV's model gives the command for them. The
+// remaining offset is integrated, in a frame that turns with the target.
 class TargetPursuit {
  public:
   explicit TargetPursuit(const GuidanceOptions& options);
@@ -42,6 +43,8 @@ class TargetPursuit {
   SetPoint To(const Eigen::Vector2d& place, const Motion& uav, FlightModel* model,
               double max_speed_mps) const;
   SetPoint Above(const TargetEstimate& target, const Motion& uav, FlightModel* model);
+  SetPoint Beside(const TargetEstimate& target, const StandOff& place, const Motion& uav,
+                  FlightModel* model);
 
   // Forgets the target.
   void Reset();
@@ -52,6 +55,9 @@ class TargetPursuit {
     Eigen::Vector3d in_world;
   };
 
+  // 'place': beside the target; null: above it.
+  SetPoint Follow(const TargetEstimate& target, const StandOff* place, const Motion& uav,
+                  FlightModel* model);
   double Gain(const FlightModel& model) const;
   Eigen::Vector3d Smoothed(const TargetEstimate& target);
   void Integrate(const TargetEstimate& target, const Eigen::Vector2d& offset);

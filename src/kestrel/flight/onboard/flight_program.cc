@@ -40,18 +40,22 @@ FlightProgram::FlightProgram(const FlightOptions& options, const FlightParts& pa
       poses_(kPoses, kPoseGap),
       latency_({"capture to arrival", "capture to vision", "detection", "capture to message",
                 "capture to set-point"}),
-      pad_(parts.vision->pad().value_or(PadInSight())),
-      noise_(pad_.tracker.Noise()),
-      landing_(pad_.size_m / 2) {
+      pad_(parts.vision->pad()),
+      tracker_(pad_ ? pad_->tracker : parts.vision->marked().value_or(TargetTrackerOptions())),
+      noise_(tracker_.Noise()),
+      landing_(pad_.value_or(PadInSight()).size_m / 2) {
   if (parts.connection == nullptr) return;
-  sender_.emplace(options, pad_.tracker, parts.profile, pad_.size_m, pad_.range_m, parts.guides,
-                  parts.autopilot, parts.connection, report_);
-  if (parts.guides) {
-    guided_.emplace(options, pad_.tracker, !parts.source_has_poses, parts.autopilot,
+  if (pad_) {
+    sender_.emplace(options, tracker_, parts.profile, pad_->size_m, pad_->range_m,
+                    parts.guidance != nullptr, parts.autopilot, parts.connection, report_);
+  }
+  if (parts.guidance) {
+    guided_.emplace(options, tracker_, parts.guidance, !parts.source_has_poses, parts.autopilot,
                     parts.connection, report_);
   }
   if (parts.pointed != nullptr) {
-    gimbal_.emplace(options, *parts.pointed, pad_, parts.autopilot, parts.connection, report_);
+    gimbal_.emplace(options, *parts.pointed, pad_, tracker_, parts.autopilot, parts.connection,
+                    report_);
   }
   if (parts.tracking != nullptr) {
     const CameraStream stream =
@@ -279,6 +283,8 @@ void FlightProgram::ReportCameras() {
   }
 }
 
+void FlightProgram::Order(int mark) { order_ = FollowOrder{++orders_, mark}; }
+
 // True when the camera repeats an image: it shows where the target was, not where it is.
 bool FlightProgram::IsFrozen(const Frame& frame) {
   constexpr int kFrozen = 5;  // so many repetitions are no accident of a driver
@@ -334,12 +340,15 @@ void FlightProgram::ResumePointing() {
 
 void FlightProgram::SendTarget(Time now) {
   const TrackSnapshot& track = track_.Get();
-  if (guided_) sender_->set_may_stand(!guided_->is_flying());
-  if (sender_->Send(now, track, poses_)) latency_.step(kMessage).Add(Now() - track.captured);
-  phase_ = sender_->phase();
-  height_m_ = sender_->height_m();
-  messages_ = sender_->messages();
+  if (sender_) {
+    if (guided_) sender_->set_may_stand(!guided_->is_flying());
+    if (sender_->Send(now, track, poses_)) latency_.step(kMessage).Add(Now() - track.captured);
+    phase_ = sender_->phase();
+    height_m_ = sender_->height_m();
+    messages_ = sender_->messages();
+  }
   if (!guided_) return;
+  guided_->Take(order_);
   if (guided_->Fly(now, track, poses_)) latency_.step(kSetPoint).Add(Now() - track.captured);
   guidance_phase_ = guided_->phase();
   set_points_ = guided_->set_points();
@@ -424,7 +433,7 @@ LandingWatchInput FlightProgram::LandingInput(Time now) {
     input.sight = {track.sight->time,
                    track.sight->target_from_body * Eigen::Vector3d(0, 0, -options_.guidance.leg_m)};
   }
-  if (track.target && track.state != TrackState::kSearching) {
+  if (pad_ && track.target && track.state != TrackState::kSearching) {
     const double ahead_s = std::max(ToSeconds(now - track.captured), 0.0);
     const TurnState target = Propagate(track.target->motion, ahead_s, noise_);
     input.pattern = {target.position(), target.covariance.topLeftCorner<3, 3>()};

@@ -57,9 +57,9 @@ struct FlightParts {
   // Of the camera in which ground stations mark what is followed; null: there is none.
   const CameraCalibration* tracking = nullptr;
   const CameraStream* stream = nullptr;  // in which they do so; null: the source's own
-  bool guides = false;                   // flies by set-points when the pilot gives the mode
-  bool source_has_poses = false;         // the autopilot's poses are then not used
-  bool sees_repeated = false;            // processes images that equal the one before
+  GuidanceMaker guidance = {};  // flies by set-points when the pilot gives the mode; null: does not
+  bool source_has_poses = false;  // the autopilot's poses are then not used
+  bool sees_repeated = false;     // processes images that equal the one before
   std::size_t cameras = 1;
   std::optional<LinkProfile> profile;  // nothing: chosen by the heartbeat
   // Returns the true pattern at the time of a frame, in a simulation that knows it.
@@ -95,6 +95,9 @@ class FlightProgram {
   // Points the gimbal again that was left alone. Throws InputError where none is pointed. Called by
   // any thread.
   void ResumePointing();
+  // Orders guidance to fly to the mark with this number, from when the pilot has given the mode; 0:
+  // to stand still. Called by any thread.
+  void Order(int mark);
 
   // Returns the present state. Called by any thread.
   FlightReport Report() const;
@@ -153,8 +156,9 @@ class FlightProgram {
   FlightEnd end_;  // valid once the flight is over
 
   // Used by the link's thread only.
-  PadInSight pad_;
-  std::optional<TargetSender> sender_;
+  std::optional<PadInSight> pad_;
+  TargetTrackerOptions tracker_;
+  std::optional<TargetSender> sender_;  // nothing: there is nothing to land on
   std::optional<GuidedFlight> guided_;
   std::optional<PointedGimbal> gimbal_;
   std::atomic<bool> resumes_pointing_{false};  // set by any thread
@@ -179,6 +183,8 @@ class FlightProgram {
   std::atomic<TargetPhase> phase_{TargetPhase::kSearching};
   std::atomic<GuidancePhase> guidance_phase_{GuidancePhase::kIdle};
   std::atomic<int> set_points_{0};
+  std::atomic<int> orders_{0};
+  std::atomic<FollowOrder> order_{FollowOrder()};
   mutable std::mutex autopilot_mutex_;
   AutopilotState autopilot_state_;  // guarded by autopilot_mutex_
   std::atomic<double> height_m_{0};

@@ -45,17 +45,17 @@ UavState StateOf(const PredictedPose& pose, const Eigen::Vector3d& acceleration)
 }  // namespace
 
 GuidedFlight::GuidedFlight(const FlightOptions& options, const TargetTrackerOptions& tracker,
-                           bool is_in_its_frame, Autopilot* autopilot, Connection* connection,
-                           std::function<void(const std::string&)> report)
+                           GuidanceMaker make, bool is_in_its_frame, Autopilot* autopilot,
+                           Connection* connection, std::function<void(const std::string&)> report)
     : options_(CheckedRate(options)),
       noise_(tracker.Noise()),
       is_in_its_frame_(is_in_its_frame),
       autopilot_(*autopilot),
       connection_(connection),
       report_(std::move(report)),
-      schedule_(options.rate_hz) {
-  guidance_.emplace(options.guidance);
-}
+      make_(std::move(make)),
+      guidance_(make_(options.guidance)),
+      schedule_(options.rate_hz) {}
 
 bool GuidedFlight::Fly(Time now, const TrackSnapshot& track, const PoseHistory& poses) {
   const bool is_news = track.captured != reported_frame_;
@@ -136,7 +136,7 @@ void GuidedFlight::CheckPermission(const GuidanceInput& input, Time now) {
   may_begin_ = refusal_.empty();
   if (knows_parameters_ || !autopilot_.parameters().is_done()) return;
   knows_parameters_ = true;
-  guidance_.emplace(OptionsFor(autopilot_, options_.guidance, is_in_its_frame_));
+  guidance_ = make_(OptionsFor(autopilot_, options_.guidance, is_in_its_frame_));
   guidance_->Update(input);  // guidance has not begun
   if (const std::string unsafe = UnsafeLoss(autopilot_); !unsafe.empty()) {
     Notify(mavlink::kSeverityWarning, unsafe);
@@ -156,6 +156,8 @@ GuidanceInput GuidedFlight::Input(Time now, const TrackSnapshot& track,
                               track.sighting->normal_in_world};
   }
   if (track.seen) input.target_age_s = ToSeconds(now - *track.seen);
+  input.mark = track.mark;
+  input.order = order_;
   input.is_armed = autopilot_.is_armed();
   input.is_landed = autopilot_.landed_state() == LandedState::kOnGround;
   input.is_link_up = ToSeconds(now - autopilot_.received()) < kLinkAge_s;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -10,7 +11,7 @@
 #include "kestrel/comms/mavlink/connection.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/poses/pose_history.h"
-#include "kestrel/flight/guidance/landing_guidance.h"
+#include "kestrel/flight/guidance/guidance.h"
 #include "kestrel/flight/onboard/flight_options.h"
 #include "kestrel/flight/onboard/send_schedule.h"
 #include "kestrel/flight/onboard/target_reporter.h"
@@ -18,26 +19,32 @@
 
 namespace kestrel {
 
+// Makes the guidance of a task. Throws InputError when the options are not valid.
+using GuidanceMaker = std::function<std::unique_ptr<Guidance>(const GuidanceOptions& options)>;
+
 // Flies the UAV by set-points of guidance while the pilot gives it the mode, and informs the user.
 // Used by the link's thread only.
 class GuidedFlight {
  public:
-  // 'tracker': options of the predicted track. 'is_in_its_frame': the world is the autopilot's
-  // local frame. 'report': receives lines for the user. Throws InputError when the options are not
-  // valid, or the rate is too low for flying.
+  // 'tracker': options of the predicted track. 'make': of the task. 'is_in_its_frame': the world is
+  // the autopilot's local frame. 'report': receives lines for the user. Throws InputError when the
+  // options are not valid, or the rate is too low for flying.
   GuidedFlight(const FlightOptions& options, const TargetTrackerOptions& tracker,
-               bool is_in_its_frame, Autopilot* autopilot, Connection* connection,
-               std::function<void(const std::string&)> report);
+               GuidanceMaker make, bool is_in_its_frame, Autopilot* autopilot,
+               Connection* connection, std::function<void(const std::string&)> report);
 
   // Sends what is due at 'now'; true when it was the first set-point of a new frame.
   bool Fly(Time now, const TrackSnapshot& track, const PoseHistory& poses);
+
+  // Takes a person's order on what is marked.
+  void Take(const FollowOrder& order) { order_ = order; }
 
   // True while guidance flies the UAV and it has not landed.
   bool is_flying() const { return is_begun_ && phase() != GuidancePhase::kLanded; }
   GuidancePhase phase() const { return guidance_->phase(); }
   // Angle of the nose off the wanted heading, rad; nothing: any heading will do, or the pad's is
   // not known.
-  const std::optional<double>& heading_error() const { return guidance_->heading_error(); }
+  std::optional<double> heading_error() const { return guidance_->heading_error(); }
   int set_points() const { return set_points_; }  // sent
   // Why guidance gave up; empty: it flies, the pilot has taken over since, or it has not begun.
   std::string gave_up() const;
@@ -65,7 +72,9 @@ class GuidedFlight {
   Autopilot& autopilot_;
   Connection* connection_;
   std::function<void(const std::string&)> report_;
-  std::optional<LandingGuidance> guidance_;  // for this autopilot, once its parameters are known
+  GuidanceMaker make_;
+  std::unique_ptr<Guidance> guidance_;  // for this autopilot, once its parameters are known
+  FollowOrder order_;                   // the newest one
   AutopilotKind kind_ = AutopilotKind::kUnknown;
   SendSchedule schedule_;
 

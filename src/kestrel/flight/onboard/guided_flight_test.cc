@@ -15,6 +15,7 @@
 #include "kestrel/comms/mavlink/packet_parser.h"
 #include "kestrel/comms/mavlink/packet_writer.h"
 #include "kestrel/core/base/error.h"
+#include "kestrel/flight/guidance/landing_guidance.h"
 
 namespace kestrel {
 namespace {
@@ -35,7 +36,9 @@ class GuidedFlightTest : public testing::Test {
     autopilot_ =
         std::make_unique<Autopilot>(AutopilotOptions(), connection_.get(), AutopilotListener());
     guided_ = std::make_unique<GuidedFlight>(
-        options, TargetTrackerOptions(), true, autopilot_.get(), connection_.get(),
+        options, TargetTrackerOptions(),
+        [](const GuidanceOptions& guidance) { return std::make_unique<LandingGuidance>(guidance); },
+        true, autopilot_.get(), connection_.get(),
         [this](const std::string& text) { reported_ += text + "\n"; });
   }
 

@@ -12,6 +12,9 @@
 #include "kestrel/comms/guard/guard_link.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/write_file.h"
+#include "kestrel/flight/guidance/follow_guidance.h"
+#include "kestrel/flight/guidance/landing_guidance.h"
+#include "kestrel/flight/guidance/view_limits.h"
 #include "kestrel/flight/onboard/exposure_drive.h"
 #include "kestrel/flight/onboard/flight_program.h"
 #include "kestrel/flight/onboard/recording_switch.h"
@@ -96,6 +99,8 @@ class Flight : public LiveSession {
     BetweenFrames([&] { mutable_vision().Mark(frame, box_px); });
   }
   void ResumePointing() override { program_->ResumePointing(); }
+  void Confirm() override;
+  void StopFollowing() override { program_->Order(0); }
   void BetweenFrames(const std::function<void()>& action) override {
     program_->BetweenFrames(action);
   }
@@ -106,6 +111,7 @@ class Flight : public LiveSession {
  private:
   FlightOptions& flight() { return options_.flight; }
   bool Points() const;
+  GuidanceMaker Guide() const;
   void OpenTables();
   void OpenExposure();
   void StayWithinSight(double range_m);
@@ -175,7 +181,38 @@ bool Flight::Points() const {
   if (options_.points && !live_.calibration.gimbal) {
     throw InputError("the camera's file has no gimbal to point (docs/mounts.md)");
   }
-  return (options_.points || options_.guides) && live_.calibration.gimbal && vision().pad();
+  return (options_.points || options_.guides) && live_.calibration.gimbal &&
+         (vision().pad() || vision().marked());
+}
+
+// Returns the guidance of the task; null: nobody is guided.
+GuidanceMaker Flight::Guide() const {
+  if (!options_.guides) return nullptr;
+  if (!vision().marked()) {
+    return
+        [](const GuidanceOptions& options) { return std::make_unique<LandingGuidance>(options); };
+  }
+  const CameraCalibration& camera = live_.calibration;
+  std::optional<ViewLimits> view;
+  if (!camera.gimbal && camera.body_from_camera) {
+    view.emplace(camera.intrinsics, *camera.body_from_camera);
+  }
+  return [view](const GuidanceOptions& options) {
+    return std::make_unique<FollowGuidance>(options, view);
+  };
+}
+
+void Flight::Confirm() {
+  const auto autopilot = program_->Report().autopilot;
+  if (!options_.guides || !autopilot) throw InputError("nothing flies: expected --guide");
+  if (autopilot->guidance.value_or(GuidancePhase::kIdle) == GuidancePhase::kIdle) {
+    throw InputError("guidance does not fly the UAV: the pilot must give the mode first");
+  }
+  BetweenFrames([this] {
+    const int mark = vision().snapshot().mark;
+    if (mark == 0) throw InputError("nothing is marked yet");
+    program_->Order(mark);
+  });
 }
 
 void Flight::OpenTables() {
@@ -282,7 +319,7 @@ FlightParts Flight::ProgramParts() {
           .pointed = Points() ? &live_.calibration : nullptr,
           .tracking = autopilot_ && vision().takes_marks() ? &live_.calibration : nullptr,
           .stream = options_.stream ? &*options_.stream : nullptr,
-          .guides = options_.guides,
+          .guidance = Guide(),
           .source_has_poses = live_.has_poses,
           .sees_repeated = live_.sees_repeated,
           .cameras = 1 + live_.further.size(),

@@ -52,19 +52,21 @@ GimbalView GimbalViewOf(const CameraCalibration& calibration, const PadInSight& 
 }
 
 PointedGimbal::PointedGimbal(const FlightOptions& options, const CameraCalibration& calibration,
-                             const PadInSight& pad, Autopilot* autopilot, Connection* connection,
-                             std::function<void(const std::string&)> report)
+                             const std::optional<PadInSight>& pad,
+                             const TargetTrackerOptions& tracker, Autopilot* autopilot,
+                             Connection* connection, std::function<void(const std::string&)> report)
     : options_(options),
+      has_pad_(pad.has_value()),
       body_from_pivot_(calibration.gimbal->body_from_pivot),
-      noise_(pad.tracker.Noise()),
+      noise_(tracker.Noise()),
       autopilot_(*autopilot),
       report_(std::move(report)),
       manager_(calibration.gimbal->device_id, autopilot, connection),
-      pointing_(GimbalViewOf(calibration, pad)),
+      pointing_(GimbalViewOf(calibration, pad.value_or(PadInSight()))),
       schedule_(kRate_hz) {}
 
 void PointedGimbal::Point(Time now, const TrackSnapshot& track, const PoseHistory& poses) {
-  WatchFlight();
+  WatchFlight(track.mark);
   manager_.Tick(now);
   ReportControl(now);
   if (!IsFlying() || !schedule_.IsDue(now, false)) return;
@@ -74,8 +76,10 @@ void PointedGimbal::Point(Time now, const TrackSnapshot& track, const PoseHistor
   const auto pose = poses.Predict(now + ahead, ahead + kMaxPoseAge, {});
   if (!pose) return;
   if (manager_.range()) pointing_.set_range(*manager_.range());
+  const auto target = Target(now + ahead, track);
+  if (!has_pad_ && !target) return;
   const RigidTransform world_from_pivot = pose->world_from_body * body_from_pivot_;
-  const GimbalAngles aim = pointing_.Update({now, world_from_pivot, Target(now + ahead, track)});
+  const GimbalAngles aim = pointing_.Update({now, world_from_pivot, target});
   manager_.Send(aim);
   WatchFollowing(now, aim, HeadingOf(world_from_pivot.rotation));
 }
@@ -84,13 +88,16 @@ void PointedGimbal::Resume() {
   if (manager_.control() == Control::kTaken) manager_.TakeControl();
 }
 
-// Control is requested when the UAV flies, and again when the pilot gives the guided mode.
-void PointedGimbal::WatchFlight() {
+// Control is requested when the UAV flies and there is something to point at, and again when the
+// pilot gives the guided mode, or something else is marked.
+void PointedGimbal::WatchFlight(int mark) {
   const bool is_guided = autopilot_.is_here() ? autopilot_.is_guided_mode() : was_guided_;
   const bool is_given = is_guided && !std::exchange(was_guided_, is_guided);
+  const bool is_marked = mark != std::exchange(mark_, mark);
   const Control control = manager_.control();
-  const bool begins = control == Control::kNone && IsFlying();
-  if (begins || (control == Control::kTaken && is_given)) manager_.TakeControl();
+  const bool begins = control == Control::kNone && IsFlying() && (has_pad_ || mark > 0);
+  const bool resumes = control == Control::kTaken && (is_given || is_marked);
+  if (begins || resumes) manager_.TakeControl();
 }
 
 bool PointedGimbal::IsFlying() const {
@@ -112,7 +119,10 @@ void PointedGimbal::ReportControl(Time now) {
   reported_ = control;
   if (control == Control::kRequested) requested_ = now;
   following_.reset();
-  if (control == Control::kOwn) Notify(mavlink::kSeverityInfo, "points the gimbal at the pattern");
+  if (control == Control::kOwn) {
+    Notify(mavlink::kSeverityInfo,
+           has_pad_ ? "points the gimbal at the pattern" : "points the gimbal at what is marked");
+  }
   if (control != Control::kTaken) return;
   Notify(mavlink::kSeverityWarning,
          fmt::format("{} moves the gimbal: it is left alone until control is handed back, the "

@@ -24,15 +24,19 @@ namespace kestrel {
 // Returns what the camera of a calibration with a gimbal sees of a pad.
 GimbalView GimbalViewOf(const CameraCalibration& calibration, const PadInSight& pad);
 
-// Points the camera's gimbal at the target while the UAV flies, and informs the user. A gimbal that
-// somebody else moves is left alone until control is handed back, the pilot gives the guided mode
-// anew, or the user requests it. Used by the link's thread only.
+// Points the camera's gimbal at the target while the UAV flies, and informs the user. A pad is
+// searched for; without one, the gimbal is left alone until something is marked, and stays where it
+// is when that is lost. A gimbal that somebody else moves is left alone until control is handed
+// back, the pilot gives the guided mode anew, something else is marked, or the user requests it.
+// Used by the link's thread only.
 class PointedGimbal {
  public:
-  // 'calibration' has a gimbal. 'report': receives lines for the user. The pointers must outlive
-  // this.
+  // 'calibration' has a gimbal. 'pad': nothing: the target is what a person marks. 'tracker':
+  // options of the predicted track. 'report': receives lines for the user. The pointers must
+  // outlive this.
   PointedGimbal(const FlightOptions& options, const CameraCalibration& calibration,
-                const PadInSight& pad, Autopilot* autopilot, Connection* connection,
+                const std::optional<PadInSight>& pad, const TargetTrackerOptions& tracker,
+                Autopilot* autopilot, Connection* connection,
                 std::function<void(const std::string&)> report);
 
   // Takes a packet of the link, and a report of the gimbal.
@@ -53,7 +57,7 @@ class PointedGimbal {
     Eigen::Vector3d axis{1, 0, 0};  // of the newest report
   };
 
-  void WatchFlight();
+  void WatchFlight(int mark);
   bool IsFlying() const;
   void ReportControl(Time now);
   std::optional<Eigen::Vector3d> Target(Time then, const TrackSnapshot& track);
@@ -61,6 +65,7 @@ class PointedGimbal {
   void Notify(std::uint8_t severity, const std::string& text);
 
   FlightOptions options_;
+  bool has_pad_;
   RigidTransform body_from_pivot_;
   TurnNoise noise_;
   Autopilot& autopilot_;
@@ -74,6 +79,7 @@ class PointedGimbal {
   GimbalManager::Control reported_ = GimbalManager::Control::kNone;
   std::optional<Time> requested_;  // since then control is awaited
   bool was_guided_ = false;
+  int mark_ = 0;  // number of the newest mark
 };
 
 }  // namespace kestrel

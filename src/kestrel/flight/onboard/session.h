@@ -102,6 +102,10 @@ class LiveSession : public Session {
   // Points the gimbal again that was left to somebody else. Throws InputError where none is
   // pointed.
   virtual void ResumePointing() = 0;
+  // A person's confirmation that the UAV is to fly to what is marked now, and the order to stop.
+  // Throws InputError when guidance does not fly, or nothing is marked.
+  virtual void Confirm() = 0;
+  virtual void StopFollowing() = 0;
   // Calls 'action' between two frames: the vision waits for it.
   virtual void BetweenFrames(const std::function<void()>& action) = 0;
   // Starts and stops recordings.

@@ -76,7 +76,8 @@ class KeptImages {
   std::size_t next_ = 0;
 };
 
-// The pipeline of a marked thing in a session. Its snapshot has no target to land on.
+// The pipeline of a marked thing in a session. It has no pad: what a person marks is nothing to
+// land on.
 class FollowVision : public Vision {
  public:
   FollowVision(const SessionCamera& camera, const FollowPipelineOptions& options,
@@ -92,13 +93,16 @@ class FollowVision : public Vision {
   Duration pose_lead() const override { return clock_offset_; }
   Observation Process(const Frame& frame) override;
   TrackSnapshot snapshot() const override { return snapshot_; }
+  std::optional<TargetTrackerOptions> marked() const override {
+    return pipeline_.options().Tracker();
+  }
   bool has_world() const override { return has_world_; }
   void Change(const TaskOptions& options, std::optional<double> /*altitude_m*/) override {
     pipeline_.ChangeOptions(InFlight(options.follow, is_live_));
   }
   bool takes_marks() const override { return true; }
   void Mark(Time frame, const cv::Rect2d& box_px) override;
-  void Unmark() override { pipeline_.Unmark(); }
+  void Unmark() override;
   std::unique_ptr<ObservationSink> MakeTables(const OutputOptions& output) const override {
     return std::make_unique<FollowFiles>(output);
   }
@@ -115,6 +119,7 @@ class FollowVision : public Vision {
  private:
   FollowObservation Follow(const Frame& frame);
   bool IsMarked(const Frame& frame) const;
+  void ForgetTarget();
 
   FollowPipeline pipeline_;
   Duration clock_offset_;
@@ -137,6 +142,11 @@ Observation FollowVision::Process(const Frame& frame) {
     ++frames_[static_cast<std::size_t>(seen.region->state)];
     snapshot_.detections += seen.region->state == RegionState::kFollowing;
   }
+  snapshot_.state = seen.track_state;
+  snapshot_.target = seen.target;
+  const bool is_placed =
+      seen.fate == MeasurementFate::kStarted || seen.fate == MeasurementFate::kAccepted;
+  if (is_placed) snapshot_.seen = snapshot_.captured;
   return {frame, std::move(seen)};
 }
 
@@ -165,9 +175,22 @@ void FollowVision::Mark(Time frame, const cv::Rect2d& box_px) {
                                  KeptImages::kMost));
   }
   pipeline_.Mark(since.front()->pixels, since.front()->time, box_px);
+  ForgetTarget();
   for (std::size_t i = 1; i < since.size(); ++i) {
     pipeline_.Process(since[i]->pixels, since[i]->time);
   }
+}
+
+void FollowVision::Unmark() {
+  pipeline_.Unmark();
+  ForgetTarget();
+}
+
+// A confirmation was for the mark before.
+void FollowVision::ForgetTarget() {
+  ++snapshot_.mark;
+  snapshot_.target.reset();
+  snapshot_.seen.reset();
 }
 
 void FollowVision::Finish() {

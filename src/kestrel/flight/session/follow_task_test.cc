@@ -92,7 +92,9 @@ TEST(FollowTaskTest, MarkOnALatePictureIsAppliedToThatPicture) {
     EXPECT_FALSE(std::get<FollowObservation>(seen.seen).region);
   }
   ASSERT_GT(std::abs(box.x - scene.Box().x), box.width) << "somewhere else by now";
+  EXPECT_EQ(vision->snapshot().mark, 0);
   vision->Mark(marked, box);
+  EXPECT_EQ(vision->snapshot().mark, 1);
   const cv::Mat image = scene.Take();
   const Observation seen = vision->Process({"", scene.time, image});
   const auto& region = std::get<FollowObservation>(seen.seen).region;
@@ -104,6 +106,7 @@ TEST(FollowTaskTest, MarkOnALatePictureIsAppliedToThatPicture) {
                 vision->Mark(marked, {-90, 0, 9, 9});
               }),
               HasSubstr("expected one within the image"));
+  EXPECT_EQ(vision->snapshot().mark, 1) << "only those that are followed";
 }
 
 // A ground station knows the time of its click, not that of a picture.

@@ -28,6 +28,7 @@ struct TrackSnapshot {
     RigidTransform target_from_body;
   };
   std::optional<Sight> sight;
+  int mark = 0;        // number of the person's mark that the target is of; 0: of none
   cv::Rect area = {};  // area of the target in this frame; empty: it was not found
   Duration detect_time{};
   int frames = 0;                          // so far

@@ -48,6 +48,8 @@ class Vision {
   virtual TrackSnapshot snapshot() const { return {}; }
   // The pad that the UAV can land on; nothing: there is none.
   virtual std::optional<PadInSight> pad() const { return std::nullopt; }
+  // Options of the track of what a person marks; nothing: this task follows nothing.
+  virtual std::optional<TargetTrackerOptions> marked() const { return std::nullopt; }
   // The map of the objects; null: none. Changes with the next frame.
   virtual const ObjectMap* map() const { return nullptr; }
   // True when results have places in the world, which are kept from frame to frame.

@@ -8,22 +8,15 @@
 #include <deque>
 #include <memory>
 #include <optional>
-#include <span>
-#include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include <Eigen/Geometry>
 #include <opencv2/core.hpp>
 
-#include "kestrel/comms/mavlink/mavlink_enums.h"
-#include "kestrel/comms/mavlink/packet_parser.h"
-#include "kestrel/comms/mavlink/packet_writer.h"
 #include "kestrel/core/geometry/angles.h"
-#include "kestrel/flight/onboard/guided_flight.h"
-#include "kestrel/flight/onboard/pointed_gimbal.h"
-#include "kestrel/simulation/autopilots/test_autopilot.h"
+#include "kestrel/flight/guidance/landing_guidance.h"
+#include "kestrel/simulation/autopilots/test_linked_flight.h"
 #include "kestrel/vision/pipeline/landing_pipeline.h"
 
 namespace kestrel {
@@ -95,10 +88,8 @@ struct PointingErrors {
   double largest = 0;
 };
 
-// A simulated autopilot, and over MAVLink all of Kestrel that flies but for the images: the landing
-// pipeline, guidance where there is any, and the pointed gimbal where the camera is on one. In
-// simulated time.
-class PointedFlight : public TestAutopilot {
+// A linked flight with the landing pipeline, which gets the truth instead of images.
+class PointedFlight : public LinkedFlight {
  public:
   struct Choice {
     bool has_gimbal = true;  // the camera is on one
@@ -113,27 +104,19 @@ class PointedFlight : public TestAutopilot {
       : PointedFlight(firmware, options, vehicle, Choice()) {}
   PointedFlight(AutopilotFirmware firmware, const AutopilotModelOptions& options,
                 const VehicleWorldOptions& vehicle, const Choice& choice)
-      : TestAutopilot(firmware, options, vehicle, choice.seed),
+      : LinkedFlight(firmware, options, vehicle, choice.seed,
+                     TestCamera(choice.has_gimbal, choice.half_view_deg)),
         half_view_(Radians(choice.half_view_deg)),
-        camera_(TestCamera(choice.has_gimbal, choice.half_view_deg)),
         eyes_(EyesOf(choice.cameras)),
-        pipeline_(std::vector(choice.cameras.size(), camera_), Detectors(), PipelineOptions()),
-        connection_("udpout://127.0.0.1:9", {},
-                    [this](std::span<const std::uint8_t> frame, Time) { Carry(frame); }),
-        autopilot_(LinkOptions(choice.has_gimbal), &connection_, Listener()) {
-    const auto report = [this](const std::string& text) { reported += text + "\n"; };
+        pipeline_(std::vector(choice.cameras.size(), camera_), Detectors(), PipelineOptions()) {
     const PadInSight pad{1.2, kTestSightRange_m, TargetTrackerOptions()};
-    if (choice.has_gimbal) {
-      pointed_.emplace(FlightOptions(), camera_, pad, &autopilot_, &connection_, report);
-    }
-    if (choice.guides) {
-      guided_.emplace(FlightOptions(), pad.tracker, true, &autopilot_, &connection_, report);
-    }
+    if (choice.has_gimbal) Point(pad, pad.tracker);
+    if (!choice.guides) return;
+    Guide(FlightOptions(), pad.tracker, [](const GuidanceOptions& guidance) {
+      return std::make_unique<LandingGuidance>(guidance);
+    });
   }
 
-  void Fly(double seconds) {
-    Run(seconds, [this] { Step(); });
-  }
   PointingErrors FlyAndMeasure(double seconds) {
     PointingErrors errors;
     int steps = 0;
@@ -169,21 +152,7 @@ class PointedFlight : public TestAutopilot {
   double LeftOutFor(std::size_t camera) const { return eyes_[camera].left_out_s; }
   bool has_track() const { return track_.state == TrackState::kTracking; }
 
-  // A message of a ground station.
-  void SendFromGround(const CompanionMessage& message) { model.Handle(message, 255, 190, now); }
-  void GiveControl(std::uint8_t system, std::uint8_t component) {
-    mavlink::CommandLong command;
-    command.target_system = 1;
-    command.command = mavlink::kCommandGimbalConfigure;
-    command.param1 = system;
-    command.param2 = component;
-    SendFromGround(command);
-  }
-
   void ResumePointing() { pointed_->Resume(); }
-
-  int set_points = 0;  // sent to the gimbal
-  std::string reported;
 
  private:
   // An image waits for the vision.
@@ -220,68 +189,25 @@ class PointedFlight : public TestAutopilot {
     options.pose_extrapolation_s = 0.1;
     return options;
   }
-  static AutopilotOptions LinkOptions(bool has_gimbal) {
-    constexpr double kMode_hz = 20;
-    AutopilotOptions options;
-    options.mode_rate_hz = kMode_hz;
-    options.points_gimbal = has_gimbal;
-    if (has_gimbal) options.gimbal_device_id = 0;
-    return options;
-  }
-  AutopilotListener Listener() {
-    AutopilotListener listener;
-    listener.pose = [this](const PoseSample& pose) {
-      poses_.Add(pose);
-      pipeline_.AddPose(pose);
-    };
-    listener.gimbal = [this](const GimbalSample& report) {
-      pointed_->TakeReport(report);
-      pipeline_.AddGimbal(report);
-    };
-    return listener;
-  }
+  void TakePose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
+  void TakeGimbal(const GimbalSample& report) override { pipeline_.AddGimbal(report); }
 
   RigidTransform WorldFromCamera(const Eye& eye) const {
     const RigidTransform& body = model.truth().world_from_body;
-    if (!camera_.gimbal) {
-      const RigidTransform turn{RotationBy({Radians(eye.own.turned_deg), 0, 0}), {0, 0, 0}};
-      return body * turn * *camera_.body_from_camera;
-    }
-    const GimbalAttitude attitude{model.world_from_platform(), YawFrame::kEarth};
-    return WorldFromPlatform(body, camera_.gimbal->body_from_pivot, attitude) *
-           camera_.gimbal->platform_from_camera;
+    const RigidTransform turn{RotationBy({Radians(eye.own.turned_deg), 0, 0}), {0, 0, 0}};
+    return body * turn * body.Inverse() * LinkedFlight::WorldFromCamera();
   }
   static double AngleOff(const RigidTransform& camera_from_target) {
     const Eigen::Vector3d& center = camera_from_target.translation;
     return std::atan2(center.head<2>().norm(), center.z());
   }
 
-  void Carry(std::span<const std::uint8_t> frame) {
-    companion_.Parse(frame, [this](const mavlink::Packet& packet) {
-      set_points += packet.id == mavlink::GimbalManagerSetPitchyaw::kId ? 1 : 0;
-      if (const auto message = CompanionMessageOf(packet)) Send(*message);
-    });
-  }
-  template <class Message>
-  void Deliver(const Message& message) {
-    from_autopilot_.Parse(writer_.Write(message), [this](const mavlink::Packet& packet) {
-      autopilot_.Handle(packet, now);
-      if (pointed_) pointed_->Handle(packet);
-    });
-  }
-
-  void Step() {
-    for (const AutopilotMessage& message : std::exchange(sent, {})) {
-      std::visit([this](const auto& typed) { Deliver(typed); }, message);
-    }
-    autopilot_.Tick(now);
+  void See() override {
     for (std::size_t i = 0; i < eyes_.size(); ++i) {
       Capture(&eyes_[i]);
-      See(i);
+      Process(i);
       if (StateOf(i).health == CameraHealth::kContradicts) eyes_[i].left_out_s += kStep_s;
     }
-    if (guided_) guided_->Fly(now, track_, poses_);
-    if (pointed_) pointed_->Point(now, track_, poses_);
   }
   void Capture(Eye* eye) {
     constexpr Duration kPeriod = std::chrono::milliseconds(60);
@@ -299,7 +225,7 @@ class PointedFlight : public TestAutopilot {
     eye->images.push_back(image);
   }
   // The vision is done some time after the exposure.
-  void See(std::size_t camera) {
+  void Process(std::size_t camera) {
     constexpr Duration kLatency = std::chrono::milliseconds(40);
     Eye& eye = eyes_[camera];
     if (eye.images.empty() || now < eye.images.front().captured + kLatency) return;
@@ -324,19 +250,10 @@ class PointedFlight : public TestAutopilot {
   }
 
   double half_view_;
-  CameraCalibration camera_;
   std::vector<Eye> eyes_;  // their places do not change
   LandingPipeline pipeline_;
   cv::Mat picture_{8, 8, CV_8UC1};  // differs from one to the next
   int pictures_ = 0;
-  mavlink::PacketParser companion_, from_autopilot_;
-  mavlink::PacketWriter writer_{1, 1};
-  PoseHistory poses_{512, std::chrono::milliseconds(500)};
-  Connection connection_;
-  Autopilot autopilot_;
-  std::optional<PointedGimbal> pointed_;
-  std::optional<GuidedFlight> guided_;
-  TrackSnapshot track_;
 };
 
 }  // namespace kestrel

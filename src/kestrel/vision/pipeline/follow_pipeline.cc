@@ -44,7 +44,10 @@ Eigen::Vector2d FootOf(const cv::Rect2d& box, const Eigen::Vector2d& down_px, do
 
 TargetTrackerOptions FollowPipelineOptions::Tracker() const {
   TargetTrackerOptions tracker;
-  tracker.acceleration_noise = 1;  // people and cars start and stop
+  // People and cars start and stop. Larger noises hide the turn rate, without which a UAV beside a
+  // car trails in its curves.
+  tracker.acceleration_noise = 0.3;
+  tracker.turn_noise = 0.3;
   tracker.sway_sigma_m = 0;
   tracker.max_speed_mps = max_speed_mps;
   return tracker;

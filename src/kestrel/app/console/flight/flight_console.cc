@@ -28,7 +28,8 @@ constexpr Duration kReturn = std::chrono::seconds(20);
 constexpr Duration kLastWords = std::chrono::milliseconds(300);
 
 ConsoleFeed::Description DescriptionOf(const std::string& title, const TaskView& view,
-                                       bool has_colors, bool points_gimbal) {
+                                       bool has_colors,
+                                       const std::vector<ConsoleCommandKind>& offers) {
   const ViewParts parts = PartsOf(view);
   ConsoleFeed::Description description{
       .title = title,
@@ -42,7 +43,7 @@ ConsoleFeed::Description DescriptionOf(const std::string& title, const TaskView&
   if (std::holds_alternative<FollowView>(view)) {
     description.offers.push_back(ConsoleCommandKind::kMark);
   }
-  if (points_gimbal) description.offers.push_back(ConsoleCommandKind::kPoint);
+  description.offers.insert(description.offers.end(), offers.begin(), offers.end());
   description.series.push_back({"latency", "ms", "Capture to result", {ValueSource::kFrames}});
   description.series.push_back({"link", "1/s", "Packets", {ValueSource::kAutopilot}});
   return description;
@@ -175,8 +176,8 @@ class FlightConsole::Page : public SinkWriter {
 FlightConsole::FlightConsole(const ConsoleOptions& options, const std::string& title,
                              const std::vector<TaskView>& views, FlightExamination examination,
                              ChannelFeed* channels, std::optional<FlightColors> colors,
-                             bool points_gimbal)
-    : feed_(DescriptionOf(title, views.front(), colors.has_value(), points_gimbal)),
+                             const std::vector<ConsoleCommandKind>& offers)
+    : feed_(DescriptionOf(title, views.front(), colors.has_value(), offers)),
       arrivals_(kArrivals),
       server_(ServeConsole(options, &feed_, WebAssets(), channels)),
       pictures_({.thread_name = "console frames",
@@ -256,6 +257,10 @@ void FlightConsole::Answer(const FlightRequests& requests, const ConsoleCommand&
       Mark(requests, command.settings);
     } else if (command.kind == ConsoleCommandKind::kPoint) {
       Report(EventLevel::kInfo, requests.point());
+    } else if (command.kind == ConsoleCommandKind::kConfirm) {
+      Report(EventLevel::kInfo, requests.confirm());
+    } else if (command.kind == ConsoleCommandKind::kStop) {
+      Report(EventLevel::kInfo, requests.stop());
     }
   } catch (const InputError& error) {
     Report(EventLevel::kError, error.what());

@@ -31,7 +31,9 @@ struct FlightRequests {
   std::function<std::string(const cv::Mat& image, Time captured)> keep_snapshot;
   // Follows what was marked in the picture of this time.
   std::function<std::string(Time captured, const cv::Rect2d& box_px)> mark = {};
-  std::function<std::string()> point = {};  // points the gimbal again that was left alone
+  std::function<std::string()> point = {};    // points the gimbal again that was left alone
+  std::function<std::string()> confirm = {};  // lets the UAV fly to what is marked
+  std::function<std::string()> stop = {};     // lets it stand still
   // Saves settings, each as "key=value", and returns the state of all that can be changed, with
   // what was saved or why not; none: only returns it. Does not throw InputError.
   std::function<ConsoleSettings(const std::vector<std::string>& settings)> settings;
@@ -50,12 +52,12 @@ class FlightConsole : public ObservationSink {
  public:
   // Starts the server. 'title': title of the page. 'views': of each camera. The page shows the
   // camera that sees the target, and checks the first one. 'channels' as for WebServer. 'colors':
-  // for a hunt only; the page then teaches its model's colours. 'points_gimbal': the flight does.
-  // Throws InputError as WebServer and ColorPage do.
+  // for a hunt only; the page then teaches its model's colours. 'offers': commands of the page that
+  // only some flights have. Throws InputError as WebServer and ColorPage do.
   FlightConsole(const ConsoleOptions& options, const std::string& title,
                 const std::vector<TaskView>& views, FlightExamination examination,
                 ChannelFeed* channels = nullptr, std::optional<FlightColors> colors = std::nullopt,
-                bool points_gimbal = false);
+                const std::vector<ConsoleCommandKind>& offers = {});
   ~FlightConsole() override { Finish(); }
   FlightConsole(const FlightConsole&) = delete;
   FlightConsole& operator=(const FlightConsole&) = delete;

@@ -204,6 +204,7 @@ TEST(FollowConsoleTest, MarkNamesThePictureAndTheBox) {
   const auto hello = socket.Next("hello");
   ASSERT_TRUE(hello);
   EXPECT_THAT((*hello)["offers"], testing::Contains("mark"));
+  EXPECT_THAT((*hello)["offers"], testing::Not(testing::Contains("confirm")));
   console.Answer({.record = {},
                   .keep_snapshot = {},
                   .mark =
@@ -221,6 +222,28 @@ TEST(FollowConsoleTest, MarkNamesThePictureAndTheBox) {
             "1700000000000000001 1.5 2 30 40");
   EXPECT_EQ(answer(R"("7", "1.5", "nan", "30", "40")"), "mark: expected numbers");
   EXPECT_EQ(answer(R"("7", "1.5")"), "mark: expected the time of a picture and a box");
+}
+
+TEST(FollowConsoleTest, PersonConfirmsAndStopsTheFlight) {
+  FlightConsole console(FreePort(), "a flight", {FollowView()},
+                        FlightExamination(PaperCalibration(), ".", 0), nullptr, std::nullopt,
+                        /*follows=*/true);
+  TestSocket socket(PortOf(console));
+  const auto hello = socket.Next("hello");
+  ASSERT_TRUE(hello);
+  EXPECT_THAT((*hello)["offers"], testing::IsSupersetOf({"mark", "confirm", "stop"}));
+  console.Answer({.record = {},
+                  .keep_snapshot = {},
+                  .confirm = []() -> std::string { throw InputError("nothing is marked yet"); },
+                  .stop = [] { return std::string("stopped"); },
+                  .settings = [](const auto&) { return ConsoleSettings(); }});
+  const auto answer = [&](const std::string& command) -> std::string {
+    socket.Send(R"({"command": ")" + command + "\"}");
+    const auto event = socket.Next("event");
+    return event ? (*event)["text"] : "none";
+  };
+  EXPECT_EQ(answer("confirm"), "nothing is marked yet");
+  EXPECT_EQ(answer("stop"), "stopped");
 }
 
 // A green square on gray ground.

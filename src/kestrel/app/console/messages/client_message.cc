@@ -29,7 +29,9 @@ constexpr std::array kCommands = {ConsoleCommandKind::kRecord,
                                   ConsoleCommandKind::kLensSave,
                                   ConsoleCommandKind::kSettings,
                                   ConsoleCommandKind::kMark,
-                                  ConsoleCommandKind::kPoint};
+                                  ConsoleCommandKind::kPoint,
+                                  ConsoleCommandKind::kConfirm,
+                                  ConsoleCommandKind::kStop};
 // A list in an object. Deeper text would use up the parser's stack.
 constexpr int kMaxDepth = 2;
 // True for the commands with a list of settings.
@@ -135,6 +137,10 @@ const char* ToString(ConsoleCommandKind kind) {
       return "mark";
     case ConsoleCommandKind::kPoint:
       return "point";
+    case ConsoleCommandKind::kConfirm:
+      return "confirm";
+    case ConsoleCommandKind::kStop:
+      return "stop";
   }
   return "";
 }

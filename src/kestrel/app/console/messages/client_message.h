@@ -46,10 +46,12 @@ enum class ConsoleCommandKind {
   kSettings,         // save these settings for the next start
   kMark,             // follow what is marked: the picture's time (ns), x, y, width, height (px)
   kPoint,            // point the gimbal again that was left to somebody else; no value
+  kConfirm,          // the UAV may fly to what is marked
+  kStop,             // it stands still
 };
 // Returns "record", "snapshot", "play", "seek", "step", "detect", "cancel", "calibrate",
 // "calibrate-cancel", "calibrate-save", "compare", "open", "lens", "lens-stop", "lens-save",
-// "settings", "mark" or "point".
+// "settings", "mark", "point", "confirm" or "stop".
 const char* ToString(ConsoleCommandKind kind);
 struct ConsoleCommand {
   ConsoleCommandKind kind = ConsoleCommandKind::kSnapshot;

@@ -43,6 +43,10 @@ TEST(ClientMessageTest, ReadsMessagesOfPage) {
   EXPECT_EQ(mark.settings.size(), 5u);
   EXPECT_EQ(std::get<ConsoleCommand>(*ParseClientMessage(R"({"command": "point"})")).kind,
             ConsoleCommandKind::kPoint);
+  EXPECT_EQ(std::get<ConsoleCommand>(*ParseClientMessage(R"({"command": "confirm"})")).kind,
+            ConsoleCommandKind::kConfirm);
+  EXPECT_EQ(std::get<ConsoleCommand>(*ParseClientMessage(R"({"command": "stop"})")).kind,
+            ConsoleCommandKind::kStop);
 }
 
 TEST(ClientMessageTest, LimitsSettings) {

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "kestrel/comms/mavlink/mavlink_enums.h"
+#include "kestrel/comms/mavlink/packet_parser.h"
+#include "kestrel/comms/mavlink/packet_writer.h"
+#include "kestrel/core/camera/calibration.h"
+#include "kestrel/flight/onboard/guided_flight.h"
+#include "kestrel/flight/onboard/pointed_gimbal.h"
+#include "kestrel/simulation/autopilots/test_autopilot.h"
+
+namespace kestrel {
+
+// A simulated autopilot, and over MAVLink all of Kestrel that flies but for the vision: guidance,
+// and the pointed gimbal where the camera is on one. In simulated time.
+class LinkedFlight : public TestAutopilot {
+ public:
+  void Fly(double seconds) {
+    Run(seconds, [this] { Step(); });
+  }
+
+  // A message of a ground station.
+  void SendFromGround(const CompanionMessage& message) { model.Handle(message, 255, 190, now); }
+  void GiveControl(std::uint8_t system, std::uint8_t component) {
+    mavlink::CommandLong command;
+    command.target_system = 1;
+    command.command = mavlink::kCommandGimbalConfigure;
+    command.param1 = system;
+    command.param2 = component;
+    SendFromGround(command);
+  }
+
+  int set_points = 0;  // sent to the gimbal
+  std::string reported;
+
+ protected:
+  LinkedFlight(AutopilotFirmware firmware, const AutopilotModelOptions& options,
+               const VehicleWorldOptions& vehicle, std::uint64_t seed,
+               const CameraCalibration& camera)
+      : TestAutopilot(firmware, options, vehicle, seed),
+        camera_(camera),
+        connection_("udpout://127.0.0.1:9", {},
+                    [this](std::span<const std::uint8_t> frame, Time) { Carry(frame); }),
+        autopilot_(LinkOptions(camera.gimbal.has_value()), &connection_, Listener()) {}
+  ~LinkedFlight() = default;
+
+  // Points the gimbal at a pad; nothing: at what is marked.
+  void Point(const std::optional<PadInSight>& pad, const TargetTrackerOptions& tracker) {
+    pointed_.emplace(FlightOptions(), camera_, pad, tracker, &autopilot_, &connection_, Report());
+  }
+  void Guide(const FlightOptions& options, const TargetTrackerOptions& tracker,
+             const GuidanceMaker& make) {
+    guided_.emplace(options, tracker, make, true, &autopilot_, &connection_, Report());
+  }
+
+  // The vision: takes and processes images, and updates the track.
+  virtual void See() = 0;
+  virtual void TakePose(const PoseSample& /*pose*/) {}
+  virtual void TakeGimbal(const GimbalSample& /*report*/) {}
+
+  void Step() {
+    for (const AutopilotMessage& message : std::exchange(sent, {})) {
+      std::visit([this](const auto& typed) { Deliver(typed); }, message);
+    }
+    autopilot_.Tick(now);
+    See();
+    if (guided_) guided_->Fly(now, track_, poses_);
+    if (pointed_) pointed_->Point(now, track_, poses_);
+  }
+
+  RigidTransform WorldFromCamera() const {
+    const RigidTransform& body = model.truth().world_from_body;
+    if (!camera_.gimbal) return body * *camera_.body_from_camera;
+    const GimbalAttitude attitude{model.world_from_platform(), YawFrame::kEarth};
+    return WorldFromPlatform(body, camera_.gimbal->body_from_pivot, attitude) *
+           camera_.gimbal->platform_from_camera;
+  }
+
+  CameraCalibration camera_;
+  PoseHistory poses_{512, std::chrono::milliseconds(500)};
+  TrackSnapshot track_;
+  std::optional<PointedGimbal> pointed_;
+  std::optional<GuidedFlight> guided_;
+
+ private:
+  static AutopilotOptions LinkOptions(bool has_gimbal) {
+    constexpr double kMode_hz = 20;
+    AutopilotOptions options;
+    options.mode_rate_hz = kMode_hz;
+    options.points_gimbal = has_gimbal;
+    if (has_gimbal) options.gimbal_device_id = 0;
+    return options;
+  }
+  AutopilotListener Listener() {
+    AutopilotListener listener;
+    listener.pose = [this](const PoseSample& pose) {
+      poses_.Add(pose);
+      TakePose(pose);
+    };
+    listener.gimbal = [this](const GimbalSample& report) {
+      if (pointed_) pointed_->TakeReport(report);
+      TakeGimbal(report);
+    };
+    return listener;
+  }
+  std::function<void(const std::string&)> Report() {
+    return [this](const std::string& text) { reported += text + "\n"; };
+  }
+
+  void Carry(std::span<const std::uint8_t> frame) {
+    companion_.Parse(frame, [this](const mavlink::Packet& packet) {
+      set_points += packet.id == mavlink::GimbalManagerSetPitchyaw::kId ? 1 : 0;
+      if (const auto message = CompanionMessageOf(packet)) Send(*message);
+    });
+  }
+  template <class Message>
+  void Deliver(const Message& message) {
+    from_autopilot_.Parse(writer_.Write(message), [this](const mavlink::Packet& packet) {
+      autopilot_.Handle(packet, now);
+      if (pointed_) pointed_->Handle(packet);
+    });
+  }
+
+  mavlink::PacketParser companion_, from_autopilot_;
+  mavlink::PacketWriter writer_{1, 1};
+  Connection connection_;
+  Autopilot autopilot_;
+};
+
+}  // namespace kestrel
