@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Prints how well the landing pattern is found in different light: under shadows of UAVs and of
-// other things, in glare, darkness, dust and blur; and what is detected falsely in the same light.
+// other things, in glare, darkness, dust and blur; what is detected falsely in the same light; and
+// whether the qualities are the shares that are right.
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -17,6 +18,7 @@
 #include "kestrel/simulation/labelled_images/shadow_casters.h"
 #include "landing_frames.h"
 #include "landing_score.h"
+#include "reliability.h"
 #include "report_main.h"
 
 namespace kestrel {
@@ -114,7 +116,9 @@ class Report {
       if (!IsWanted(row.name)) continue;
       const LandingStillMaker maker(row.stills);
       const auto make = [&](std::size_t i) { return FrameFromStill(maker, row.name, first + i); };
-      PrintPatternRow(row.name, Score(options_.stills, make, detector_));
+      const std::vector<LandingScore> scores = Score(options_.stills, make, detector_);
+      PrintPatternRow(row.name, scores);
+      for (const LandingScore& score : scores) AddQuality(row.stills.condition, score);
     }
     for (const LandingFrameSet& set : ReadLandingHard(options_.data_dir)) {
       const std::string name = "another renderer's: " + set.name;
@@ -143,7 +147,24 @@ class Report {
     PrintLookalikeRow("with counterfeits, cut off, night", all, lights, kCutOff, few);
   }
 
+  // Of all detections in a light, right ones and false ones.
+  void PrintReliability() const {
+    fmt::print("\n| light | detections | expected calibration error |\n|---|---|---|\n");
+    for (int i = 0; i < kStillConditions; ++i) {
+      const Reliability& reliability = reliability_[i];
+      if (reliability.count() == 0) continue;
+      fmt::print("| {} | {} | {:.3f} |\n", ToString(static_cast<StillCondition>(i)),
+                 reliability.count(), reliability.ExpectedError());
+    }
+  }
+
  private:
+  void AddQuality(StillCondition light, const LandingScore& score) {
+    const bool is_right = score.outcome == LandingOutcome::kFound;
+    if (!is_right && score.outcome != LandingOutcome::kWrong) return;
+    reliability_[static_cast<int>(light)].Add(score.quality, is_right);
+  }
+
   bool IsWanted(const std::string& row) const { return row.find(options_.row) != row.npos; }
 
   // Uses each of the lights in turn.
@@ -165,8 +186,12 @@ class Report {
       const LandingStillMaker& maker = makers[i % makers.size()];
       return FrameFromLookalikes(maker, ToString(maker.options().condition), seed + i);
     };
-    const LandingTally tally(Score(count, make, detector_));
+    const std::vector<LandingScore> scores = Score(count, make, detector_);
+    const LandingTally tally(scores);
     fmt::print("| {} | {} of {} |\n", name, tally.false_detections, tally.negatives);
+    for (std::size_t i = 0; i < scores.size(); ++i) {
+      AddQuality(lights[i % lights.size()], scores[i]);
+    }
     std::fflush(stdout);
   }
 
@@ -215,6 +240,7 @@ class Report {
   const Options& options_;
   LandingPatternDetector detector_;
   std::uint64_t lookalike_seed_ = kLookalikeSeed;
+  std::array<Reliability, kStillConditions> reliability_;
 };
 
 int Run(int argc, char** argv) {
@@ -233,6 +259,7 @@ int Run(int argc, char** argv) {
   Report report(options);
   if (options.stills > 0) report.PrintPatterns();
   if (options.lookalikes + options.counterfeits > 0) report.PrintLookalikes();
+  report.PrintReliability();
   return 0;
 }
 

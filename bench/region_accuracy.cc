@@ -35,6 +35,7 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/io/recording/media/image_file.h"
 #include "kestrel/vision/region/region_tracker.h"
+#include "reliability.h"
 #include "report_main.h"
 
 namespace kestrel {
@@ -187,26 +188,6 @@ struct Score {
   double success = 0, precision = 0;
   double ms = 0, p99_ms = 0;   // of an image: mean, and 99th percentile
   double lost = 0, wrong = 0;  // shares of the images
-};
-
-// Compares probabilities with the shares of them that were right, by ten classes of probability.
-class Reliability {
- public:
-  void Add(double probability, bool is_right) {
-    const int i = std::clamp(static_cast<int>(10 * probability), 0, 9);
-    excess_[i] += probability - is_right;
-    ++count_;
-  }
-  double count() const { return count_; }
-  double ExpectedError() const {
-    double sum = 0;
-    for (const double excess : excess_) sum += std::abs(excess);
-    return sum / std::max(1.0, count_);
-  }
-
- private:
-  std::array<double, 10> excess_{};
-  double count_ = 0;
 };
 
 // Reliability for regions below 20 px, and for others.

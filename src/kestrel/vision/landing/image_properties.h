@@ -20,9 +20,8 @@ struct LensBlur {
 
 // Gray values of 8 bits, of which noise and rounding take one or two. White minus black.
 struct GrayContrast {
-  static constexpr double kLeast = 2;      // contrast of a print
-  static constexpr double kLeastEdge = 2;  // contrast of an edge, per pixel
-  static constexpr double kLeastRing = 5;  // contrast of a ring that is worth a look at its inside
+  static constexpr float kLeast = 2;      // contrast of a print, and of an edge per pixel
+  static constexpr float kLeastRing = 5;  // contrast of a ring that is worth a look at its inside
 };
 
 }  // namespace kestrel

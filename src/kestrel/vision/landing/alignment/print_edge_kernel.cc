@@ -19,7 +19,6 @@ namespace HWY_NAMESPACE {
 using Floats = hn::CappedTag<float, 16>;
 using Vector = hn::Vec<Floats>;
 
-constexpr float kLeastEdgeStep = GrayContrast::kLeastEdge;
 constexpr float kStepInShadow = 0.3f;  // in a shadow: share of the gray value of its white
 constexpr float kLeastShare = 0.12f;   // least rise of the neighbours, share of the steepest rise
 
@@ -92,7 +91,8 @@ HWY_INLINE Vector SearchVector(const cv::Mat& image, int reach, float min_step, 
   Vector current = sample(first + 1);
   auto is_shown = hn::And(hn::Ge(gray, zero), hn::Ge(current, zero));
   Vector last_rise = hn::Sub(current, gray);
-  Vector best_rise = Of(kLeastEdgeStep), best = zero, before = zero, after = zero, white = Of(1e9f);
+  Vector best_rise = Of(GrayContrast::kLeast), best = zero, before = zero, after = zero,
+         white = Of(1e9f);
   auto is_best = hn::Lt(zero, zero);
   for (int i = -reach; i <= reach + 1; ++i) {
     const Vector next = sample(static_cast<float>(i) + 0.5f);
@@ -111,7 +111,7 @@ HWY_INLINE Vector SearchVector(const cv::Mat& image, int reach, float min_step, 
   }
   // In a shadow the print's contrast is lower, and so is its white.
   const auto is_edge =
-      hn::And(hn::Gt(best_rise, Of(kLeastEdgeStep)),
+      hn::And(hn::Gt(best_rise, Of(GrayContrast::kLeast)),
               hn::Ge(best_rise, hn::Min(Of(min_step), hn::Mul(Of(kStepInShadow), white))));
   const Vector offset = hn::Add(best, PeakOf(before, best_rise, after));
   return hn::IfThenElse(is_shown,

@@ -11,17 +11,15 @@ namespace {
 // Places around the two circles; the outer one has them nearer together, and none is left out.
 constexpr int kOuterPlaces = 56;
 constexpr int kInnerPlaces = 40;
-// Arm widths: places are that far from where an outline ends or another one begins, as far as blur
-// and a print that is not exact reach.
-constexpr double kClearOfArm = 0.8;  // from its axis
-constexpr double kClearOfHub = 1.6;  // from the middle
-constexpr double kClearOfEnd = 0.8;
+// Arm widths: places are that far from an arm's axis and end, and twice as far from the middle, as
+// blur and a print that is not exact reach.
+constexpr double kClear = 0.8;
 
 }  // namespace
 
 PrintOutline::PrintOutline(const LandingPattern& pattern) {
   AddCircle(pattern, pattern.outer_radius_m(), 1, kOuterPlaces, 0);
-  AddCircle(pattern, pattern.inner_radius_m(), -1, kInnerPlaces, kClearOfArm * pattern.arm_width_m);
+  AddCircle(pattern, pattern.inner_radius_m(), -1, kInnerPlaces, kClear * pattern.arm_width_m);
   ring_places_ = places_.size();
   AddArms(pattern);
 }
@@ -43,9 +41,9 @@ void PrintOutline::AddCircle(const LandingPattern& pattern, double radius, doubl
 
 void PrintOutline::AddArms(const LandingPattern& pattern) {
   const double half_width = 0.5 * pattern.arm_width_m;
-  const double first = kClearOfHub * pattern.arm_width_m;
-  const double last = std::min(pattern.arm_half_length_m, pattern.inner_radius_m()) -
-                      kClearOfEnd * pattern.arm_width_m;
+  const double first = 2 * kClear * pattern.arm_width_m;
+  const double last =
+      std::min(pattern.arm_half_length_m, pattern.inner_radius_m()) - kClear * pattern.arm_width_m;
   constexpr int kPerSide = 6;
   for (int arm = 0; arm < kArms; ++arm) {
     const double angle = arm * std::numbers::pi / 2;

@@ -19,6 +19,7 @@ namespace {
 // Least ellipticity of a small ring that has grown together with something beside it.
 constexpr double kLeastEllipticity = 0.6;
 constexpr double kMinAxisRatio = 0.15;
+constexpr int kDirections = 24;  // in which an outline is sampled
 
 ConvexHull::Points PointsOf(const BorderTracer& tracer, const Border& border) {
   return {tracer.begin(border), border.count};
@@ -27,8 +28,6 @@ ConvexHull::Points PointsOf(const BorderTracer& tracer, const Border& border) {
 // Samples an image along an outline. The directions are those of a circle.
 class OutlineSampler {
  public:
-  static constexpr int kDirections = 24;
-
   OutlineSampler(const cv::Mat& image, const Ellipse& outline)
       : image_(image),
         center_(outline.center.cast<float>()),
@@ -111,8 +110,6 @@ std::size_t OutlineInView(const BorderTracer& tracer, const Border& border,
 
 double RingContrast(const cv::Mat& image, const Ellipse& outer_edge,
                     const LandingPattern& pattern) {
-  constexpr int kDirections = OutlineSampler::kDirections;
-  constexpr float kLeast = GrayContrast::kLeast;
   constexpr float kLeastOfMedian = 0.2f;
   constexpr double kOutside = 0.7;  // from the ring to the white beside it, ring widths
   const double radius = pattern.outer_radius_m();
@@ -132,13 +129,13 @@ double RingContrast(const cv::Mat& image, const Ellipse& outer_edge,
     contrast[seen] = bright - dark;
     inner_contrast[seen++] = center - dark;
     // A quarter of the directions may show anything, so the least contrast among the others counts.
-    without += bright - dark < kLeast;
+    without += bright - dark < GrayContrast::kLeast;
     if (4 * without > kDirections) return 0;
   }
   if (2 * seen < kDirections) return 0;
   std::sort(contrast.begin(), contrast.begin() + seen);
   const float least = contrast[seen / 4];
-  if (least < std::max(kLeast, kLeastOfMedian * contrast[seen / 2])) return 0;
+  if (least < std::max(GrayContrast::kLeast, kLeastOfMedian * contrast[seen / 2])) return 0;
   // Inside, arms and white quadrants alternate: a quarter of the directions must show white.
   const float upper = RankedInPlace(std::span(inner_contrast).first(seen), seen - seen / 4);
   if (upper < static_cast<float>(PrintPlaces::kLeastInside) * contrast[seen / 2]) return 0;
@@ -149,7 +146,6 @@ double BoardContrast(const cv::Mat& image, const Ellipse& outer_edge) {
   // Outer radii of the ring: white of the board, and the ring, whose width and place are not exact.
   constexpr double kOnBoard = 1.35;
   constexpr std::array<double, 3> kOnRing{0.8, 0.95, 1.1};
-  constexpr int kDirections = OutlineSampler::kDirections;
   const OutlineSampler sampler(image, outer_edge);
   std::array<float, kDirections> contrast;
   for (int i = 0; i < kDirections; ++i) {

@@ -47,10 +47,9 @@ struct Ramp {
 constexpr Ramp kIsInk{0.2f, 0.6f}, kIsDark{0.35f, 0.85f}, kIsInkOnly{0.7f, 0.95f};
 // A dark place is a stroke of another ring; noise alone reaches the lower end.
 constexpr Ramp kIsStroke{0.3f, 0.8f};
-constexpr Ramp kInAnyLight{-1, 1};     // from white in a highlight to ink
-constexpr float kBeyondWhite = 0.15f;  // above lit white, share of the contrast
-constexpr float kVeiled = 0.2f;        // above the darkest ink, share of the contrast
-constexpr float kLeastContrast = GrayContrast::kLeast;
+constexpr Ramp kInAnyLight{-1, 1};        // from white in a highlight to ink
+constexpr float kBeyondWhite = 0.15f;     // above lit white, share of the contrast
+constexpr float kVeiled = 0.2f;           // above the darkest ink, share of the contrast
 constexpr float kLeastOfContrast = 0.25;  // share of the whole print's contrast, in any direction
 constexpr double kEnoughSeen = 0.25;      // least share of places in view by which a part is judged
 
@@ -327,8 +326,8 @@ InkComparison::Levels InkComparison::MeasureLevels(const Grays& gray) const {
   levels.veiled = *darkest + kVeiled * (*std::max_element(lit.begin(), lit.end()) - *darkest);
   std::array<float, kSectors> contrasts = contrast;
   const float median = MedianInPlace(contrasts);
-  levels.has_contrast = median >= kLeastContrast;
-  const float least = std::max(kLeastContrast, kLeastOfContrast * median);
+  levels.has_contrast = median >= GrayContrast::kLeast;
+  const float least = std::max(GrayContrast::kLeast, kLeastOfContrast * median);
   for (int s = 0; s < kSectors; ++s) {
     const float span = std::max(contrast[s], least);
     levels.per_gray[s] = 1 / span;

@@ -16,8 +16,8 @@ namespace {
 // The sample: pairs of rows at even distances, and every kSampleStep-th place on them.
 constexpr int kRowPairs = 12;
 constexpr int kSampleStep = 4;
-constexpr int kRunPx = 16;  // pixels of a row, over which the contrast is free of noise
-constexpr double kDarkShare = 0.02, kBrightShare = 0.98;
+constexpr int kRunPx = 16;      // pixels of a row, over which the contrast is free of noise
+constexpr double kTail = 0.02;  // share of the darkest and of the brightest runs, left out
 
 // Least noise, as a share of the contrast, that hides a print: two neighbouring pixels then differ
 // as much as the least step of an edge.
@@ -84,8 +84,8 @@ class ContrastMeasurement {
     const auto rank = [&](double share) {
       return RankedInPlace(runs, static_cast<std::size_t>(share * (runs_count_ - 1)));
     };
-    const double dark = rank(kDarkShare);
-    return rank(kBrightShare) - dark;
+    const double dark = rank(kTail);
+    return rank(1 - kTail) - dark;
   }
 
  private:

@@ -252,7 +252,7 @@ bool SmallPatternFitter::Improve(const System& system, const std::optional<Norma
 std::optional<SmallPatternFitter::Fit> SmallPatternFitter::Refine(
     const cv::Mat& image, const RigidTransform& initial, Light light, int iterations,
     SmallPatternWorkspace* workspace, const std::optional<NormalPrior>& prior) const {
-  const int enough = light == Light::kShadows ? kEnoughToSeparateInk : kEnoughToFit;
+  const int enough = light == Light::kShadows ? 2 * kEnoughPixels : kEnoughPixels;
   if (!Gather(image, initial, enough, workspace)) return std::nullopt;
   State state;
   state.pose = initial;

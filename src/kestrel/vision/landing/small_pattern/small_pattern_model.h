@@ -19,10 +19,9 @@
 
 namespace kestrel {
 
-// Largest numbers of pixels of a box around a print for which every pixel is used.
-inline constexpr int kEnoughToFit = 1200;
-inline constexpr int kEnoughToStart = 600;
-inline constexpr int kEnoughToSeparateInk = 2400;  // to distinguish ink from light by its width
+// Largest number of pixels of a box around a print for which a fit uses every pixel. A start needs
+// half of it, and to distinguish ink from light by its width takes twice as many.
+inline constexpr int kEnoughPixels = 1200;
 
 // Returns the matrix from rays to homogeneous coordinates of the plane of a pose.
 inline Eigen::Matrix3d PlaneFromRay(const RigidTransform& camera_from_target) {

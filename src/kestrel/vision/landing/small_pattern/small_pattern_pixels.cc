@@ -17,9 +17,8 @@ constexpr int kMaxSide = 256;  // largest side of the box around the print, pixe
 }  // namespace
 
 SmallPatternWorkspace::SmallPatternWorkspace() {
-  constexpr std::size_t kVector = 64;  // at most, floats
-  constexpr std::size_t kMost =
-      kEnoughToSeparateInk + 2 * kMaxSide + 1;  // pixels of box and border
+  constexpr std::size_t kVector = 64;                                  // at most, floats
+  constexpr std::size_t kMost = 2 * kEnoughPixels + 2 * kMaxSide + 1;  // pixels of box and border
   const auto make_room = [](auto&... columns) { (columns.resize(kMost + kVector), ...); };
   for (auto* rays : {&pixels.ray, &pixels.ray_by_u, &pixels.ray_by_v}) {
     for (Column& column : *rays) make_room(column);

@@ -41,7 +41,7 @@ std::optional<double> SmallPatternFitter::FindScale(const cv::Mat& image, const 
                                                     SmallPatternWorkspace* workspace) const {
   const auto look_at = [&](double scale) {
     const RigidTransform unturned = PatternPose(Shrunk(ring, scale), 0);
-    if (!Gather(image, unturned, kEnoughToStart, workspace)) return -1.0;
+    if (!Gather(image, unturned, kEnoughPixels / 2, workspace)) return -1.0;
     Predict(unturned, LensBlur::kGoodPx, workspace);
     return CorrelateRing(pattern_, *workspace);
   };

@@ -173,7 +173,7 @@ bool NearPrintVerifier::TestPrint(const Hypothesis& print, const Eigen::Vector2d
   PrintAlignment alignment{PlaneWarp(search_.models.camera, print.camera_from_target,
                                      search_.models.locator.outline().radius_m()),
                            {}};
-  const double min_step = std::max(GrayContrast::kLeastEdge, kMinStep * print.contrast);
+  const double min_step = std::max<double>(GrayContrast::kLeast, kMinStep * print.contrast);
   if (!AlignPrint(search_.image.whole(), image, region, search_.models.locator.outline().all(),
                   reach_px, min_step, &alignment)) {
     return false;

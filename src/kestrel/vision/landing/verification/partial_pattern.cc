@@ -74,17 +74,17 @@ class Finder {
     KeepLongest(&segments, kMaxSegments, [](const LineSegment& s) { return s.length(); });
     for (const LineSegment& a : segments) {
       for (const LineSegment& b : segments) {
-        // The two borders of a bar run in opposite directions, each on the black side of the other.
+        // The two borders of a bar run in opposite directions, each on the right of the other,
+        // where black lies.
         const Eigen::Vector2d direction = a.direction();
         if (direction.dot(b.direction()) > -kParallel) continue;
-        const Eigen::Vector2d across(-direction.y(), direction.x());
-        const double width = kBlackSide * across.dot(0.5 * (b.start + b.end) - a.start);
+        const Eigen::Vector2d across(direction.y(), -direction.x());
+        const double width = across.dot(0.5 * (b.start + b.end) - a.start);
         const double low = std::max(0.0, direction.dot(b.end - a.start));
         const double high = std::min(a.length(), direction.dot(b.start - a.start));
         if (width <= 0 || high - low < kLeastBarLength * width || width > kMaxBarWidth) continue;
-        workspace_.bars.push_back(
-            {a.start + 0.5 * (low + high) * direction + 0.5 * kBlackSide * width * across,
-             direction, width, high - low});
+        workspace_.bars.push_back({a.start + 0.5 * (low + high) * direction + 0.5 * width * across,
+                                   direction, width, high - low});
       }
     }
     KeepLongest(&workspace_.bars, kMaxBars,
@@ -102,9 +102,6 @@ class Finder {
   }
 
  private:
-  // Black lies on the right of a border line, 'across' points to its left.
-  static constexpr double kBlackSide = -1;
-
   void Cut(bool closed) {
     SplitAndMerge(workspace_.plane, closed, kLineTolerance, kMinLineLength, &workspace_.breaks,
                   &workspace_.segments);
