@@ -80,7 +80,7 @@ void InputContradictions::Add(const GivenView& given, const TargetDetection& see
     const auto tilt = [&](const RigidTransform& pose) {
       return AngleBetween(Normal(pose), *given.up_in_camera);
     };
-    tilts_.Add({LeastDifference(seen, tilt), AngleSigma(seen)});
+    tilts_.Add({LeastDifference(seen, tilt), std::hypot(AngleSigma(seen), kAttitudeSigma)});
   }
   if (!given.altitude_m) return;
   const auto excess_m = [&](const RigidTransform& pose) {
@@ -95,19 +95,9 @@ void InputContradictions::Add(const GivenView& given, const TargetDetection& see
 }
 
 std::optional<Contradiction> InputContradictions::Attitude() const {
-  std::optional<Contradiction> tilt = tilts_.Median();
-  if (!tilt) return std::nullopt;
-  tilt->sigma = std::hypot(tilt->sigma, kAttitudeSigma);
-  if (tilt->difference <= kMaxSlope + kTolerance * tilt->sigma) return std::nullopt;
+  const std::optional<Contradiction> tilt = tilts_.Median();
+  if (!tilt || tilt->difference <= kMaxSlope + kTolerance * tilt->sigma) return std::nullopt;
   return tilt;
-}
-
-bool InputContradictions::IsMoreTilted(const InputContradictions& other) const {
-  constexpr double kLeast = Radians(2);  // by mounts
-  const std::optional<Contradiction> own = tilts_.Median(), others = other.tilts_.Median();
-  if (!own || !others) return false;
-  const double tolerance = std::max(kLeast, kTolerance * std::hypot(own->sigma, others->sigma));
-  return own->difference - others->difference > tolerance;
 }
 
 std::optional<Contradiction> InputContradictions::Altitude() const {

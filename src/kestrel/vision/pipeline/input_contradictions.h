@@ -40,9 +40,6 @@ class InputContradictions {
   // tilt is plausible or too little was seen.
   std::optional<Contradiction> Attitude() const;
 
-  // True when the pad is seen more tilted than in these other views of it, from the same UAV.
-  bool IsMoreTilted(const InputContradictions& other) const;
-
  private:
   struct Difference {
     double value;

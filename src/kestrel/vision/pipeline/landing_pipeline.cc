@@ -481,15 +481,13 @@ void LandingPipeline::Impl::Judge(const TargetMeasurement& measurement,
   for (Eye& each : eyes_) each.lag = {};  // it was learnt from the wrong camera, too
 }
 
-// Whether the own views of 'camera' show that it is the one of the two that is wrong: by its clock,
-// or by its mount, which lets the pad seem tilted.
+// Whether the stamps of 'camera' show that it is the one of the two that is wrong.
 bool LandingPipeline::Impl::IsRefuted(std::size_t camera, std::size_t other) const {
-  const Eye& own = eyes_[camera];
-  const Eye& others = eyes_[other];
-  const bool is_late = own.stamp_lag.Contradiction(own.poses).has_value();
-  const bool is_other_late = others.stamp_lag.Contradiction(others.poses).has_value();
-  if (is_late != is_other_late) return is_late;
-  return own.contradictions.IsMoreTilted(others.contradictions);
+  const auto is_late = [this](std::size_t index) {
+    const Eye& eye = eyes_[index];
+    return eye.stamp_lag.Contradiction(eye.poses).has_value();
+  };
+  return is_late(camera) && !is_late(other);
 }
 
 void LandingPipeline::Impl::Remember(const LandingObservation& observation, Eye* eye) {

@@ -182,7 +182,8 @@ TEST_F(FlightConsoleTest, KeepsNoImageWithoutViewer) {
 TEST(PointedConsoleTest, GimbalIsPointedAgainOnRequest) {
   FlightConsole console(FreePort(), "a flight",
                         {LandingView{CameraModel(PaperCamera()), {}, TurnNoise()}},
-                        FlightExamination(PaperCalibration(), ".", 0), nullptr, std::nullopt, true);
+                        FlightExamination(PaperCalibration(), ".", 0), nullptr, std::nullopt,
+                        {ConsoleCommandKind::kPoint});
   TestSocket socket(PortOf(console));
   const auto hello = socket.Next("hello");
   ASSERT_TRUE(hello);
@@ -227,7 +228,7 @@ TEST(FollowConsoleTest, MarkNamesThePictureAndTheBox) {
 TEST(FollowConsoleTest, PersonConfirmsAndStopsTheFlight) {
   FlightConsole console(FreePort(), "a flight", {FollowView()},
                         FlightExamination(PaperCalibration(), ".", 0), nullptr, std::nullopt,
-                        /*follows=*/true);
+                        {ConsoleCommandKind::kConfirm, ConsoleCommandKind::kStop});
   TestSocket socket(PortOf(console));
   const auto hello = socket.Next("hello");
   ASSERT_TRUE(hello);
