@@ -23,7 +23,7 @@ FlightOptions FollowFrom(const std::string& side) {
   return options;
 }
 
-AutopilotModelOptions Guided(bool has_gimbal) {
+AutopilotModelOptions FollowingPilot(bool has_gimbal) {
   AutopilotModelOptions options;
   options.pilot.guide_after_s = 4;
   options.pilot.land_after_s = -1;
@@ -40,7 +40,7 @@ INSTANTIATE_TEST_SUITE_P(Both, FollowFlightTest,
 
 TEST_P(FollowFlightTest, KeepsDistanceFromWalkerWithEitherCamera) {
   for (const bool has_gimbal : {false, true}) {
-    FollowedFlight flight(GetParam(), Guided(has_gimbal), TestVehicle("stops", 1.4),
+    FollowedFlight flight(GetParam(), FollowingPilot(has_gimbal), TestVehicle("stops", 1.4),
                           FollowFrom("free"), has_gimbal ? std::nullopt : std::optional(kDown_deg),
                           1);
     ASSERT_TRUE(flight.FollowWithin(40)) << flight.reported;
@@ -56,8 +56,8 @@ TEST_P(FollowFlightTest, KeepsDistanceFromWalkerWithEitherCamera) {
 }
 
 TEST_P(FollowFlightTest, DoesNotMoveWithoutConfirmation) {
-  FollowedFlight flight(GetParam(), Guided(false), TestVehicle("standing", 0), FollowFrom("free"),
-                        kDown_deg, 1);
+  FollowedFlight flight(GetParam(), FollowingPilot(false), TestVehicle("standing", 0),
+                        FollowFrom("free"), kDown_deg, 1);
   flight.Fly(6);
   ASSERT_EQ(flight.phase(), GuidancePhase::kLook) << flight.reported;
   const Eigen::Vector3d began = flight.model.truth().world_from_body.translation;
