@@ -27,9 +27,6 @@ class PriorKnowledge {
   // image.
   std::optional<cv::Rect> PartOfImage(double sigma_m) const;
 
-  // As kestrel::PartBelowHorizon; nothing without an attitude.
-  std::optional<cv::Rect> PartBelowHorizon() const;
-
   // Returns the predicted ring. Nothing when the hint lacks centre or up, or shows the ring from
   // below.
   std::optional<CirclePose> PredictedRing() const;
