@@ -25,7 +25,7 @@ struct Arguments {
   std::string only;
 };
 
-// What is followed, and how.
+// A vehicle or a person, and the way in which it is followed.
 struct Case {
   const char* name;
   const char* path;

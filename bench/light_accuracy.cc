@@ -147,7 +147,7 @@ class Report {
     PrintLookalikeRow("with counterfeits, cut off, night", all, lights, kCutOff, few);
   }
 
-  // Of all detections in a light, right ones and false ones.
+  // The errors of all detections in a light, right ones and false ones.
   void PrintReliability() const {
     fmt::print("\n| light | detections | expected calibration error |\n|---|---|---|\n");
     for (int i = 0; i < kStillConditions; ++i) {

@@ -101,7 +101,7 @@ mavlink::CameraFovStatus FieldOfViewOf(const CameraDescription& camera, std::uin
   return message;
 }
 
-// What was marked by a point has a box, too: it is reported as such.
+// A mark by a point has a box, too, and is reported by that.
 mavlink::CameraTrackingImageStatus ImageStatusOf(const CameraDescription& camera,
                                                  const CameraTracking& tracking) {
   mavlink::CameraTrackingImageStatus message;

@@ -40,7 +40,7 @@ struct ImageRegion {
   double bottom = 0;
 };
 
-// What the camera follows at present.
+// The thing that the camera follows at present.
 struct CameraTracking {
   enum class State { kIdle, kActive, kCoasting, kLost };
 

@@ -69,7 +69,7 @@ struct GuidanceOutput {
   bool cannot_follow = false;
 };
 
-// What the guidance of each task has in common: beginning and end with the pilot's mode, losses of
+// The common part of the guidance of each task: beginning and end with the pilot's mode, losses of
 // link, mode, poses and camera, an autopilot that does not obey, and limits. A state machine
 // without clock, socket or thread: everything that happens is in the inputs.
 //
@@ -109,7 +109,7 @@ class Guidance {
   Guidance(const Guidance&) = default;
   Guidance& operator=(const Guidance&) = default;
 
-  // A task's wish for now.
+  // What a task wants at an instant.
   struct Wish {
     SetPoint set_point;
     bool follows_target = false;  // it may bring the UAV below limits.floor_m
@@ -135,7 +135,7 @@ class Guidance {
   Time last() const { return last_; }        // time of the last update
   Time entered() const { return entered_; }  // time at which the phase began
   double SecondsSinceLast(Time now) const;   // at most a moment, however long there was none
-  // Where the vehicle was last, or should pass.
+  // The place where the vehicle was last, or should pass (m, world).
   const Eigen::Vector2d& place() const { return place_; }
   void set_place(const Eigen::Vector2d& place) { place_ = place; }
   const std::optional<SetPoint>& sent() const { return sent_; }

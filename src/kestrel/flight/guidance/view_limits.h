@@ -8,7 +8,7 @@
 
 namespace kestrel {
 
-// How far a UAV may lean until a camera that is fixed to it loses a target out of the image.
+// The leans of a UAV at which a camera that is fixed to it loses a target out of the image.
 class ViewLimits {
  public:
   // Throws InputError when the lens is not valid.

@@ -54,7 +54,7 @@ struct FlightParts {
   ObservationSink* tables = nullptr;
   ObservationSink* sink = nullptr;
   const CameraCalibration* pointed = nullptr;  // with the gimbal to point; null: none is pointed
-  // Of the camera in which ground stations mark what is followed; null: there is none.
+  // The camera in whose images ground stations mark what is followed; null: there is none.
   const CameraCalibration* tracking = nullptr;
   const CameraStream* stream = nullptr;  // in which they do so; null: the source's own
   GuidanceMaker guidance = {};  // flies by set-points when the pilot gives the mode; null: does not
