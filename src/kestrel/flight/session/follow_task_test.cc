@@ -27,6 +27,35 @@ std::unique_ptr<Vision> VisionWith(const FollowMark& mark) {
   return FollowTask({}, mark).MakeVision(camera);
 }
 
+std::unique_ptr<Vision> LiveVision() {
+  SessionCamera camera;
+  camera.calibration.intrinsics = Intrinsics();
+  camera.is_live = true;
+  return FollowTask({}).MakeVision(camera);
+}
+
+// The target in one of the pictures.
+struct ShownTarget {
+  Time time;
+  cv::Rect2d box_px;
+};
+
+// Shows pictures in which target and camera move by so many pixels each. Returns the target in
+// picture number 'marked'.
+ShownTarget Show(int pictures, int marked, const Eigen::Vector2d& target_px,
+                 const Eigen::Vector2d& camera_px, RegionScene* scene, Vision* vision) {
+  ShownTarget shown;
+  for (int i = 0; i < pictures; ++i) {
+    scene->target.center_px += target_px;
+    scene->camera_px += camera_px;
+    const cv::Mat image = scene->Take();
+    if (i == marked) shown = {scene->time, scene->Box()};
+    const Observation seen = vision->Process({"", scene->time, image});
+    EXPECT_FALSE(std::get<FollowObservation>(seen.seen).region);
+  }
+  return shown;
+}
+
 TEST(FollowTaskTest, FollowsFromTheMarkedFrameOn) {
   RegionScene scene(1);
   std::unique_ptr<Vision> vision = VisionWith({scene.Box(), "2"});
@@ -76,21 +105,8 @@ TEST(FollowTaskTest, RecordingNeedsAMark) {
 // left that place and the camera turns.
 TEST(FollowTaskTest, MarkOnALatePictureIsAppliedToThatPicture) {
   RegionScene scene(3);
-  SessionCamera camera;
-  camera.calibration.intrinsics = Intrinsics();
-  camera.is_live = true;
-  const auto vision = FollowTask({}).MakeVision(camera);
-  Time marked;
-  cv::Rect2d box;
-  for (int i = 0; i < 20; ++i) {
-    scene.target.center_px += Eigen::Vector2d(5, 0);
-    scene.camera_px += Eigen::Vector2d(-9, 4);
-    const cv::Mat image = scene.Take();
-    if (i == 13) marked = scene.time;
-    if (i == 13) box = scene.Box();
-    const Observation seen = vision->Process({"", scene.time, image});
-    EXPECT_FALSE(std::get<FollowObservation>(seen.seen).region);
-  }
+  const auto vision = LiveVision();
+  const auto [marked, box] = Show(20, 13, {5, 0}, {-9, 4}, &scene, vision.get());
   ASSERT_GT(std::abs(box.x - scene.Box().x), box.width) << "somewhere else by now";
   EXPECT_EQ(vision->snapshot().mark, 0);
   vision->Mark(marked, box);
@@ -101,8 +117,9 @@ TEST(FollowTaskTest, MarkOnALatePictureIsAppliedToThatPicture) {
   ASSERT_TRUE(region);
   EXPECT_EQ(region->state, RegionState::kFollowing);
   EXPECT_GT((region->box_px & scene.Box()).area(), 0.6 * scene.Box().area());
-  EXPECT_THAT(InputErrorOf([&] { vision->Mark(Time(), box); }), HasSubstr("mark a newer one"));
-  EXPECT_THAT(InputErrorOf([&] {
+  EXPECT_THAT(InputErrorOf([&, box = box] { vision->Mark(Time(), box); }),
+              HasSubstr("mark a newer one"));
+  EXPECT_THAT(InputErrorOf([&, marked = marked] {
                 vision->Mark(marked, {-90, 0, 9, 9});
               }),
               HasSubstr("expected one within the image"));
@@ -112,19 +129,8 @@ TEST(FollowTaskTest, MarkOnALatePictureIsAppliedToThatPicture) {
 // A ground station knows the time of its click, not that of a picture.
 TEST(FollowTaskTest, MarkBetweenTwoPicturesCountsInTheOneBefore) {
   RegionScene scene(3);
-  SessionCamera camera;
-  camera.calibration.intrinsics = Intrinsics();
-  camera.is_live = true;
-  const auto vision = FollowTask({}).MakeVision(camera);
-  Time marked;
-  cv::Rect2d box;
-  for (int i = 0; i < 10; ++i) {
-    scene.target.center_px += Eigen::Vector2d(9, 0);
-    const cv::Mat image = scene.Take();
-    if (i == 4) marked = scene.time;
-    if (i == 4) box = scene.Box();
-    vision->Process({"", scene.time, image});
-  }
+  const auto vision = LiveVision();
+  const auto [marked, box] = Show(10, 4, {9, 0}, {0, 0}, &scene, vision.get());
   vision->Mark(marked + std::chrono::milliseconds(5), box);
   const auto follow = [&] {
     const cv::Mat image = scene.Take();
@@ -138,6 +144,7 @@ TEST(FollowTaskTest, MarkBetweenTwoPicturesCountsInTheOneBefore) {
   EXPECT_GT((region->box_px & scene.Box()).area(), 0.6 * scene.Box().area());
   vision->Unmark();
   EXPECT_FALSE(follow()) << "nothing is marked any more";
+  EXPECT_EQ(vision->snapshot().mark, 2) << "a confirmation was for the mark before";
 }
 
 }  // namespace
