@@ -30,20 +30,24 @@ void InkSamples::Connect(std::size_t first, double reach_m) {
   }
 }
 
-float InkSamples::ToneAt(float gray, Tone tone) const {
-  return tone == Tone::kLogarithm ? log_(gray) : gray / 255;
+// One of each sample, negative where it is out of view.
+InkSamples::Tones InkSamples::TonesOf(std::span<const float> gray, Tone tone) const {
+  Tones tones;
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    const bool is_logarithm = tone == Tone::kLogarithm && gray[i] >= 0;
+    tones[i] = is_logarithm ? log_(gray[i]) : gray[i] / 255;
+  }
+  return tones;
 }
 
-InkSamples::Contrast InkSamples::ContrastAt(std::span<const float> gray, std::size_t i,
-                                            Tone tone) const {
-  if (gray[i] < 0) return {NAN, NAN};
+InkSamples::Contrast InkSamples::ContrastAt(const Tones& tones, std::size_t i) const {
+  if (tones[i] < 0) return {NAN, NAN};
   const float sign = samples_[i].ink == white_ ? 1.0F : -1.0F;
-  const float here = ToneAt(gray[i], tone);
   float sum = 0, largest = -1;
   int count = 0;
   for (const std::size_t k : samples_[i].opposite) {
-    if (gray[k] < 0) continue;
-    const float contrast = sign * (here - ToneAt(gray[k], tone));
+    if (tones[k] < 0) continue;
+    const float contrast = sign * (tones[i] - tones[k]);
     sum += contrast;
     largest = std::max(largest, contrast);
     ++count;
@@ -64,10 +68,11 @@ bool InkSamples::IsClipped(std::span<const float> gray, std::size_t i) const {
 bool InkSamples::AddTone(std::span<const float> gray, Tone tone, SampleContrasts* seen) const {
   constexpr double kLeastContrast = 0.02;
   constexpr float kLeastClipped = 0.03F;
+  const Tones tones = TonesOf(gray, tone);
   std::array<float, kMostSamples> means, largest;
   std::size_t count = 0;
   for (std::size_t i = 0; i < samples_.size(); ++i) {
-    const Contrast contrast = ContrastAt(gray, i, tone);
+    const Contrast contrast = ContrastAt(tones, i);
     largest[i] = contrast.largest;
     if (!std::isnan(contrast.mean)) means[count++] = contrast.mean;
   }
@@ -128,10 +133,11 @@ double InkSamples::EvidenceOf(std::span<const float> gray, double area_px2, Tone
 
 double InkSamples::LikenessOf(std::span<const float> gray, Tone tone) const {
   constexpr double kLeastSpread = 0.01;
+  const Tones tones = TonesOf(gray, tone);
   double sum = 0, squares = 0;
   int count = 0;
   for (std::size_t i = 0; i < samples_.size(); ++i) {
-    const float contrast = ContrastAt(gray, i, tone).mean;
+    const float contrast = ContrastAt(tones, i).mean;
     if (std::isnan(contrast)) continue;
     sum += contrast;
     squares += contrast * contrast;

@@ -66,9 +66,11 @@ class InkSamples {
     float mean, largest;
   };
 
-  Contrast ContrastAt(std::span<const float> gray, std::size_t i, Tone tone) const;
-  // Of each sample what the tones show at most; NaN where it is out of view.
   static constexpr std::size_t kMostSamples = 256;
+  using Tones = std::array<float, kMostSamples>;
+  Tones TonesOf(std::span<const float> gray, Tone tone) const;
+  Contrast ContrastAt(const Tones& tones, std::size_t i) const;
+  // Of each sample what the tones show at most; NaN where it is out of view.
   struct SampleContrasts {
     SampleContrasts() {
       of_usual.fill(NAN);
@@ -80,7 +82,6 @@ class InkSamples {
 
   bool AddTone(std::span<const float> gray, Tone tone, SampleContrasts* seen) const;
   bool IsClipped(std::span<const float> gray, std::size_t i) const;
-  float ToneAt(float gray, Tone tone) const;
   double EvidenceOf(std::span<const float> gray, double area_px2, Tone tone) const;
 
   bool white_;
