@@ -36,7 +36,7 @@ struct DeckSighting {
 };
 
 // A person's order to fly to what is marked, or to stop.
-struct FollowOrder {
+struct alignas(8) FollowOrder {  // as std::atomic needs it to work without locks
   int number = 0;  // each order has a larger one than the order before
   int mark = 0;    // the mark to which the UAV is to fly; 0: to none
 };
