@@ -101,6 +101,9 @@ void FlyArguments::AddTo(CLI::App* command) {
   CLI::Option* point_flag = command->add_flag(
       "--point", point,
       "Point the camera's gimbal at the pattern, or at what is marked, as --guide does, too");
+  CLI::Option* position_flag = command->add_flag(
+      "--pad-position", pad_position,
+      "Send the place over the pad, which stands, to the autopilot as its position: no GNSS");
   task.AddTo(command, [](std::string_view) { return true; });
   CLI::Option* hunt_flag = command->get_option("--hunt");
   command->add_option("--model", model, "Objects and their colours (YAML), with --hunt")
@@ -110,6 +113,7 @@ void FlyArguments::AddTo(CLI::App* command) {
   guide_flag->excludes(hunt_flag);
   point_flag->excludes(hunt_flag);
   for (CLI::Option* other : {hunt_flag, follow_flag}) {
+    position_flag->excludes(other);
     other->excludes("--target")->excludes("--target-id")->excludes("--target-size");
   }
   team.AddTo(command)->needs(hunt_flag);
@@ -143,6 +147,9 @@ KestrelOptions FlyArguments::ReadOptions() {
   if (link_delay != "auto") options.fly.link_delay_s = ParseLinkDelay(link_delay);
   if (guide && autopilot.empty()) throw InputError("--guide: expected --autopilot URL");
   if (point && autopilot.empty()) throw InputError("--point: expected --autopilot URL");
+  if (pad_position && autopilot.empty()) {
+    throw InputError("--pad-position: expected --autopilot URL");
+  }
   if (guide && task.name == "follow" && !console) {
     throw InputError("--follow --guide: expected --console, on which a person confirms the flight");
   }

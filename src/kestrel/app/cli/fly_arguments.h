@@ -27,6 +27,7 @@ struct FlyArguments {
   std::string video;                   // rtsp://ADDRESS:PORT/PATH; empty: none
   bool guide = false;
   bool point = false;
+  bool pad_position = false;
   bool no_guard = false;
   TaskArgument task;
   std::string model;  // file with the model of the objects

@@ -291,6 +291,7 @@ class Flight {
     SessionOptions options = SessionOptionsFor(autopilot_, options_.fly, arguments_.guide);
     if (arguments_.profile != "auto") options.profile = ParseLinkProfile(arguments_.profile);
     options.points = arguments_.point;
+    options.sends_pad_position = arguments_.pad_position;
     options.output = arguments_.source.output;
     options.record = arguments_.record;
     options.replace = arguments_.source.force;

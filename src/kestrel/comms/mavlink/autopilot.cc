@@ -229,6 +229,7 @@ void Autopilot::ReportPose(PoseFate fate, const char* what, const PoseSample& po
   switch (fate) {
     case PoseFate::kUsed:
       newest_pose_ = pose.time;
+      ReportAttitude(pose);
       if (listener_.pose) listener_.pose(pose);
       break;
     case PoseFate::kNone:
@@ -250,6 +251,7 @@ void Autopilot::ReportPose(PoseFate fate, const char* what, const PoseSample& po
       return;
     case PoseFate::kWithoutPosition:
       ++counters_.without_position;
+      ReportAttitude(pose);
       break;
   }
   if (!clock_.is_one_way()) return;
@@ -257,6 +259,13 @@ void Autopilot::ReportPose(PoseFate fate, const char* what, const PoseSample& po
     return std::string(
         "the autopilot does not answer TIMESYNC: its clock is known by the delay of the line only");
   });
+}
+
+void Autopilot::ReportAttitude(PoseSample pose) {
+  if (!listener_.attitude) return;
+  pose.world_from_body.translation.setZero();
+  pose.motion->velocity_in_world.setZero();
+  listener_.attitude(pose);
 }
 
 bool Autopilot::HandleTruePose(const mavlink::Packet& packet, Time received) {

@@ -98,6 +98,8 @@ struct AutopilotListener {
   // pose for each attitude, with the position of that instant from the newest position and
   // velocity.
   std::function<void(const PoseSample&)> pose;
+  // Attitude and turn alone (place and velocity are 0), with or without a position.
+  std::function<void(const PoseSample&)> attitude;
   std::function<void(const PoseSample&)> true_pose;  // as above, from a simulated vehicle
   std::function<void(const AutopilotEvent&)> event;
   std::function<void(std::uint8_t severity, std::string_view text)> text;  // STATUSTEXT
@@ -191,6 +193,7 @@ class Autopilot {
   bool HandlePose(const mavlink::Packet& packet, Time received);
   bool HandleTruePose(const mavlink::Packet& packet, Time received);
   void ReportPose(PoseFate fate, const char* what, const PoseSample& pose);
+  void ReportAttitude(PoseSample pose);
   Time BetweenAttitudes(Time guess) const;
   void HandleStatus(const mavlink::Packet& packet, Time received);
   void HandleTimesync(const mavlink::Timesync& message, Time received);

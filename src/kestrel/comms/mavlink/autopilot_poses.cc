@@ -89,13 +89,14 @@ PoseFate AutopilotPoses::MakePose(const AttitudeSample& sample, Time received, C
   const std::int64_t remote_ns = NanosecondsOfBoot(sample.boot_ms);
   clock->HandleStamp(remote_ns, received);
   if (!clock->sync().is_known()) return PoseFate::kWithoutClock;
-  const double age_s = position_ ? SecondsBetween(position_->boot_ms, sample.boot_ms) : 0;
-  if (!position_ || std::abs(age_s) > position_age_s_) return PoseFate::kWithoutPosition;
   pose->time = clock->sync().ToLocal(remote_ns);
   pose->time_sigma_s = clock->sync().sigma_s(received);
-  pose->world_from_body = {EnuFluFromNedFrd(sample.ned_from_frd).normalized(),
-                           position_->in_world + age_s * position_->velocity_in_world};
-  pose->motion = BodyMotion{position_->velocity_in_world, FluFromFrd(sample.rate_in_frd)};
+  pose->world_from_body = {EnuFluFromNedFrd(sample.ned_from_frd).normalized(), Vector3d::Zero()};
+  pose->motion = BodyMotion{Vector3d::Zero(), FluFromFrd(sample.rate_in_frd)};
+  const double age_s = position_ ? SecondsBetween(position_->boot_ms, sample.boot_ms) : 0;
+  if (!position_ || std::abs(age_s) > position_age_s_) return PoseFate::kWithoutPosition;
+  pose->motion->velocity_in_world = position_->velocity_in_world;
+  pose->world_from_body.translation = position_->in_world + age_s * position_->velocity_in_world;
   return PoseFate::kUsed;
 }
 

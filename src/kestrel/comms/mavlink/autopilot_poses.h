@@ -34,7 +34,8 @@ class AutopilotPoses {
   // 'position_age_s': an older position is not used for a pose.
   explicit AutopilotPoses(double position_age_s) : position_age_s_(position_age_s) {}
 
-  // Sets 'pose' when the result is kUsed. The clock learns from the stamps.
+  // Sets 'pose' when the result is kUsed, and without place and velocity when it is
+  // kWithoutPosition. The clock learns from the stamps.
   PoseFate Handle(const mavlink::AttitudeQuaternion& message, Time received, ClockExchange* clock,
                   PoseSample* pose);
   PoseFate Handle(const mavlink::Attitude& message, Time received, ClockExchange* clock,

@@ -134,6 +134,9 @@ inline constexpr std::uint8_t kFrameBodyOffsetNed = 9;
 inline constexpr std::uint8_t kFrameBodyFrd = 12;
 inline constexpr std::uint8_t kFrameLocalFrd = 20;
 
+// MAV_ESTIMATOR_TYPE of ODOMETRY
+inline constexpr std::uint8_t kEstimatorTypeVision = 2;
+
 // TARGET_OBS_FRAME of TARGET_RELATIVE
 inline constexpr std::uint8_t kTargetFrameLocalNed = 0;
 inline constexpr std::uint8_t kTargetFrameBodyFrd = 1;

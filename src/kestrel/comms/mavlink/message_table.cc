@@ -20,14 +20,15 @@ constexpr auto MakeTable() {
 constexpr auto kTable =
     MakeTable<Heartbeat, SysStatus, SystemTime, SetMode, ParamRequestRead, ParamRequestList,
               ParamValue, ParamSet, GpsRawInt, Attitude, AttitudeQuaternion, LocalPositionNed,
-              GlobalPositionInt, GpsGlobalOrigin, RcChannels, RequestDataStream, CommandLong,
-              CommandAck, SetAttitudeTarget, SetPositionTargetLocalNed, SimState, Timesync,
-              HilStateQuaternion, DistanceSensor, FollowTarget, AutopilotVersion, LandingTarget,
-              EkfStatusReport, EstimatorStatus, HomePosition, MessageInterval, ExtendedSysState,
-              Statustext, CameraInformation, CameraSettings, CameraCaptureStatus, MountOrientation,
-              VideoStreamInformation, VideoStreamStatus, CameraFovStatus, CameraTrackingImageStatus,
-              CameraTrackingGeoStatus, GimbalManagerInformation, GimbalManagerStatus,
-              GimbalDeviceAttitudeStatus, GimbalManagerSetPitchyaw, CurrentMode, TargetRelative>();
+              GlobalPositionInt, SetGpsGlobalOrigin, GpsGlobalOrigin, RcChannels, RequestDataStream,
+              CommandLong, CommandAck, SetAttitudeTarget, SetPositionTargetLocalNed, SimState,
+              Timesync, HilStateQuaternion, DistanceSensor, FollowTarget, AutopilotVersion,
+              LandingTarget, EkfStatusReport, EstimatorStatus, HomePosition, MessageInterval,
+              ExtendedSysState, Statustext, CameraInformation, CameraSettings, CameraCaptureStatus,
+              MountOrientation, VideoStreamInformation, VideoStreamStatus, CameraFovStatus,
+              CameraTrackingImageStatus, CameraTrackingGeoStatus, GimbalManagerInformation,
+              GimbalManagerStatus, GimbalDeviceAttitudeStatus, GimbalManagerSetPitchyaw, Odometry,
+              CurrentMode, TargetRelative>();
 
 constexpr bool IsSortedById() {
   return std::is_sorted(kTable.begin(), kTable.end(),
@@ -56,6 +57,7 @@ static_assert(Is<Attitude>(39, 28, 28));
 static_assert(Is<AttitudeQuaternion>(246, 32, 48));
 static_assert(Is<LocalPositionNed>(185, 28, 28));
 static_assert(Is<GlobalPositionInt>(104, 28, 28));
+static_assert(Is<SetGpsGlobalOrigin>(41, 13, 21));
 static_assert(Is<GpsGlobalOrigin>(39, 12, 20));
 static_assert(Is<RcChannels>(118, 42, 42));
 static_assert(Is<RequestDataStream>(148, 6, 6));
@@ -89,6 +91,7 @@ static_assert(Is<GimbalManagerInformation>(70, 33, 33));
 static_assert(Is<GimbalManagerStatus>(48, 13, 13));
 static_assert(Is<GimbalDeviceAttitudeStatus>(137, 40, 49));
 static_assert(Is<GimbalManagerSetPitchyaw>(1, 23, 23));
+static_assert(Is<Odometry>(91, 230, 233));
 static_assert(Is<CurrentMode>(193, 9, 9));
 static_assert(Is<TargetRelative>(28, 71, 71));
 

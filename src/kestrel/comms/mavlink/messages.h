@@ -306,6 +306,25 @@ struct GlobalPositionInt {
   }
 };
 
+struct SetGpsGlobalOrigin {
+  static constexpr std::uint32_t kId = 48;
+  static constexpr std::string_view kName = "SET_GPS_GLOBAL_ORIGIN";
+  std::uint8_t target_system = 0;
+  std::int32_t latitude = 0;
+  std::int32_t longitude = 0;
+  std::int32_t altitude = 0;
+  std::uint64_t time_usec = 0;
+
+  static constexpr void Visit(auto& self, auto&& visitor) {
+    visitor("target_system", self.target_system, "");
+    visitor("latitude", self.latitude, "degE7");
+    visitor("longitude", self.longitude, "degE7");
+    visitor("altitude", self.altitude, "mm");
+    visitor.Extensions();
+    visitor("time_usec", self.time_usec, "us");
+  }
+};
+
 struct GpsGlobalOrigin {
   static constexpr std::uint32_t kId = 49;
   static constexpr std::string_view kName = "GPS_GLOBAL_ORIGIN";
@@ -1005,6 +1024,51 @@ struct GimbalManagerSetPitchyaw {
     visitor("yaw", self.yaw, "rad");
     visitor("pitch_rate", self.pitch_rate, "rad/s");
     visitor("yaw_rate", self.yaw_rate, "rad/s");
+  }
+};
+
+struct Odometry {
+  static constexpr std::uint32_t kId = 331;
+  static constexpr std::string_view kName = "ODOMETRY";
+  std::uint64_t time_usec = 0;
+  std::uint8_t frame_id = 0;
+  std::uint8_t child_frame_id = 0;
+  float x = 0;
+  float y = 0;
+  float z = 0;
+  std::array<float, 4> q{};
+  float vx = 0;
+  float vy = 0;
+  float vz = 0;
+  float rollspeed = 0;
+  float pitchspeed = 0;
+  float yawspeed = 0;
+  std::array<float, 21> pose_covariance{};
+  std::array<float, 21> velocity_covariance{};
+  std::uint8_t reset_counter = 0;
+  std::uint8_t estimator_type = 0;
+  std::int8_t quality = 0;
+
+  static constexpr void Visit(auto& self, auto&& visitor) {
+    visitor("time_usec", self.time_usec, "us");
+    visitor("frame_id", self.frame_id, "");
+    visitor("child_frame_id", self.child_frame_id, "");
+    visitor("x", self.x, "m");
+    visitor("y", self.y, "m");
+    visitor("z", self.z, "m");
+    visitor("q", self.q, "");
+    visitor("vx", self.vx, "m/s");
+    visitor("vy", self.vy, "m/s");
+    visitor("vz", self.vz, "m/s");
+    visitor("rollspeed", self.rollspeed, "rad/s");
+    visitor("pitchspeed", self.pitchspeed, "rad/s");
+    visitor("yawspeed", self.yawspeed, "rad/s");
+    visitor("pose_covariance", self.pose_covariance, "");
+    visitor("velocity_covariance", self.velocity_covariance, "");
+    visitor.Extensions();
+    visitor("reset_counter", self.reset_counter, "");
+    visitor("estimator_type", self.estimator_type, "");
+    visitor("quality", self.quality, "%");
   }
 };
 

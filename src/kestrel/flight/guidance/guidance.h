@@ -35,8 +35,9 @@ struct DeckSighting {
   Eigen::Vector3d normal{0, 0, 1};  // in the world
 };
 
-// A person's order to fly to what is marked, or to stop.
-struct alignas(8) FollowOrder {  // as std::atomic needs it to work without locks
+// A person's order to fly to what is marked, or to stop. Aligned as std::atomic needs it to work
+// without locks.
+struct alignas(8) FollowOrder {
   int number = 0;  // each order has a larger one than the order before
   int mark = 0;    // the mark to which the UAV is to fly; 0: to none
 };

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "kestrel/comms/guard/guard_options.h"
 #include "kestrel/comms/mavlink/autopilot.h"
 #include "kestrel/comms/mavlink/connection.h"
@@ -22,6 +25,7 @@ struct FlightOptions {
   double link_delay_s = -1;
   double source_timeout_s = 60;
   double autopilot_timeout_s = 60;
+  std::string pad_origin;
   TargetReporterOptions target;
   TargetMessageOptions messages;
   GuidanceOptions guidance;
@@ -45,6 +49,9 @@ struct FlightOptions {
           "time without an image after which the flight ends");
     visit("autopilot_timeout_s", self.autopilot_timeout_s, MoreThan(0),
           "time without a heartbeat after which the flight ends");
+    visit("pad_origin", self.pad_origin,
+          "with --pad-position, where the flight is, as LATITUDE,LONGITUDE in degrees: the origin "
+          "of an autopilot that has none; empty: none is set");
     visit.Group("target", self.target);
     visit.Group("messages", self.messages);
     visit.Group("guidance", self.guidance);
@@ -59,6 +66,7 @@ struct FlightOptions {
     visit.Group("autopilot", self.autopilot);
     visit.Group("recorder", self.recorder);
   }
+  std::vector<std::string> Validate() const;
 };
 
 }  // namespace kestrel

@@ -49,6 +49,10 @@ FlightProgram::FlightProgram(const FlightOptions& options, const FlightParts& pa
     sender_.emplace(options, tracker_, parts.profile, pad_->size_m, pad_->range_m,
                     parts.guidance != nullptr, parts.autopilot, parts.connection, report_);
   }
+  if (parts.sends_pad_position) {
+    pad_position_.emplace(ParsePadOrigin(options_.pad_origin), parts.autopilot, parts.connection,
+                          report_);
+  }
   if (parts.guidance) {
     guided_.emplace(options, tracker_, parts.guidance, !parts.source_has_poses, parts.autopilot,
                     parts.connection, report_);
@@ -315,6 +319,7 @@ void FlightProgram::Communicate() {
     if (parts_.source_has_poses) poses_.Add(source_pose_.Get());  // a repeated one is ignored
     const Time now = Now();
     parts_.autopilot->Tick(now);
+    if (pad_position_) pad_position_->Send(now, track_.Get());
     SendTarget(now);
     if (gimbal_) Point(now);
     if (camera_) camera_->Tick(now, track_.Get(), poses_);
@@ -354,10 +359,17 @@ void FlightProgram::SendTarget(Time now) {
   set_points_ = guided_->set_points();
 }
 
+// A position that comes from the pad ends with its sight: the autopilot's own guess goes on for
+// seconds.
 void FlightProgram::TakeAutopilotPose(const PoseSample& pose) {
   if (parts_.source_has_poses) return;
+  if (pad_position_ && !pad_position_->is_known(Now())) return;
   poses_.Add(pose);
   TakePose(pose);
+}
+
+void FlightProgram::TakeAutopilotAttitude(const PoseSample& attitude) {
+  if (pad_position_) pad_position_->TakeAttitude(attitude);
 }
 
 void FlightProgram::TakeAutopilotGimbal(const GimbalSample& report) {

@@ -25,6 +25,7 @@
 #include "kestrel/flight/onboard/landing_watch.h"
 #include "kestrel/flight/onboard/late_video.h"
 #include "kestrel/flight/onboard/latency_statistics.h"
+#include "kestrel/flight/onboard/pad_position.h"
 #include "kestrel/flight/onboard/pointed_gimbal.h"
 #include "kestrel/flight/onboard/recording_switch.h"
 #include "kestrel/flight/onboard/sign_of_life.h"
@@ -57,6 +58,7 @@ struct FlightParts {
   // The camera in whose images ground stations mark what is followed; null: there is none.
   const CameraCalibration* tracking = nullptr;
   const CameraStream* stream = nullptr;  // in which they do so; null: the source's own
+  bool sends_pad_position = false;       // see SessionOptions
   GuidanceMaker guidance = {};  // flies by set-points when the pilot gives the mode; null: does not
   bool source_has_poses = false;  // the autopilot's poses are then not used
   bool sees_repeated = false;     // processes images that equal the one before
@@ -105,6 +107,8 @@ class FlightProgram {
   // Takes a pose of the autopilot, on the local clock, from its listener. Called by the thread in
   // which Run lets the connection receive.
   void TakeAutopilotPose(const PoseSample& pose);
+  // Takes an attitude of the autopilot, as above.
+  void TakeAutopilotAttitude(const PoseSample& attitude);
   // Takes a report of the gimbal by the autopilot, as above.
   void TakeAutopilotGimbal(const GimbalSample& report);
 
@@ -159,6 +163,7 @@ class FlightProgram {
   std::optional<PadInSight> pad_;
   TargetTrackerOptions tracker_;
   std::optional<TargetSender> sender_;  // nothing: there is nothing to land on
+  std::optional<PadPosition> pad_position_;
   std::optional<GuidedFlight> guided_;
   std::optional<PointedGimbal> gimbal_;
   std::atomic<bool> resumes_pointing_{false};  // set by any thread

@@ -295,6 +295,10 @@ void Flight::OpenAutopilot() {
   autopilot_.emplace(WantedOfAutopilot(), &*connection_,
                      AutopilotListener{
                          .pose = [this](const PoseSample& pose) { TakePose(pose); },
+                         .attitude =
+                             [this](const PoseSample& pose) {
+                               if (program_) program_->TakeAutopilotAttitude(pose);
+                             },
                          .true_pose = [this](const PoseSample& pose) { TakeTruePose(pose); },
                          .event = [this](const AutopilotEvent& e) { Notify(e.text); },
                          .text =
@@ -320,6 +324,7 @@ FlightParts Flight::ProgramParts() {
           .tracking = autopilot_ && vision().takes_marks() ? &live_.calibration : nullptr,
           .stream = options_.stream ? &*options_.stream : nullptr,
           .guidance = Guide(),
+          .sends_pad_position = options_.sends_pad_position,
           .source_has_poses = live_.has_poses,
           .sees_repeated = live_.sees_repeated,
           .cameras = 1 + live_.further.size(),

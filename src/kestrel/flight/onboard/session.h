@@ -49,6 +49,9 @@ struct SessionOptions {
   // gimbal.
   bool points = false;
   std::string record = {};  // folder of a recording that begins at once; empty: none
+  // Sends the UAV's place over the pad to the autopilot as its position: it needs no other. The pad
+  // stands. Needs a task with a pad, and an autopilot.
+  bool sends_pad_position = false;
   // The video in which ground stations mark what is followed; nothing: that of the source.
   std::optional<CameraStream> stream = {};
 };

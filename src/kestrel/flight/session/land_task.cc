@@ -167,8 +167,7 @@ void LandingVision::UpdateSnapshot(const LandingObservation& observation) {
   const TargetDetector& detector = pipeline_.detector(observation.camera);
   snapshot_.area = PatternArea(*detection, detector.shape(), detector.camera());
   if (!observation.camera_from_body) return;
-  snapshot_.sight = {snapshot_.captured,
-                     detection->camera_from_target.Inverse() * *observation.camera_from_body};
+  snapshot_.sight = SightOf(*detection, *observation.camera_from_body, snapshot_.captured);
 }
 
 std::optional<TargetState> LandingVision::Sighting(const LandingObservation& observation) const {

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 #include "kestrel/comms/mavlink/target_profile.h"
@@ -10,6 +11,7 @@
 #include "kestrel/core/geometry/rigid_transform.h"
 #include "kestrel/vision/pipeline/follow_pipeline.h"
 #include "kestrel/vision/pipeline/landing_pipeline.h"
+#include "kestrel/vision/target/target_detection.h"
 #include "kestrel/vision/tracking/target_tracker.h"
 
 namespace kestrel {
@@ -26,6 +28,9 @@ struct TrackSnapshot {
   struct Sight {
     Time time;
     RigidTransform target_from_body;
+    Eigen::Matrix3d covariance;  // of the target's centre in the body, m^2
+    double heading_sigma = 0;    // about the target's normal, rad
+    int heading_symmetry = 1;    // turns after which the target looks the same; 0: any
   };
   std::optional<Sight> sight;
   int mark = 0;        // number of the person's mark that the target is of; 0: of none
@@ -37,6 +42,10 @@ struct TrackSnapshot {
   // What a person has marked, in this frame: nothing to land on.
   std::optional<FollowObservation> followed = {};
 };
+
+// Returns the sight of a detection at 'time'.
+TrackSnapshot::Sight SightOf(const TargetDetection& detection,
+                             const RigidTransform& camera_from_body, Time time);
 
 // A pad as guidance and the autopilot's messages know it.
 struct PadInSight {

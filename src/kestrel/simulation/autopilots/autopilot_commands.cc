@@ -109,6 +109,18 @@ void AutopilotModel::Receive(const mavlink::GimbalManagerSetPitchyaw& message, T
   }
 }
 
+void AutopilotModel::Receive(const mavlink::SetGpsGlobalOrigin& message, Time /*now*/) {
+  constexpr double kDegrees = 1e-7;
+  if (!IsForIt(message.target_system) || has_origin_) return;
+  options_.origin.latitude_deg = kDegrees * message.latitude;
+  options_.origin.longitude_deg = kDegrees * message.longitude;
+  has_origin_ = true;
+}
+
+void AutopilotModel::Receive(const mavlink::Odometry& message, Time /*now*/) {
+  if (external_) external_->Handle(message);
+}
+
 void AutopilotModel::Receive(const mavlink::SetMode& message, Time now) {
   if (message.target_system != options_.system_id) return;
   if ((message.base_mode & mavlink::kModeFlagCustom) != 0) {

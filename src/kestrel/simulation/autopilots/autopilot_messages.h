@@ -34,7 +34,8 @@ using CompanionMessage =
     std::variant<mavlink::Heartbeat, mavlink::CommandLong, mavlink::SetMode, mavlink::Timesync,
                  mavlink::LandingTarget, mavlink::TargetRelative, mavlink::ParamRequestRead,
                  mavlink::ParamRequestList, mavlink::ParamSet, mavlink::SetAttitudeTarget,
-                 mavlink::SetPositionTargetLocalNed, mavlink::GimbalManagerSetPitchyaw>;
+                 mavlink::SetPositionTargetLocalNed, mavlink::GimbalManagerSetPitchyaw,
+                 mavlink::SetGpsGlobalOrigin, mavlink::Odometry>;
 
 // Returns the message of a packet, if the autopilot handles it.
 std::optional<CompanionMessage> CompanionMessageOf(const mavlink::Packet& packet);

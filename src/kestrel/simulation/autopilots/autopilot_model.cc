@@ -115,6 +115,8 @@ AutopilotModel::AutopilotModel(AutopilotFirmware firmware, const AutopilotModelO
   }
   pilot_flies_ = options.pilot.start_altitude_m > 0;
   is_armed_ = pilot_flies_;
+  has_origin_ = options.estimate.has_gnss;
+  if (!options.estimate.has_gnss) external_.emplace(firmware, parameters_);
   ObserveFlight(start);
   hold_ = state_.position();
   if (options.has_gimbal) {
@@ -138,8 +140,9 @@ bool AutopilotModel::IsWithin(Time now, double after_s, double for_s) const {
   return after_s >= 0 && since_s >= after_s && since_s < after_s + for_s;
 }
 
-bool AutopilotModel::HasLostPosition(Time now) const {
-  return IsWithin(now, options_.estimate.lost_after_s, std::numeric_limits<double>::infinity());
+bool AutopilotModel::HasPosition(Time now) const {
+  if (external_) return external_->has_position();
+  return !IsWithin(now, options_.estimate.lost_after_s, std::numeric_limits<double>::infinity());
 }
 
 void AutopilotModel::Step(Time now) {
@@ -180,8 +183,17 @@ void AutopilotModel::ObserveFlight(Time now) {
   if (jumps) state_.pose.world_from_body.translation.x() += faults.jump_m;
   // It knows when its estimate was reset: the held place moves along.
   if (jumps && !std::exchange(has_jumped_, true)) hold_.x() += faults.jump_m;
+  if (external_) UseExternalNavigation();
   state_.is_standing = uav_.is_standing();
   DriftAtRest();
+}
+
+// The place that it holds moves along with a jump.
+void AutopilotModel::UseExternalNavigation() {
+  Vector3d& place = state_.pose.world_from_body.translation;
+  external_->Observe(state_.boot_us, state_.step_s, place);
+  hold_ += external_->TakeJump();
+  place += external_->error();
 }
 
 // Its vertical speed is wrong while it stands, and its height with it.
@@ -274,6 +286,7 @@ SetPoint AutopilotModel::Hold() const {
 bool AutopilotModel::EnterMode(std::uint32_t custom_mode, Wish wish, Time now) {
   const bool is_guided = custom_mode == CustomModeOf(kind(), FlightMode::kGuided);
   if (is_guided && !guided_->IsAvailable(state_)) return false;
+  if (is_guided && external_ && !external_->has_position()) return false;
   if (wish == Wish::kLink) ++result_.modes_by_link;
   pilot_flies_ = false;
   resumes_guided_ = wish == Wish::kFailsafe;

@@ -18,6 +18,7 @@
 #include "kestrel/simulation/autopilot_rules/px4_time_sync.h"
 #include "kestrel/simulation/autopilots/autopilot_messages.h"
 #include "kestrel/simulation/autopilots/autopilot_model_options.h"
+#include "kestrel/simulation/autopilots/external_navigation.h"
 #include "kestrel/simulation/autopilots/guided_rules.h"
 #include "kestrel/simulation/autopilots/land_detector.h"
 #include "kestrel/simulation/autopilots/message_streams.h"
@@ -100,7 +101,8 @@ class AutopilotModel {
   bool IsSilentAfterReboot(Time now) const;
   // True within 'for_s' from 'after_s' after the start; false for a negative 'after_s'.
   bool IsWithin(Time now, double after_s, double for_s) const;
-  bool HasLostPosition(Time now) const;
+  bool HasPosition(Time now) const;
+  void UseExternalNavigation();
 
   // autopilot_reports.cc: sent messages.
   bool SendMessage(std::uint32_t id, Time now);
@@ -127,6 +129,8 @@ class AutopilotModel {
   void Receive(const mavlink::ParamRequestList& message, Time now);
   void Receive(const mavlink::ParamSet& message, Time now);
   void Receive(const mavlink::GimbalManagerSetPitchyaw& message, Time now);
+  void Receive(const mavlink::SetGpsGlobalOrigin& message, Time now);
+  void Receive(const mavlink::Odometry& message, Time now);
   bool IsForIt(std::uint8_t target_system) const;
   std::uint8_t Execute(const mavlink::CommandLong& command, Time now);
   std::uint8_t SetModeBy(const mavlink::CommandLong& command, Time now);
@@ -148,7 +152,8 @@ class AutopilotModel {
   LandDetector detector_;
   ReturnFlight return_;
   MessageStreams streams_;
-  std::optional<SimulatedMount> mount_;  // nothing: it has no gimbal
+  std::optional<ExternalNavigation> external_;  // nothing: it has GNSS
+  std::optional<SimulatedMount> mount_;         // nothing: it has no gimbal
 
   Time start_;
   Time stepped_to_;
@@ -166,6 +171,7 @@ class AutopilotModel {
   bool is_taking_off_ = false;   // in the guided mode
   bool resumes_guided_ = false;  // its own failsafe ended the mode: it returns to it
   bool is_in_failsafe_ = false;
+  bool has_origin_ = true;
   bool has_gcs_ = false;  // a ground station's heartbeat has come
   bool nan_attitude_ = false;
   std::uint8_t peer_system_ = 0;  // sender of the message being handled

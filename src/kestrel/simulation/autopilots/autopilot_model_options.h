@@ -22,6 +22,7 @@ struct EstimateFaultOptions {
   double lost_after_s = -1;
   double rest_climb_mps = 0;
   bool has_home = true;
+  bool has_gnss = true;
 
   static void Visit(auto& self, auto&& visit) {
     visit("silent_after_s", self.silent_after_s, Range{-1, 10000},
@@ -34,6 +35,8 @@ struct EstimateFaultOptions {
           "time at which the position is lost for good; negative: never");
     visit("rest_climb_mps", self.rest_climb_mps, Range{-5, 5},
           "error of the vertical speed while the UAV stands; its height drifts by it");
+    visit("has_gnss", self.has_gnss,
+          "the autopilot has a position by itself; otherwise only by ODOMETRY");
     visit("has_home", self.has_home, "the autopilot has a home position to return to");
   }
 };

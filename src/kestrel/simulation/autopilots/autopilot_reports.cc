@@ -81,7 +81,7 @@ bool AutopilotModel::SendPose(std::uint32_t id, Time now) {
   const auto own_ms = static_cast<std::uint32_t>(state_.boot_us / 1000);
   const EstimateFaultOptions& faults = options_.estimate;
   const bool is_silent = IsWithin(now, faults.silent_after_s, faults.silent_for_s);
-  const bool has_position = !HasLostPosition(now);
+  const bool has_position = HasPosition(now);
   switch (id) {
     case mavlink::Attitude::kId: {
       mavlink::Attitude message = AttitudeOf(pose, own_ms);
@@ -139,8 +139,8 @@ bool AutopilotModel::SendPlace(std::uint32_t id, Time now) {
   const std::int64_t own_us = OwnMicroseconds(now);
   switch (id) {
     case mavlink::GpsGlobalOrigin::kId:
-      send_(GlobalOriginOf(options_.origin, own_us));
-      return true;
+      if (has_origin_) send_(GlobalOriginOf(options_.origin, own_us));
+      return has_origin_;
     case mavlink::HomePosition::kId:
       if (options_.estimate.has_home) send_(HomePositionOf(options_.origin, own_us));
       return options_.estimate.has_home;

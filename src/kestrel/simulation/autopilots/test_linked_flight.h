@@ -15,6 +15,7 @@
 #include "kestrel/comms/mavlink/packet_writer.h"
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/flight/onboard/guided_flight.h"
+#include "kestrel/flight/onboard/pad_position.h"
 #include "kestrel/flight/onboard/pointed_gimbal.h"
 #include "kestrel/simulation/autopilots/test_autopilot.h"
 
@@ -62,6 +63,11 @@ class LinkedFlight : public TestAutopilot {
     guided_.emplace(options, tracker, make, true, &autopilot_, &connection_, Report());
   }
 
+  // Sends the place over the pad, which is then the autopilot's position.
+  void SendPadPosition() {
+    pad_position_.emplace(std::nullopt, &autopilot_, &connection_, Report());
+  }
+
   // The vision: takes and processes images, and updates the track.
   virtual void See() = 0;
   virtual void TakePose(const PoseSample& /*pose*/) {}
@@ -73,6 +79,7 @@ class LinkedFlight : public TestAutopilot {
     }
     autopilot_.Tick(now);
     See();
+    if (pad_position_) pad_position_->Send(now, track_);
     if (guided_) guided_->Fly(now, track_, poses_);
     if (pointed_) pointed_->Point(now, track_, poses_);
   }
@@ -90,6 +97,7 @@ class LinkedFlight : public TestAutopilot {
   TrackSnapshot track_;
   std::optional<PointedGimbal> pointed_;
   std::optional<GuidedFlight> guided_;
+  std::optional<PadPosition> pad_position_;
 
  private:
   static AutopilotOptions LinkOptions(bool has_gimbal) {
@@ -102,7 +110,11 @@ class LinkedFlight : public TestAutopilot {
   }
   AutopilotListener Listener() {
     AutopilotListener listener;
+    listener.attitude = [this](const PoseSample& attitude) {
+      if (pad_position_) pad_position_->TakeAttitude(attitude);
+    };
     listener.pose = [this](const PoseSample& pose) {
+      if (pad_position_ && !pad_position_->is_known(now)) return;
       poses_.Add(pose);
       TakePose(pose);
     };

@@ -96,6 +96,7 @@ class PointedFlight : public LinkedFlight {
     double half_view_deg = kTestHalfView_deg;
     std::vector<TestEye> cameras = std::vector<TestEye>(1);
     bool guides = false;
+    bool sends_pad_position = false;
     std::uint64_t seed = 1;
   };
 
@@ -111,6 +112,7 @@ class PointedFlight : public LinkedFlight {
         pipeline_(std::vector(choice.cameras.size(), camera_), Detectors(), PipelineOptions()) {
     const PadInSight pad{1.2, kTestSightRange_m, TargetTrackerOptions()};
     if (choice.has_gimbal) Point(pad, pad.tracker);
+    if (choice.sends_pad_position) SendPadPosition();
     if (!choice.guides) return;
     Guide(FlightOptions(), pad.tracker, [](const GuidanceOptions& guidance) {
       return std::make_unique<LandingGuidance>(guidance);
@@ -151,6 +153,8 @@ class PointedFlight : public LinkedFlight {
   // Time for which a camera has been left out because it contradicts the other, s.
   double LeftOutFor(std::size_t camera) const { return eyes_[camera].left_out_s; }
   bool has_track() const { return track_.state == TrackState::kTracking; }
+
+  bool is_blind = false;  // no image shows the pad any more
 
   void ResumePointing() { pointed_->Resume(); }
 
@@ -232,6 +236,7 @@ class PointedFlight : public LinkedFlight {
     const Image image = eye.images.front();
     eye.images.pop_front();
     eye.seen = image.camera_from_target;
+    if (is_blind) eye.seen.reset();
     picture_.setTo(++pictures_ % 256);
     const LandingObservation seen = pipeline_.Process(picture_, image.captured, camera);
     if (!StateOf(camera).is_used()) return;
@@ -239,6 +244,9 @@ class PointedFlight : public LinkedFlight {
     track_.state = seen.track_state;
     track_.target = seen.target;
     track_.sighting.reset();
+    if (const auto& detection = seen.report.detection; detection && seen.camera_from_body) {
+      track_.sight = SightOf(*detection, *seen.camera_from_body, image.captured);
+    }
     if (!seen.center_in_world) return;
     if (seen.fate == MeasurementFate::kStarted || seen.fate == MeasurementFate::kAccepted) {
       track_.seen = image.captured;

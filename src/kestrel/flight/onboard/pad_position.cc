@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/onboard/pad_position.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kestrel/comms/mavlink/mavlink_enums.h"
+#include "kestrel/core/base/parse_number.h"
+#include "kestrel/core/geometry/angles.h"
+
+namespace kestrel {
+namespace {
+
+constexpr std::size_t kAttitudes = 256;  // some seconds
+constexpr Duration kAttitudeGap = std::chrono::milliseconds(200);
+constexpr Duration kPatience = std::chrono::seconds(8);  // until the position must be in use
+constexpr Duration kOriginPatience = std::chrono::seconds(3);  // it may have one already
+constexpr double kKnown_s = 1;
+
+// Parameters of ArduPilot and of PX4 that let them use it.
+constexpr std::string_view kArduPilotType = "VISO_TYPE", kArduPilotPlace = "EK3_SRC1_POSXY",
+                           kArduPilotHeading = "EK3_SRC1_YAW", kPx4Control = "EKF2_EV_CTRL";
+constexpr std::array kArduPilotParameters = {kArduPilotType, kArduPilotPlace, kArduPilotHeading};
+constexpr int kExternal = 6;  // a source of ArduPilot's EKF
+constexpr unsigned kPx4UsesPlace = 1;
+
+}  // namespace
+
+std::optional<GlobalPosition> ParsePadOrigin(const std::string& text) {
+  constexpr double kPerDegree = 1e7;
+  const std::size_t comma = text.find(',');
+  if (comma == std::string::npos) return std::nullopt;
+  const auto latitude = ParseNumber<double>(std::string_view(text).substr(0, comma));
+  const auto longitude = ParseNumber<double>(std::string_view(text).substr(comma + 1));
+  if (!latitude || !longitude || !(std::abs(*latitude) <= 90) || !(std::abs(*longitude) <= 180)) {
+    return std::nullopt;
+  }
+  if (*latitude == 0 && *longitude == 0) return std::nullopt;  // autopilots refuse it
+  return GlobalPosition{static_cast<std::int32_t>(std::lround(kPerDegree * *latitude)),
+                        static_cast<std::int32_t>(std::lround(kPerDegree * *longitude)), 0};
+}
+
+PadPosition::PadPosition(std::optional<GlobalPosition> origin, Autopilot* autopilot,
+                         Connection* connection, std::function<void(const std::string&)> report)
+    : origin_(origin),
+      autopilot_(*autopilot),
+      connection_(connection),
+      report_(std::move(report)),
+      attitudes_(kAttitudes, kAttitudeGap) {}
+
+void PadPosition::TakeAttitude(const PoseSample& sample) { attitudes_.Add(sample); }
+
+void PadPosition::Send(Time now, const TrackSnapshot& track) {
+  if (!autopilot_.is_here()) return;
+  if (!heard_) heard_ = now;
+  WantParameters();
+  SendOrigin(now);
+  ReportState(now);
+  const auto& sight = track.sight;
+  if (!sight || sight->time == newest_ || !autopilot_.parameters().is_done()) return;
+  const auto attitude = attitudes_.Predict(sight->time, kAttitudeGap, {});
+  if (!attitude || !autopilot_.time_sync().is_known()) return;
+  constexpr std::int64_t kNsPerUs = 1000;
+  const std::int64_t stamp_ns = autopilot_.time_sync().ToRemote(sight->time);
+  if (stamp_ns <= 0) return;
+  const ExternalPose pose =
+      place_.Update(*sight, attitude->world_from_body.rotation, HeadingOfEstimator());
+  newest_ = sight->time;
+  if (!first_) first_ = now;
+  if (connection_->Send(OdometryOf(pose, autopilot_.kind(),
+                                   static_cast<std::uint64_t>(stamp_ns / kNsPerUs)))) {
+    ++messages_;
+  }
+}
+
+bool PadPosition::is_known(Time now) const {
+  return newest_ && ToSeconds(now - *newest_) < kKnown_s;
+}
+
+void PadPosition::WantParameters() {
+  if (std::exchange(requested_parameters_, true)) return;
+  ParameterReader& parameters = autopilot_.parameters();
+  if (autopilot_.kind() == AutopilotKind::kPx4) return parameters.Want(kPx4Control);
+  for (const std::string_view name : kArduPilotParameters) parameters.Want(name);
+}
+
+// PX4 takes the heading of the message with the place, or turns the place itself.
+HeadingSource PadPosition::HeadingOfEstimator() const {
+  if (autopilot_.kind() == AutopilotKind::kPx4) return HeadingSource::kPad;
+  return autopilot_.parameters().Find(kArduPilotHeading) == kExternal ? HeadingSource::kPad
+                                                                      : HeadingSource::kAutopilot;
+}
+
+// Without an origin ArduPilot has no failsafe of its estimator. Its earth field comes from there,
+// too, so that it must be near the true place.
+void PadPosition::SendOrigin(Time now) {
+  if (is_origin_settled_ || now - *heard_ < kOriginPatience) return;
+  is_origin_settled_ = true;
+  if (autopilot_.origin()) return;
+  if (!origin_) {
+    return Notify(mavlink::kSeverityWarning,
+                  "the autopilot has no origin: set one at the ground station, or fly.pad_origin");
+  }
+  mavlink::SetGpsGlobalOrigin message;
+  message.target_system = autopilot_.system();
+  message.latitude = origin_->latitude_e7;
+  message.longitude = origin_->longitude_e7;
+  connection_->Send(message);
+  Notify(mavlink::kSeverityInfo, "the autopilot's origin is set to fly.pad_origin");
+}
+
+void PadPosition::ReportState(Time now) {
+  if (!was_checked_ && first_ && now - *first_ > kPatience) {
+    was_checked_ = true;
+    if (const std::string why = WhyUnused(now); !why.empty()) {
+      Notify(mavlink::kSeverityWarning, "the autopilot does not use the pad's position: " + why);
+    }
+  }
+  if (const bool is_known = this->is_known(now); is_known != was_known_) {
+    was_known_ = is_known;
+    Notify(is_known ? mavlink::kSeverityInfo : mavlink::kSeverityWarning,
+           is_known ? "position by the pad" : "no position by the pad");
+  }
+  if (place_.resets() != reported_resets_) {
+    reported_resets_ = place_.resets();
+    Notify(mavlink::kSeverityWarning, "the pad's position has jumped: another pad?");
+  }
+  constexpr double kTurned = Radians(20);
+  if (!is_turned_ && std::abs(place_.heading_drift()) > kTurned) {
+    is_turned_ = true;
+    Notify(mavlink::kSeverityWarning,
+           fmt::format("the autopilot's heading has turned by {:.0f} degrees against the pad: the "
+                       "compass is disturbed",
+                       Degrees(place_.heading_drift())));
+  }
+}
+
+// Empty: it is used.
+std::string PadPosition::WhyUnused(Time now) const {
+  const ParameterReader& parameters = autopilot_.parameters();
+  if (autopilot_.kind() == AutopilotKind::kPx4) {
+    const auto control = parameters.Find(kPx4Control);
+    if (control && (static_cast<unsigned>(*control) & kPx4UsesPlace) == 0) {
+      return "set EKF2_EV_CTRL to 11 (place, height, heading)";
+    }
+  } else {
+    if (parameters.Find(kArduPilotType) == 0) return "set VISO_TYPE to 1, and restart it";
+    const auto place = parameters.Find(kArduPilotPlace);
+    if (place && *place != kExternal) return "set EK3_SRC1_POSXY to 6";
+  }
+  return autopilot_.is_position_good(now).value_or(true) ? ""
+                                                         : "its estimator reports no good position";
+}
+
+void PadPosition::Notify(std::uint8_t severity, const std::string& text) {
+  report_(text);
+  autopilot_.Announce(severity, "Kestrel: " + text);
+}
+
+}  // namespace kestrel
