@@ -19,6 +19,7 @@ constexpr double kRangeRate_hz = 20;
 constexpr double kGimbalRate_hz = 50;
 constexpr double kGimbalControl_hz = 5;
 constexpr double kStatusRate_hz = 2;
+constexpr double kAcceleration_hz = 50;
 constexpr double kTruePoseRate_hz = 100;
 // After so long without a heartbeat the autopilot is away.
 constexpr double kAwayAfter_s = 3;
@@ -204,7 +205,8 @@ void Autopilot::HandleFromAutopilot(const mavlink::Packet& packet, Time received
     writes_.Handle(kind_, *value, parameters_);
   } else if (const auto text = packet.As<mavlink::Statustext>()) {
     if (listener_.text) listener_.text(text->severity, TextOf(text->text));
-  } else if (!HandlePose(packet, received) && !HandleTruePose(packet, received)) {
+  } else if (!HandlePose(packet, received) && !HandleTruePose(packet, received) &&
+             !HandleAcceleration(packet)) {
     HandleStatus(packet, received);
   }
 }
@@ -266,6 +268,25 @@ void Autopilot::ReportAttitude(PoseSample pose) {
   pose.world_from_body.translation.setZero();
   pose.motion->velocity_in_world.setZero();
   listener_.attitude(pose);
+}
+
+bool Autopilot::HandleAcceleration(const mavlink::Packet& packet) {
+  constexpr double kMilliG = 9.80665e-3;
+  constexpr std::int64_t kNsPerUs = 1000;
+  const auto raw = packet.As<mavlink::RawImu>();
+  const auto highres = packet.As<mavlink::HighresImu>();
+  if (!raw && !highres) return false;
+  if (!listener_.acceleration || !clock_.sync().is_known()) return true;
+  const Eigen::Vector3d in_frd =
+      raw ? Eigen::Vector3d(kMilliG * Eigen::Vector3d(raw->xacc, raw->yacc, raw->zacc))
+          : Eigen::Vector3d(highres->xacc, highres->yacc, highres->zacc);
+  if (!in_frd.allFinite()) return true;
+  const std::uint64_t stamp_us = raw ? raw->time_usec : highres->time_usec;
+  constexpr std::uint64_t kMaxStamp_us = std::uint64_t{1} << 50;
+  if (stamp_us >= kMaxStamp_us) return true;
+  listener_.acceleration(clock_.sync().ToLocal(kNsPerUs * static_cast<std::int64_t>(stamp_us)),
+                         FluFromFrd(in_frd));
+  return true;
 }
 
 bool Autopilot::HandleTruePose(const mavlink::Packet& packet, Time received) {
@@ -422,6 +443,10 @@ void Autopilot::WantStreams() {
                        kStatusRate_hz);
   streams_.WantIfThere(mavlink::SysStatus::kId, kStatusRate_hz);
   streams_.WantIfThere(mavlink::GpsRawInt::kId, kStatusRate_hz);
+  if (options_.wants_acceleration) {
+    streams_.WantIfThere(is_px4 ? mavlink::HighresImu::kId : mavlink::RawImu::kId,
+                         kAcceleration_hz);
+  }
   if (options_.wants_true_pose) {
     streams_.Want(is_px4 ? mavlink::HilStateQuaternion::kId : mavlink::SimState::kId,
                   kTruePoseRate_hz);

@@ -36,6 +36,7 @@ struct AutopilotOptions {
   double mode_rate_hz = 0;
   bool wants_true_pose = false;                        // which only simulated vehicles know
   std::optional<int> gimbal_device_id = std::nullopt;  // see GimbalReports; nothing: no gimbal
+  bool wants_acceleration = false;                     // that the accelerometer measures
   bool points_gimbal = false;                          // wants what GimbalManager needs
   bool poses_as_ground_station = false;
 
@@ -100,6 +101,9 @@ struct AutopilotListener {
   std::function<void(const PoseSample&)> pose;
   // Attitude and turn alone (place and velocity are 0), with or without a position.
   std::function<void(const PoseSample&)> attitude;
+  // Acceleration that the accelerometer measures, in the body (FLU), m/s^2: with gravity's
+  // reaction, upwards at rest. At a time on the local clock.
+  std::function<void(Time time, const Eigen::Vector3d& acceleration)> acceleration;
   std::function<void(const PoseSample&)> true_pose;  // as above, from a simulated vehicle
   std::function<void(const AutopilotEvent&)> event;
   std::function<void(std::uint8_t severity, std::string_view text)> text;  // STATUSTEXT
@@ -192,6 +196,7 @@ class Autopilot {
   void HandleGimbal(const mavlink::Packet& packet, Time received);
   bool HandlePose(const mavlink::Packet& packet, Time received);
   bool HandleTruePose(const mavlink::Packet& packet, Time received);
+  bool HandleAcceleration(const mavlink::Packet& packet);
   void ReportPose(PoseFate fate, const char* what, const PoseSample& pose);
   void ReportAttitude(PoseSample pose);
   Time BetweenAttitudes(Time guess) const;

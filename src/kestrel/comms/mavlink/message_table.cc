@@ -17,18 +17,17 @@ constexpr auto MakeTable() {
       MessageInfo{Messages::kId, Messages::kName, &kLayout<Messages>}...};
 }
 
-constexpr auto kTable =
-    MakeTable<Heartbeat, SysStatus, SystemTime, SetMode, ParamRequestRead, ParamRequestList,
-              ParamValue, ParamSet, GpsRawInt, Attitude, AttitudeQuaternion, LocalPositionNed,
-              GlobalPositionInt, SetGpsGlobalOrigin, GpsGlobalOrigin, RcChannels, RequestDataStream,
-              CommandLong, CommandAck, SetAttitudeTarget, SetPositionTargetLocalNed, SimState,
-              Timesync, HilStateQuaternion, DistanceSensor, FollowTarget, AutopilotVersion,
-              LandingTarget, EkfStatusReport, EstimatorStatus, HomePosition, MessageInterval,
-              ExtendedSysState, Statustext, CameraInformation, CameraSettings, CameraCaptureStatus,
-              MountOrientation, VideoStreamInformation, VideoStreamStatus, CameraFovStatus,
-              CameraTrackingImageStatus, CameraTrackingGeoStatus, GimbalManagerInformation,
-              GimbalManagerStatus, GimbalDeviceAttitudeStatus, GimbalManagerSetPitchyaw, Odometry,
-              CurrentMode, TargetRelative>();
+constexpr auto kTable = MakeTable<
+    Heartbeat, SysStatus, SystemTime, SetMode, ParamRequestRead, ParamRequestList, ParamValue,
+    ParamSet, GpsRawInt, RawImu, Attitude, AttitudeQuaternion, LocalPositionNed, GlobalPositionInt,
+    SetGpsGlobalOrigin, GpsGlobalOrigin, RcChannels, RequestDataStream, CommandLong, CommandAck,
+    SetAttitudeTarget, SetPositionTargetLocalNed, HighresImu, SimState, Timesync,
+    HilStateQuaternion, DistanceSensor, FollowTarget, AutopilotVersion, LandingTarget,
+    EkfStatusReport, EstimatorStatus, HomePosition, MessageInterval, ExtendedSysState, Statustext,
+    CameraInformation, CameraSettings, CameraCaptureStatus, MountOrientation,
+    VideoStreamInformation, VideoStreamStatus, CameraFovStatus, CameraTrackingImageStatus,
+    CameraTrackingGeoStatus, GimbalManagerInformation, GimbalManagerStatus,
+    GimbalDeviceAttitudeStatus, GimbalManagerSetPitchyaw, Odometry, CurrentMode, TargetRelative>();
 
 constexpr bool IsSortedById() {
   return std::is_sorted(kTable.begin(), kTable.end(),
@@ -53,6 +52,7 @@ static_assert(Is<ParamRequestList>(159, 2, 2));
 static_assert(Is<ParamValue>(220, 25, 25));
 static_assert(Is<ParamSet>(168, 23, 23));
 static_assert(Is<GpsRawInt>(24, 30, 52));
+static_assert(Is<RawImu>(144, 26, 29));
 static_assert(Is<Attitude>(39, 28, 28));
 static_assert(Is<AttitudeQuaternion>(246, 32, 48));
 static_assert(Is<LocalPositionNed>(185, 28, 28));
@@ -65,6 +65,7 @@ static_assert(Is<CommandLong>(152, 33, 33));
 static_assert(Is<CommandAck>(143, 3, 10));
 static_assert(Is<SetAttitudeTarget>(49, 39, 51));
 static_assert(Is<SetPositionTargetLocalNed>(143, 53, 53));
+static_assert(Is<HighresImu>(93, 62, 63));
 static_assert(Is<SimState>(32, 84, 92));
 static_assert(Is<Timesync>(34, 16, 18));
 static_assert(Is<HilStateQuaternion>(4, 64, 64));

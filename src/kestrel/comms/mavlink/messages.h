@@ -209,6 +209,39 @@ struct GpsRawInt {
   }
 };
 
+struct RawImu {
+  static constexpr std::uint32_t kId = 27;
+  static constexpr std::string_view kName = "RAW_IMU";
+  std::uint64_t time_usec = 0;
+  std::int16_t xacc = 0;
+  std::int16_t yacc = 0;
+  std::int16_t zacc = 0;
+  std::int16_t xgyro = 0;
+  std::int16_t ygyro = 0;
+  std::int16_t zgyro = 0;
+  std::int16_t xmag = 0;
+  std::int16_t ymag = 0;
+  std::int16_t zmag = 0;
+  std::uint8_t id = 0;
+  std::int16_t temperature = 0;
+
+  static constexpr void Visit(auto& self, auto&& visitor) {
+    visitor("time_usec", self.time_usec, "us");
+    visitor("xacc", self.xacc, "");
+    visitor("yacc", self.yacc, "");
+    visitor("zacc", self.zacc, "");
+    visitor("xgyro", self.xgyro, "");
+    visitor("ygyro", self.ygyro, "");
+    visitor("zgyro", self.zgyro, "");
+    visitor("xmag", self.xmag, "");
+    visitor("ymag", self.ymag, "");
+    visitor("zmag", self.zmag, "");
+    visitor.Extensions();
+    visitor("id", self.id, "");
+    visitor("temperature", self.temperature, "cdegC");
+  }
+};
+
 struct Attitude {
   static constexpr std::uint32_t kId = 30;
   static constexpr std::string_view kName = "ATTITUDE";
@@ -532,6 +565,47 @@ struct SetPositionTargetLocalNed {
 
 // True pose of a simulated vehicle. ArduPilot scales lat and lon wrongly: lat_int and lon_int are
 // right.
+struct HighresImu {
+  static constexpr std::uint32_t kId = 105;
+  static constexpr std::string_view kName = "HIGHRES_IMU";
+  std::uint64_t time_usec = 0;
+  float xacc = 0;
+  float yacc = 0;
+  float zacc = 0;
+  float xgyro = 0;
+  float ygyro = 0;
+  float zgyro = 0;
+  float xmag = 0;
+  float ymag = 0;
+  float zmag = 0;
+  float abs_pressure = 0;
+  float diff_pressure = 0;
+  float pressure_alt = 0;
+  float temperature = 0;
+  std::uint16_t fields_updated = 0;
+  std::uint8_t id = 0;
+
+  static constexpr void Visit(auto& self, auto&& visitor) {
+    visitor("time_usec", self.time_usec, "us");
+    visitor("xacc", self.xacc, "m/s/s");
+    visitor("yacc", self.yacc, "m/s/s");
+    visitor("zacc", self.zacc, "m/s/s");
+    visitor("xgyro", self.xgyro, "rad/s");
+    visitor("ygyro", self.ygyro, "rad/s");
+    visitor("zgyro", self.zgyro, "rad/s");
+    visitor("xmag", self.xmag, "gauss");
+    visitor("ymag", self.ymag, "gauss");
+    visitor("zmag", self.zmag, "gauss");
+    visitor("abs_pressure", self.abs_pressure, "hPa");
+    visitor("diff_pressure", self.diff_pressure, "hPa");
+    visitor("pressure_alt", self.pressure_alt, "");
+    visitor("temperature", self.temperature, "degC");
+    visitor("fields_updated", self.fields_updated, "");
+    visitor.Extensions();
+    visitor("id", self.id, "");
+  }
+};
+
 struct SimState {
   static constexpr std::uint32_t kId = 108;
   static constexpr std::string_view kName = "SIM_STATE";

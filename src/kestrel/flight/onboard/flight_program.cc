@@ -372,6 +372,10 @@ void FlightProgram::TakeAutopilotAttitude(const PoseSample& attitude) {
   if (pad_position_) pad_position_->TakeAttitude(attitude);
 }
 
+void FlightProgram::TakeAutopilotAcceleration(Time time, const Eigen::Vector3d& acceleration) {
+  if (pad_position_) pad_position_->TakeAcceleration(time, acceleration);
+}
+
 void FlightProgram::TakeAutopilotGimbal(const GimbalSample& report) {
   if (gimbal_) gimbal_->TakeReport(report);
   TakeGimbal(report);

@@ -109,6 +109,8 @@ class FlightProgram {
   void TakeAutopilotPose(const PoseSample& pose);
   // Takes an attitude of the autopilot, as above.
   void TakeAutopilotAttitude(const PoseSample& attitude);
+  // Takes what the autopilot's accelerometer measures, as above.
+  void TakeAutopilotAcceleration(Time time, const Eigen::Vector3d& acceleration);
   // Takes a report of the gimbal by the autopilot, as above.
   void TakeAutopilotGimbal(const GimbalSample& report);
 

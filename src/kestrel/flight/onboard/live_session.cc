@@ -274,6 +274,7 @@ AutopilotOptions Flight::WantedOfAutopilot() const {
   constexpr double kMode_hz = 20;
   if (options_.guides && wanted.mode_rate_hz == 0) wanted.mode_rate_hz = kMode_hz;
   if (live_.true_pose) wanted.wants_true_pose = true;
+  wanted.wants_acceleration = options_.sends_pad_position;
   if (const auto& gimbal = live_.calibration.gimbal) {
     wanted.gimbal_device_id = gimbal->device_id;
     wanted.points_gimbal = Points();
@@ -298,6 +299,12 @@ void Flight::OpenAutopilot() {
                          .attitude =
                              [this](const PoseSample& pose) {
                                if (program_) program_->TakeAutopilotAttitude(pose);
+                             },
+                         .acceleration =
+                             [this](Time time, const Eigen::Vector3d& acceleration) {
+                               if (program_) {
+                                 program_->TakeAutopilotAcceleration(time, acceleration);
+                               }
                              },
                          .true_pose = [this](const PoseSample& pose) { TakeTruePose(pose); },
                          .event = [this](const AutopilotEvent& e) { Notify(e.text); },

@@ -89,8 +89,8 @@ TEST_F(PadPlaceTest, CovarianceHoldsErrorOfAttitude) {
   ExternalPose pose;
   for (int i = 0; i < kTrials; ++i) {
     const Vector3d error(Radians(random.Normal()), Radians(random.Normal()), 0);
-    pose = PadPlace().Update(See(body), RotationBy(error) * body.rotation,
-                             HeadingSource::kAutopilot);
+    pose =
+        PadPlace().Update(See(body), RotationBy(error) * body.rotation, HeadingSource::kAutopilot);
     const Vector3d off = pose.frame_from_body.translation - body.translation;
     sum += off * off.transpose() / kTrials;
   }

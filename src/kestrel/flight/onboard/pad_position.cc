@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kAttitudes = 256;  // some seconds
 constexpr Duration kAttitudeGap = std::chrono::milliseconds(200);
-constexpr Duration kPatience = std::chrono::seconds(8);  // until the position must be in use
+constexpr Duration kPatience = std::chrono::seconds(8);        // until the position must be in use
 constexpr Duration kOriginPatience = std::chrono::seconds(3);  // it may have one already
 constexpr double kKnown_s = 1;
 
@@ -56,6 +56,19 @@ PadPosition::PadPosition(std::optional<GlobalPosition> origin, Autopilot* autopi
 
 void PadPosition::TakeAttitude(const PoseSample& sample) { attitudes_.Add(sample); }
 
+// The attitude turns little between two of its reports.
+void PadPosition::TakeAcceleration(Time time, const Eigen::Vector3d& acceleration) {
+  constexpr double kGravity = 9.80665;
+  const auto attitude = attitudes_.Predict(time, kAttitudeGap, {});
+  if (!attitude) return;
+  const bool is_by_pad = HeadingOfEstimator() == HeadingSource::kPad;
+  const Eigen::AngleAxisd frame_from_world(is_by_pad ? -place_.heading_drift() : 0,
+                                           Eigen::Vector3d::UnitZ());
+  motion_.AddAcceleration(time,
+                          frame_from_world * (attitude->world_from_body.rotation * acceleration) -
+                              kGravity * Eigen::Vector3d::UnitZ());
+}
+
 void PadPosition::Send(Time now, const TrackSnapshot& track) {
   if (!autopilot_.is_here()) return;
   if (!heard_) heard_ = now;
@@ -71,16 +84,30 @@ void PadPosition::Send(Time now, const TrackSnapshot& track) {
   if (stamp_ns <= 0) return;
   const ExternalPose pose =
       place_.Update(*sight, attitude->world_from_body.rotation, HeadingOfEstimator());
+  WatchPad(pose);
+  if (is_moving_) return;
   newest_ = sight->time;
   if (!first_) first_ = now;
-  if (connection_->Send(OdometryOf(pose, autopilot_.kind(),
-                                   static_cast<std::uint64_t>(stamp_ns / kNsPerUs)))) {
+  if (connection_->Send(
+          OdometryOf(pose, autopilot_.kind(), static_cast<std::uint64_t>(stamp_ns / kNsPerUs)))) {
     ++messages_;
   }
 }
 
 bool PadPosition::is_known(Time now) const {
   return newest_ && ToSeconds(now - *newest_) < kKnown_s;
+}
+
+// A pad that moves would take the world along. On the ground the UAV is pushed and turned by hand.
+void PadPosition::WatchPad(const ExternalPose& pose) {
+  const bool is_flying = autopilot_.is_armed() && autopilot_.landed_state() == LandedState::kInAir;
+  if (!is_flying) is_moving_ = false;
+  if (!is_flying || pose.resets != std::exchange(watched_resets_, pose.resets)) motion_.Reset();
+  if (!motion_.Update(pose.time, pose.frame_from_body.translation)) return;
+  if (!is_moving_) {
+    Notify(mavlink::kSeverityWarning, "the pad moves: it is no position any more");
+  }
+  is_moving_ = true;
 }
 
 void PadPosition::WantParameters() {

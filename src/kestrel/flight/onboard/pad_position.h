@@ -10,6 +10,7 @@
 #include "kestrel/comms/mavlink/global_position.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/poses/pose_history.h"
+#include "kestrel/flight/onboard/pad_motion_watch.h"
 #include "kestrel/flight/onboard/pad_place.h"
 #include "kestrel/flight/session/track_snapshot.h"
 
@@ -29,13 +30,15 @@ class PadPosition {
 
   // Takes the autopilot's attitude, on the local clock; its place does not count.
   void TakeAttitude(const PoseSample& sample);
+  // Takes what its accelerometer measures, see AutopilotListener.
+  void TakeAcceleration(Time time, const Eigen::Vector3d& acceleration);
 
   // Sends what is due at 'now': the place, and once the origin of the autopilot's frame, if it has
   // none.
   void Send(Time now, const TrackSnapshot& track);
 
-  // True while the autopilot's position is one of the pad: the pad was seen in the last second. An
-  // autopilot goes on for 5 to 8 s without it, and drifts.
+  // True while the autopilot's position is one of the pad: the pad was seen in the last second, and
+  // stands. An autopilot goes on for 5 to 8 s without it, and drifts.
   bool is_known(Time now) const;
 
   int messages() const { return messages_; }
@@ -45,6 +48,7 @@ class PadPosition {
   std::string WhyUnused(Time now) const;
   HeadingSource HeadingOfEstimator() const;
   void SendOrigin(Time now);
+  void WatchPad(const ExternalPose& pose);
   void ReportState(Time now);
   void Notify(std::uint8_t severity, const std::string& text);
 
@@ -54,14 +58,17 @@ class PadPosition {
   std::function<void(const std::string&)> report_;
   PoseHistory attitudes_;
   PadPlace place_;
-  std::optional<Time> first_;           // when the first place was sent
-  std::optional<Time> newest_;          // the newest sight that was sent
-  std::optional<Time> heard_;           // when the autopilot was first here
+  PadMotionWatch motion_;
+  std::optional<Time> first_;   // when the first place was sent
+  std::optional<Time> newest_;  // the newest sight that was sent
+  std::optional<Time> heard_;   // when the autopilot was first here
   bool requested_parameters_ = false;
   bool is_origin_settled_ = false;
   bool was_checked_ = false;
   bool was_known_ = false;
+  bool is_moving_ = false;  // the pad, noticed in this flight
   bool is_turned_ = false;  // its heading has left the pad's
+  std::uint8_t watched_resets_ = 0;
   int reported_resets_ = 0;
   int messages_ = 0;
 };

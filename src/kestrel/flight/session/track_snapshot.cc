@@ -13,8 +13,8 @@ TrackSnapshot::Sight SightOf(const TargetDetection& detection,
   TrackSnapshot::Sight sight;
   sight.time = time;
   sight.target_from_body = camera_from_target.Inverse() * camera_from_body;
-  sight.covariance = body_from_camera * detection.covariance.topLeftCorner<3, 3>() *
-                     body_from_camera.transpose();
+  sight.covariance =
+      body_from_camera * detection.covariance.topLeftCorner<3, 3>() * body_from_camera.transpose();
   sight.heading_sigma =
       std::sqrt(normal.dot(detection.covariance.bottomRightCorner<3, 3>() * normal));
   sight.heading_symmetry = detection.heading_symmetry;

@@ -131,6 +131,27 @@ mavlink::GlobalPositionInt GlobalPositionOf(const PoseSample& pose, const Global
           .hdg = static_cast<std::uint16_t>((heading + kFullTurn_cdeg) % kFullTurn_cdeg)};
 }
 
+mavlink::RawImu RawImuOf(const Vector3d& acceleration, std::int64_t boot_us) {
+  constexpr double kPerMilliG = 1000 / 9.80665;
+  const Vector3d in_frd = kPerMilliG * FrdFromFlu(acceleration);
+  mavlink::RawImu message;
+  message.time_usec = static_cast<std::uint64_t>(boot_us);
+  message.xacc = static_cast<std::int16_t>(std::lround(in_frd.x()));
+  message.yacc = static_cast<std::int16_t>(std::lround(in_frd.y()));
+  message.zacc = static_cast<std::int16_t>(std::lround(in_frd.z()));
+  return message;
+}
+
+mavlink::HighresImu HighresImuOf(const Vector3d& acceleration, std::int64_t boot_us) {
+  const Eigen::Vector3f in_frd = FrdFromFlu(acceleration).cast<float>();
+  mavlink::HighresImu message;
+  message.time_usec = static_cast<std::uint64_t>(boot_us);
+  message.xacc = in_frd.x();
+  message.yacc = in_frd.y();
+  message.zacc = in_frd.z();
+  return message;
+}
+
 mavlink::SimState SimStateOf(const PoseSample& pose, const GlobalOrigin& origin) {
   const Eigen::Quaterniond rotation = NedFrdFromEnuFlu(pose.world_from_body.rotation);
   const EulerAngles angles = EulerAnglesOf(rotation);

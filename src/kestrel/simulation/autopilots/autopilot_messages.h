@@ -19,15 +19,14 @@
 namespace kestrel {
 
 // All messages that a simulated autopilot sends.
-using AutopilotMessage =
-    std::variant<mavlink::Heartbeat, mavlink::Attitude, mavlink::AttitudeQuaternion,
-                 mavlink::LocalPositionNed, mavlink::GlobalPositionInt, mavlink::GpsGlobalOrigin,
-                 mavlink::HomePosition, mavlink::SimState, mavlink::ExtendedSysState,
-                 mavlink::Timesync, mavlink::Statustext, mavlink::CurrentMode,
-                 mavlink::AutopilotVersion, mavlink::ParamValue, mavlink::CommandAck,
-                 mavlink::SysStatus, mavlink::EkfStatusReport, mavlink::EstimatorStatus,
-                 mavlink::RcChannels, mavlink::GimbalManagerInformation,
-                 mavlink::GimbalManagerStatus, mavlink::GimbalDeviceAttitudeStatus>;
+using AutopilotMessage = std::variant<
+    mavlink::Heartbeat, mavlink::Attitude, mavlink::AttitudeQuaternion, mavlink::LocalPositionNed,
+    mavlink::GlobalPositionInt, mavlink::GpsGlobalOrigin, mavlink::HomePosition, mavlink::SimState,
+    mavlink::ExtendedSysState, mavlink::Timesync, mavlink::Statustext, mavlink::CurrentMode,
+    mavlink::AutopilotVersion, mavlink::ParamValue, mavlink::CommandAck, mavlink::SysStatus,
+    mavlink::EkfStatusReport, mavlink::EstimatorStatus, mavlink::RcChannels, mavlink::RawImu,
+    mavlink::HighresImu, mavlink::GimbalManagerInformation, mavlink::GimbalManagerStatus,
+    mavlink::GimbalDeviceAttitudeStatus>;
 
 // All messages that it handles.
 using CompanionMessage =
@@ -59,6 +58,9 @@ mavlink::AttitudeQuaternion AttitudeQuaternionOf(const PoseSample& pose, std::ui
 mavlink::LocalPositionNed LocalPositionOf(const PoseSample& pose, std::uint32_t boot_ms);
 mavlink::GlobalPositionInt GlobalPositionOf(const PoseSample& pose, const GlobalOrigin& origin,
                                             std::uint32_t boot_ms);
+// What an accelerometer measures (FLU, m/s^2).
+mavlink::RawImu RawImuOf(const Eigen::Vector3d& acceleration, std::int64_t boot_us);
+mavlink::HighresImu HighresImuOf(const Eigen::Vector3d& acceleration, std::int64_t boot_us);
 mavlink::SimState SimStateOf(const PoseSample& pose, const GlobalOrigin& origin);
 mavlink::HomePosition HomePositionOf(const GlobalOrigin& origin, std::int64_t boot_us);
 mavlink::GpsGlobalOrigin GlobalOriginOf(const GlobalOrigin& origin, std::int64_t boot_us);

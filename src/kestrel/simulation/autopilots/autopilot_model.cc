@@ -159,6 +159,7 @@ void AutopilotModel::StepOnce(Time now) {
   world_.ReportPose(uav_.pose(),
                     mount_ ? std::optional(mount_->world_from_platform()) : std::nullopt);
   ObserveFlight(now);
+  MeasureAcceleration();
   landing_->Estimate(state_);
   detector_.Observe(state_, command);
   if (IsIn(FlightMode::kGuided)) result_.guided_s += state_.step_s;
@@ -186,6 +187,18 @@ void AutopilotModel::ObserveFlight(Time now) {
   if (external_) UseExternalNavigation();
   state_.is_standing = uav_.is_standing();
   DriftAtRest();
+}
+
+// The mean over some steps, as autopilots filter it.
+void AutopilotModel::MeasureAcceleration() {
+  constexpr double kFilter_s = 0.02;
+  constexpr double kGravity = 9.80665;
+  const PoseSample& truth = uav_.pose();
+  const Vector3d velocity = truth.motion->velocity_in_world;
+  const Vector3d change = (velocity - std::exchange(velocity_, velocity)) / state_.step_s;
+  const Vector3d measured =
+      truth.world_from_body.rotation.conjugate() * (change + kGravity * Vector3d::UnitZ());
+  acceleration_ += std::min(state_.step_s / kFilter_s, 1.0) * (measured - acceleration_);
 }
 
 // The place that it holds moves along with a jump.

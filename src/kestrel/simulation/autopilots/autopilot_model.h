@@ -103,6 +103,7 @@ class AutopilotModel {
   bool IsWithin(Time now, double after_s, double for_s) const;
   bool HasPosition(Time now) const;
   void UseExternalNavigation();
+  void MeasureAcceleration();
 
   // autopilot_reports.cc: sent messages.
   bool SendMessage(std::uint32_t id, Time now);
@@ -152,6 +153,8 @@ class AutopilotModel {
   LandDetector detector_;
   ReturnFlight return_;
   MessageStreams streams_;
+  Eigen::Vector3d velocity_{0, 0, 0};           // true one at the last step
+  Eigen::Vector3d acceleration_{0, 0, 0};       // measured, FLU, m/s^2
   std::optional<ExternalNavigation> external_;  // nothing: it has GNSS
   std::optional<SimulatedMount> mount_;         // nothing: it has no gimbal
 

@@ -95,6 +95,12 @@ bool AutopilotModel::SendPose(std::uint32_t id, Time now) {
       if (!is_silent) send_(message);
       return true;
     }
+    case mavlink::RawImu::kId:
+      send_(RawImuOf(acceleration_, state_.boot_us));
+      return true;
+    case mavlink::HighresImu::kId:
+      send_(HighresImuOf(acceleration_, state_.boot_us));
+      return true;
     case mavlink::LocalPositionNed::kId:
       if (!is_silent && has_position) send_(LocalPositionOf(pose, own_ms));
       return true;

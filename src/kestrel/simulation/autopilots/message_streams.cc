@@ -36,10 +36,12 @@ MessageStreams::MessageStreams(AutopilotFirmware firmware, bool has_gimbal) : fi
   if (is_px4) {
     constexpr std::int64_t kEstimator_us = 1'000'000;
     streams_.push_back({mavlink::EstimatorStatus::kId, kEstimator_us, kEstimator_us});
+    streams_.push_back({mavlink::HighresImu::kId, 0, 0});
     constexpr std::int64_t kMode_us = 500'000;
     streams_.push_back({mavlink::CurrentMode::kId, kMode_us, kMode_us});
   } else {
     streams_.push_back({mavlink::EkfStatusReport::kId, 0, 0});
+    streams_.push_back({mavlink::RawImu::kId, 0, 0});
     // Only ArduPilot's simulator sends the truth.
     streams_.push_back({mavlink::SimState::kId, 0, 0});
   }

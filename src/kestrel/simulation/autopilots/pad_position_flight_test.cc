@@ -30,7 +30,9 @@ class PadPositionFlightTest : public testing::TestWithParam<AutopilotFirmware> {
     return options;
   }
   static PointedFlight Flight(const AutopilotModelOptions& options, std::uint64_t seed = 1) {
-    return {GetParam(), options, TestVehicle("standing", 0),
+    return {GetParam(),
+            options,
+            TestVehicle("standing", 0),
             {.has_gimbal = false, .guides = true, .sends_pad_position = true, .seed = seed}};
   }
 };
@@ -66,9 +68,9 @@ TEST_P(PadPositionFlightTest, LandsWhereItIsWhenPadIsLost) {
   const Eigen::Vector3d place = flight.model.truth().world_from_body.translation;
   flight.is_blind = true;
   flight.Fly(3);
-  EXPECT_EQ(flight.model.custom_mode(),
-            CustomModeOf(is_px4() ? AutopilotKind::kPx4 : AutopilotKind::kArduPilot,
-                         FlightMode::kLand))
+  EXPECT_EQ(
+      flight.model.custom_mode(),
+      CustomModeOf(is_px4() ? AutopilotKind::kPx4 : AutopilotKind::kArduPilot, FlightMode::kLand))
       << flight.reported;
   EXPECT_TRUE(flight.Land(40)) << flight.reported;
   const Eigen::Vector3d moved = flight.model.truth().world_from_body.translation - place;

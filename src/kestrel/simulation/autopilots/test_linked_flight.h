@@ -104,6 +104,7 @@ class LinkedFlight : public TestAutopilot {
     constexpr double kMode_hz = 20;
     AutopilotOptions options;
     options.mode_rate_hz = kMode_hz;
+    options.wants_acceleration = true;
     options.points_gimbal = has_gimbal;
     if (has_gimbal) options.gimbal_device_id = 0;
     return options;
@@ -112,6 +113,9 @@ class LinkedFlight : public TestAutopilot {
     AutopilotListener listener;
     listener.attitude = [this](const PoseSample& attitude) {
       if (pad_position_) pad_position_->TakeAttitude(attitude);
+    };
+    listener.acceleration = [this](Time time, const Eigen::Vector3d& acceleration) {
+      if (pad_position_) pad_position_->TakeAcceleration(time, acceleration);
     };
     listener.pose = [this](const PoseSample& pose) {
       if (pad_position_ && !pad_position_->is_known(now)) return;
