@@ -58,10 +58,10 @@ struct FlightParts {
   // The camera in whose images ground stations mark what is followed; null: there is none.
   const CameraCalibration* tracking = nullptr;
   const CameraStream* stream = nullptr;  // in which they do so; null: the source's own
-  bool sends_pad_position = false;       // see SessionOptions
   GuidanceMaker guidance = {};  // flies by set-points when the pilot gives the mode; null: does not
-  bool source_has_poses = false;  // the autopilot's poses are then not used
-  bool sees_repeated = false;     // processes images that equal the one before
+  bool sends_pad_position = false;  // see SessionOptions
+  bool source_has_poses = false;    // the autopilot's poses are then not used
+  bool sees_repeated = false;       // processes images that equal the one before
   std::size_t cameras = 1;
   std::optional<LinkProfile> profile;  // nothing: chosen by the heartbeat
   // Returns the true pattern at the time of a frame, in a simulation that knows it.
