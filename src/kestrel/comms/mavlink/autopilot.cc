@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/comms/mavlink/mavlink_enums.h"
+#include "kestrel/comms/mavlink/ned.h"
 #include "kestrel/core/base/options.h"
 
 namespace kestrel {

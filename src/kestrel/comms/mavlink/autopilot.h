@@ -99,15 +99,15 @@ struct AutopilotListener {
   // pose for each attitude, with the position of that instant from the newest position and
   // velocity.
   std::function<void(const PoseSample&)> pose;
-  // Attitude and turn alone (place and velocity are 0), with or without a position.
-  std::function<void(const PoseSample&)> attitude;
-  // Acceleration that the accelerometer measures, in the body (FLU), m/s^2: with gravity's
-  // reaction, upwards at rest. At a time on the local clock.
-  std::function<void(Time time, const Eigen::Vector3d& acceleration)> acceleration;
   std::function<void(const PoseSample&)> true_pose;  // as above, from a simulated vehicle
   std::function<void(const AutopilotEvent&)> event;
   std::function<void(std::uint8_t severity, std::string_view text)> text;  // STATUSTEXT
   std::function<void(const GimbalSample&)> gimbal;                         // on the local clock
+  // Attitude and turn alone (place and velocity are 0), with or without a position.
+  std::function<void(const PoseSample&)> attitude = {};
+  // Acceleration that the accelerometer measures, in the body (FLU), m/s^2: with gravity's
+  // reaction, upwards at rest. At a time on the local clock.
+  std::function<void(Time time, const Eigen::Vector3d& acceleration)> acceleration = {};
 };
 
 // The autopilot at the other end of a connection: finds it, follows its state, requests what is

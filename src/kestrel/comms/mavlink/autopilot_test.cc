@@ -88,6 +88,8 @@ TEST_F(AutopilotTest, UsesEulerAnglesWithoutQuaternions) {
   attitude.time_boot_ms = BootMs() + 350;
   SendMessage(attitude);
   EXPECT_EQ(autopilot_->counters().without_position, 1u);
+  // The attitude counts without a position, too.
+  EXPECT_EQ(attitudes_.size(), 4u);
 }
 
 TEST_F(AutopilotTest, RequestsStreamsAndRenewsLostOnes) {
@@ -486,6 +488,25 @@ TEST_F(AutopilotTest, CountsLostPackets) {
   writer.Write(mavlink::Heartbeat{});
   SendHeartbeat();
   EXPECT_EQ(autopilot_->counters().lost_packets, 2u);
+}
+
+TEST_F(AutopilotTest, AccelerationIsUpwardsAtRest) {
+  Start();
+  Pass(3);
+  mavlink::RawImu raw;
+  raw.time_usec = std::uint64_t{1000} * BootMs();
+  raw.zacc = -1000;  // mg
+  SendMessage(raw);
+  mavlink::HighresImu highres;
+  highres.time_usec = raw.time_usec;
+  highres.zacc = -9.81F;
+  SendMessage(highres);
+  highres.xacc = std::numeric_limits<float>::quiet_NaN();
+  SendMessage(highres);
+  ASSERT_EQ(accelerations_.size(), 2u);
+  for (const Eigen::Vector3d& each : accelerations_) {
+    EXPECT_NEAR((each - Eigen::Vector3d(0, 0, 9.81)).norm(), 0, 0.01);
+  }
 }
 
 }  // namespace

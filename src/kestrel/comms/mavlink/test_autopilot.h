@@ -31,11 +31,16 @@ class AutopilotTest : public testing::Test {
     autopilot_ = std::make_unique<Autopilot>(
         options, connection_.get(),
         AutopilotListener{
-            [this](const PoseSample& pose) { poses_.push_back(pose); },
-            [this](const PoseSample& pose) { true_poses_.push_back(pose); },
-            [this](const AutopilotEvent& event) { events_.push_back(event); },
-            [this](std::uint8_t, std::string_view text) { texts_.emplace_back(text); },
-            [this](const GimbalSample& sample) { gimbal_.push_back(sample); }});
+            .pose = [this](const PoseSample& pose) { poses_.push_back(pose); },
+            .true_pose = [this](const PoseSample& pose) { true_poses_.push_back(pose); },
+            .event = [this](const AutopilotEvent& event) { events_.push_back(event); },
+            .text = [this](std::uint8_t, std::string_view text) { texts_.emplace_back(text); },
+            .gimbal = [this](const GimbalSample& sample) { gimbal_.push_back(sample); },
+            .attitude = [this](const PoseSample& pose) { attitudes_.push_back(pose); },
+            .acceleration =
+                [this](Time, const Eigen::Vector3d& acceleration) {
+                  accelerations_.push_back(acceleration);
+                }});
   }
 
   // Receives Kestrel's packets.
@@ -139,6 +144,8 @@ class AutopilotTest : public testing::Test {
   std::vector<PoseSample> poses_;
   std::vector<PoseSample> true_poses_;
   std::vector<GimbalSample> gimbal_;
+  std::vector<PoseSample> attitudes_;
+  std::vector<Eigen::Vector3d> accelerations_;
   std::vector<AutopilotEvent> events_;
   std::vector<std::string> texts_;
 };

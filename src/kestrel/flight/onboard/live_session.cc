@@ -296,6 +296,13 @@ void Flight::OpenAutopilot() {
   autopilot_.emplace(WantedOfAutopilot(), &*connection_,
                      AutopilotListener{
                          .pose = [this](const PoseSample& pose) { TakePose(pose); },
+                         .true_pose = [this](const PoseSample& pose) { TakeTruePose(pose); },
+                         .event = [this](const AutopilotEvent& e) { Notify(e.text); },
+                         .text =
+                             [this](std::uint8_t severity, std::string_view text) {
+                               Notify(WordsOfAutopilot(text), LevelOf(severity));
+                             },
+                         .gimbal = [this](const GimbalSample& report) { TakeGimbal(report); },
                          .attitude =
                              [this](const PoseSample& pose) {
                                if (program_) program_->TakeAutopilotAttitude(pose);
@@ -306,13 +313,6 @@ void Flight::OpenAutopilot() {
                                  program_->TakeAutopilotAcceleration(time, acceleration);
                                }
                              },
-                         .true_pose = [this](const PoseSample& pose) { TakeTruePose(pose); },
-                         .event = [this](const AutopilotEvent& e) { Notify(e.text); },
-                         .text =
-                             [this](std::uint8_t severity, std::string_view text) {
-                               Notify(WordsOfAutopilot(text), LevelOf(severity));
-                             },
-                         .gimbal = [this](const GimbalSample& report) { TakeGimbal(report); },
                      });
 }
 

@@ -14,7 +14,7 @@ constexpr Duration kSpan = std::chrono::seconds(1);
 constexpr Duration kKept = 2 * kSpan + std::chrono::milliseconds(300);
 constexpr Duration kGap = std::chrono::milliseconds(150);  // longest between two samples
 constexpr double kLimit_m = 0.5;                           // a pad that has reached 0.5 m/s
-constexpr int kSure = 5;                                   // places in a row
+constexpr int kSurePlaces = 5;                             // places in a row
 constexpr double kMean_s = 15;                             // time constant of what stays
 constexpr double kLearn_s = 2;                             // until it is known
 
@@ -52,7 +52,7 @@ bool PadMotionWatch::Update(Time time, const Eigen::Vector3d& place) {
   learnt_ = time;
   const bool contradicts = learnt_s_ > kLearn_s && (mismatch - usual_).norm() > kLimit_m;
   contradictions_ = contradicts ? contradictions_ + 1 : 0;
-  if (contradicts) return contradictions_ >= kSure;
+  if (contradicts) return contradictions_ >= kSurePlaces;
   learnt_s_ += since_s;
   usual_ += since_s / std::clamp(learnt_s_, ToSeconds(kGap), kMean_s) * (mismatch - usual_);
   return false;

@@ -13,13 +13,14 @@
 #include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/core/base/parse_number.h"
 #include "kestrel/core/geometry/angles.h"
+#include "kestrel/core/poses/gravity.h"
 
 namespace kestrel {
 namespace {
 
-constexpr std::size_t kAttitudes = 256;  // some seconds
+constexpr std::size_t kKeptAttitudes = 256;  // some seconds
 constexpr Duration kAttitudeGap = std::chrono::milliseconds(200);
-constexpr Duration kPatience = std::chrono::seconds(8);        // until the position must be in use
+constexpr Duration kUsePatience = std::chrono::seconds(8);     // until the position must be in use
 constexpr Duration kOriginPatience = std::chrono::seconds(3);  // it may have one already
 constexpr double kKnown_s = 1;
 
@@ -52,13 +53,12 @@ PadPosition::PadPosition(std::optional<GlobalPosition> origin, Autopilot* autopi
       autopilot_(*autopilot),
       connection_(connection),
       report_(std::move(report)),
-      attitudes_(kAttitudes, kAttitudeGap) {}
+      attitudes_(kKeptAttitudes, kAttitudeGap) {}
 
 void PadPosition::TakeAttitude(const PoseSample& sample) { attitudes_.Add(sample); }
 
 // The attitude turns little between two of its reports.
 void PadPosition::TakeAcceleration(Time time, const Eigen::Vector3d& acceleration) {
-  constexpr double kGravity = 9.80665;
   const auto attitude = attitudes_.Predict(time, kAttitudeGap, {});
   if (!attitude) return;
   const bool is_by_pad = HeadingOfEstimator() == HeadingSource::kPad;
@@ -143,7 +143,7 @@ void PadPosition::SendOrigin(Time now) {
 }
 
 void PadPosition::ReportState(Time now) {
-  if (!was_checked_ && first_ && now - *first_ > kPatience) {
+  if (!was_checked_ && first_ && now - *first_ > kUsePatience) {
     was_checked_ = true;
     if (const std::string why = WhyUnused(now); !why.empty()) {
       Notify(mavlink::kSeverityWarning, "the autopilot does not use the pad's position: " + why);

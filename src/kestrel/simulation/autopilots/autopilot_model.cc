@@ -13,6 +13,7 @@
 #include "kestrel/core/base/options.h"
 #include "kestrel/core/base/parse_number.h"
 #include "kestrel/core/geometry/angles.h"
+#include "kestrel/core/poses/gravity.h"
 #include "kestrel/simulation/autopilots/ardupilot_guided.h"
 #include "kestrel/simulation/autopilots/ardupilot_landing.h"
 #include "kestrel/simulation/autopilots/px4_landing.h"
@@ -192,7 +193,6 @@ void AutopilotModel::ObserveFlight(Time now) {
 // The mean over some steps, as autopilots filter it.
 void AutopilotModel::MeasureAcceleration() {
   constexpr double kFilter_s = 0.02;
-  constexpr double kGravity = 9.80665;
   const PoseSample& truth = uav_.pose();
   const Vector3d velocity = truth.motion->velocity_in_world;
   const Vector3d change = (velocity - std::exchange(velocity_, velocity)) / state_.step_s;
