@@ -32,7 +32,7 @@ TEST(OdometryOf, UsesFramesOfBothAutopilots) {
     EXPECT_FLOAT_EQ(message.y, 1);
     EXPECT_FLOAT_EQ(message.z, -3);
     // 30 degrees from east to north are a heading of 60 degrees.
-    EXPECT_NEAR(2 * std::atan2(message.q[3], message.q[0]), Radians(60), 1e-6);
+    EXPECT_NEAR(std::tan(std::atan2(message.q[3], message.q[0])), std::tan(Radians(30)), 1e-6);
     EXPECT_TRUE(std::isnan(message.vx) && std::isnan(message.vy) && std::isnan(message.vz));
   }
 }

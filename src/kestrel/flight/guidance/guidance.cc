@@ -163,7 +163,10 @@ GuidanceOutput Guidance::Idle(const GuidanceInput& input) {
                    input.uav->world_from_body.rotation * Vector3d::UnitZ(), std::nullopt,
                    input.link_delay_s);
   }
-  if (has_given_up_) return Output(std::nullopt, GuidanceRequest::kHold);
+  if (has_given_up_) {
+    const bool can_hold = input.uav || input.can_hold;
+    return Output(std::nullopt, can_hold ? GuidanceRequest::kHold : GuidanceRequest::kLand);
+  }
   if (!may_stream_ || input.is_guided || !input.uav) {
     return Output(std::nullopt, GuidanceRequest::kNone);
   }

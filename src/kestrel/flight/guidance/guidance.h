@@ -46,6 +46,8 @@ struct alignas(8) FollowOrder {
 struct GuidanceInput {
   Time now;                              // never earlier than the one before
   std::optional<UavState> uav;           // predicted to now; nothing when the poses have stopped
+  // False: without a pose the autopilot's own position is a guess, which it cannot hold.
+  bool can_hold = true;
   std::optional<TargetEstimate> target;  // predicted to now; nothing while there is none, or lost
   // Time since the newest frame that showed the target was taken, s.
   double target_age_s = std::numeric_limits<double>::infinity();

@@ -56,6 +56,7 @@ FlightProgram::FlightProgram(const FlightOptions& options, const FlightParts& pa
   if (parts.guidance) {
     guided_.emplace(options, tracker_, parts.guidance, !parts.source_has_poses, parts.autopilot,
                     parts.connection, report_);
+    if (parts.sends_pad_position) guided_->set_position_by_pad();
   }
   if (parts.pointed != nullptr) {
     gimbal_.emplace(options, *parts.pointed, pad_, tracker_, parts.autopilot, parts.connection,

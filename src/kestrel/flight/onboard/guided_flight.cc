@@ -158,6 +158,7 @@ GuidanceInput GuidedFlight::Input(Time now, const TrackSnapshot& track,
   if (track.seen) input.target_age_s = ToSeconds(now - *track.seen);
   input.mark = track.mark;
   input.order = order_;
+  input.can_hold = can_hold_;
   input.is_armed = autopilot_.is_armed();
   input.is_landed = autopilot_.landed_state() == LandedState::kOnGround;
   input.is_link_up = ToSeconds(now - autopilot_.received()) < kLinkAge_s;

@@ -39,6 +39,9 @@ class GuidedFlight {
   // Takes a person's order on what is marked.
   void Take(const FollowOrder& order) { order_ = order; }
 
+  // The autopilot's position comes from the pad, and is a guess without it.
+  void set_position_by_pad() { can_hold_ = false; }
+
   // True while guidance flies the UAV and it has not landed.
   bool is_flying() const { return is_begun_ && phase() != GuidancePhase::kLanded; }
   GuidancePhase phase() const { return guidance_->phase(); }
@@ -74,6 +77,7 @@ class GuidedFlight {
   std::function<void(const std::string&)> report_;
   GuidanceMaker make_;
   std::unique_ptr<Guidance> guidance_;  // for this autopilot, once its parameters are known
+  bool can_hold_ = true;
   FollowOrder order_;                   // the newest one
   AutopilotKind kind_ = AutopilotKind::kUnknown;
   SendSchedule schedule_;

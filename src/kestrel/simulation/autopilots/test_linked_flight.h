@@ -61,11 +61,13 @@ class LinkedFlight : public TestAutopilot {
   void Guide(const FlightOptions& options, const TargetTrackerOptions& tracker,
              const GuidanceMaker& make) {
     guided_.emplace(options, tracker, make, true, &autopilot_, &connection_, Report());
+    if (pad_position_) guided_->set_position_by_pad();
   }
 
   // Sends the place over the pad, which is then the autopilot's position.
   void SendPadPosition() {
-    pad_position_.emplace(std::nullopt, &autopilot_, &connection_, Report());
+    pad_position_.emplace(GlobalPosition{473977420, 85455940, 0}, &autopilot_, &connection_,
+                          Report());
   }
 
   // The vision: takes and processes images, and updates the track.
