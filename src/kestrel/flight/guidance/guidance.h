@@ -44,8 +44,8 @@ struct alignas(8) FollowOrder {
 
 // All inputs of guidance at an instant.
 struct GuidanceInput {
-  Time now;                              // never earlier than the one before
-  std::optional<UavState> uav;           // predicted to now; nothing when the poses have stopped
+  Time now;                     // never earlier than the one before
+  std::optional<UavState> uav;  // predicted to now; nothing when the poses have stopped
   // False: without a pose the autopilot's own position is a guess, which it cannot hold.
   bool can_hold = true;
   std::optional<TargetEstimate> target;  // predicted to now; nothing while there is none, or lost

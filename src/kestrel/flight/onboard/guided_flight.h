@@ -78,7 +78,7 @@ class GuidedFlight {
   GuidanceMaker make_;
   std::unique_ptr<Guidance> guidance_;  // for this autopilot, once its parameters are known
   bool can_hold_ = true;
-  FollowOrder order_;                   // the newest one
+  FollowOrder order_;  // the newest one
   AutopilotKind kind_ = AutopilotKind::kUnknown;
   SendSchedule schedule_;
 

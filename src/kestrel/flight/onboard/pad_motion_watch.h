@@ -37,7 +37,7 @@ class PadMotionWatch {
   std::optional<Eigen::Vector2d> MeasuredChange(Time middle) const;
 
   std::vector<Sample> accelerations_, places_;  // in order of time
-  std::optional<Time> learnt_;   // the newest difference
+  std::optional<Time> learnt_;                  // the newest difference
   Eigen::Vector2d usual_{0, 0};  // slow mean of what places and accelerations differ by, m
   double learnt_s_ = 0;
   int contradictions_ = 0;  // in a row
