@@ -105,7 +105,7 @@ bool AutopilotModel::SendPose(std::uint32_t id, Time now) {
       if (!is_silent && has_position) send_(LocalPositionOf(pose, own_ms));
       return true;
     case mavlink::GlobalPositionInt::kId:
-      if (!is_silent && has_position) send_(GlobalPositionOf(pose, options_.origin, own_ms));
+      if (!is_silent && has_position && has_origin_) send_(GlobalPositionOf(pose, options_.origin, own_ms));
       return true;
     case mavlink::EkfStatusReport::kId:
       send_(mavlink::EkfStatusReport{.flags = EstimatorFlags(has_position)});
@@ -148,8 +148,9 @@ bool AutopilotModel::SendPlace(std::uint32_t id, Time now) {
       if (has_origin_) send_(GlobalOriginOf(options_.origin, own_us));
       return has_origin_;
     case mavlink::HomePosition::kId:
-      if (options_.estimate.has_home) send_(HomePositionOf(options_.origin, own_us));
-      return options_.estimate.has_home;
+      if (!options_.estimate.has_home || !has_origin_) return false;
+      send_(HomePositionOf(options_.origin, own_us));
+      return true;
     case mavlink::SimState::kId:
       send_(SimStateOf(uav_.pose(), options_.origin));
       return true;
