@@ -105,7 +105,8 @@ bool AutopilotModel::SendPose(std::uint32_t id, Time now) {
       if (!is_silent && has_position) send_(LocalPositionOf(pose, own_ms));
       return true;
     case mavlink::GlobalPositionInt::kId:
-      if (!is_silent && has_position && has_origin_) send_(GlobalPositionOf(pose, options_.origin, own_ms));
+      if (!is_silent && has_position && has_origin_)
+        send_(GlobalPositionOf(pose, options_.origin, own_ms));
       return true;
     case mavlink::EkfStatusReport::kId:
       send_(mavlink::EkfStatusReport{.flags = EstimatorFlags(has_position)});
