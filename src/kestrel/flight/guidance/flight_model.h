@@ -20,14 +20,13 @@ namespace kestrel {
 struct FlightModelOptions {
   bool is_used = true;
   double delay_s = 0.12;
-  double memory_s = 20;
   VelocityControl control;
 
   static void Visit(auto& self, auto&& visit) {
     visit("is_used", self.is_used, "use the response that is measured in flight");
     visit("delay_s", self.delay_s, Range{0, 0.4},
           "delay of attitude and thrust until it is measured");
-    visit("memory_s", self.memory_s, Range{1, 100}, "age after which measurements are forgotten");
+    visit.Gone({"memory_s"});
   }
   std::vector<std::string> Validate() const;
 };

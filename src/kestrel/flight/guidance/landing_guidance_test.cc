@@ -376,11 +376,11 @@ TEST(GuidanceOptionsTest, ReportsFaultyOptions) {
   GuidanceOptions options;
   options.leg_m = 3;
   options.limits.max_tilt_deg = 90;
-  options.model.memory_s = 0;
+  options.model.delay_s = 1;
   EXPECT_THAT(ViolationsOf(options),
               testing::ElementsAre("leg_m is 3, expected 0 to 2",
                                    "limits.max_tilt_deg is 90, expected 1 to 80",
-                                   "model.memory_s is 0, expected 1 to 100"));
+                                   "model.delay_s is 1, expected 0 to 0.4"));
   options = {};
   options.search_altitude_m = 40;
   EXPECT_THAT(ViolationsOf(options),
