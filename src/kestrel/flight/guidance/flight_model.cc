@@ -17,11 +17,11 @@ using Answer = Eigen::Matrix<double, 5, 1>;
 using Air = Eigen::Vector3d;
 
 constexpr double kSample_s = 0.02;
-constexpr int kWindow = 10;       // samples over which the motion is averaged
-constexpr double kMemory_s = 20;  // age after which measurements are forgotten
-constexpr int kLearnEvery = 5;    // samples
-constexpr int kDelayStep = 2;     // samples between the delays tried
-constexpr double kGap_s = 0.25;   // samples before a longer gap are of no use
+constexpr int kWindow = 10;               // samples over which the motion is averaged
+constexpr double kResponseMemory_s = 20;  // age after which measurements are forgotten
+constexpr int kLearnEvery = 5;            // samples
+constexpr int kDelayStep = 2;             // samples between the delays tried
+constexpr double kGap_s = 0.25;           // samples before a longer gap are of no use
 // Deviations from the model (gusts above all) last this long: measurements within are not
 // independent.
 constexpr double kCorrelation_s = 0.5;
@@ -137,7 +137,7 @@ void FlightModel::Learn() {
                              (sent_end.fed_forward - sent_begin.fed_forward)) /
                             kWindow;
     if (IsAtLimit(commanded - velocity, acceleration.head<2>() - pushed)) continue;
-    by_delay_[i].Forget(std::exp(-kLearnEvery * kSample_s / kMemory_s));
+    by_delay_[i].Forget(std::exp(-kLearnEvery * kSample_s / kResponseMemory_s));
     for (int axis = 0; axis < 2; ++axis) {
       Answer row(acceleration(axis) - pushed(axis), pushed(axis), velocity(axis), 0, 0);
       row(3 + axis) = 1;
