@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/core/base/options.h"
+#include "kestrel/core/geometry/angles.h"
 #include "kestrel/vision/pipeline/calibration_monitor.h"
 #include "kestrel/vision/pipeline/camera_lag.h"
 #include "kestrel/vision/pipeline/camera_poses.h"
@@ -129,6 +130,7 @@ class LandingPipeline::Impl {
     bool is_track_trusted = true;  // the last detection was where the track predicted it
     std::optional<Sighting> last;
     int next_step = 0;  // step at which the search of the last frame ran out of time
+    int misses = 0;     // frames since the pad was found
     InputContradictions contradictions;
     CalibrationMonitor calibration;
   };
@@ -139,6 +141,7 @@ class LandingPipeline::Impl {
   void Detect(const cv::Mat& image, Eye* eye, LandingObservation* observation) const;
   void LookForOthers(const cv::Mat& image, Eye* eye, LandingObservation* observation);
   GivenView GivenViewOf(const LandingObservation& observation) const;
+  static std::optional<double> SkyAbove(const Eye& eye, const LandingObservation& observation);
   double AltitudeExcess(const Eye& eye) const;
   static void AddErrorOfFocalLength(const Eye& eye, TargetDetection* detection);
   void AddTrack(const Eye& eye, const LandingObservation& observation, TargetHint* hint) const;
@@ -276,16 +279,29 @@ void LandingPipeline::Impl::Detect(const cv::Mat& image, Eye* eye,
     AddLastSighting(*eye, *observation, &hint);
     hint.first_step = eye->next_step;
     hint.max_search_ms = max_search_ms_;
+    hint.sky_above_rad = SkyAbove(*eye, *observation);
   }
   const auto start = std::chrono::steady_clock::now();
   observation->report = eye->detector->Detect(image, hint, *eye->workspace);
   observation->detect_time = std::chrono::steady_clock::now() - start;
   eye->next_step = observation->report.diagnostics.next_step;
   auto& detection = observation->report.detection;
+  eye->misses = detection ? 0 : eye->misses + 1;
   if (!detection) return;
   if (IsJudged(observation->camera)) eye->contradictions.Add(given, *detection);
   if (IsUsed(observation->camera)) eye->calibration.Add(*detection);
   if (!options_.still) AddErrorOfFocalLength(*eye, &*detection);
+}
+
+// From where on (rad above the horizon) the image is left out of the search: of three frames in
+// four, because an attitude that is wrong, such as that of a camera upside down, must not hide the
+// pad; and of none where the pad has shown that it is wrong.
+std::optional<double> LandingPipeline::Impl::SkyAbove(const Eye& eye,
+                                                      const LandingObservation& observation) {
+  constexpr double kMargin = Radians(5), kSigmas = 3;
+  constexpr int kRound = 4;
+  if (eye.misses % kRound == kRound - 1 || eye.contradictions.Attitude()) return std::nullopt;
+  return kMargin + kSigmas * observation.pose_uncertainty.attitude_rad;
 }
 
 // Returns by how much (m) the given altitude is too large, as far as the detections contradict it.

@@ -285,6 +285,23 @@ TEST_F(LandingPipelineTest, UpsideDownCameraIsReportedAndHidesNothing) {
   EXPECT_GT(pipeline.contradictions().Attitude()->difference, 2.5);
 }
 
+// With such a mount the pad seems to be in the sky.
+TEST_F(LandingPipelineTest, TurnedCameraHidesPadInThreeFramesAtMost) {
+  for (const double turn : {1.2, 1.6, 2.0, 2.4}) {
+    CameraCalibration wrong = calibration_;
+    wrong.body_from_camera->rotation =
+        wrong.body_from_camera->rotation * Rotation(turn, Eigen::Vector3d::UnitX());
+    LandingPipeline pipeline(wrong, options_);
+    for (int i = 0; i < 16; ++i) {
+      const Time time = kTime + i * DurationFromSeconds(0.1);
+      world_from_body_.translation.x() = 10 + 0.05 * i;
+      pipeline.AddPose({time, world_from_body_});
+      const bool is_found = pipeline.Process(Draw(), time).report.detection.has_value();
+      EXPECT_TRUE(i < 3 || is_found) << turn << ", frame " << i;
+    }
+  }
+}
+
 TEST_F(LandingPipelineTest, WrongUserAltitudeIsReportedAndHidesNothing) {
   LandingPipeline pipeline(calibration_, options_);
   pipeline.SetAltitude(20);
