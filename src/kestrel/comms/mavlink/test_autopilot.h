@@ -35,7 +35,8 @@ class AutopilotTest : public testing::Test {
             [this](const PoseSample& pose) { true_poses_.push_back(pose); },
             [this](const AutopilotEvent& event) { events_.push_back(event); },
             [this](std::uint8_t, std::string_view text) { texts_.emplace_back(text); },
-            [this](const GimbalSample& sample) { gimbal_.push_back(sample); }});
+            [this](const GimbalSample& sample) { gimbal_.push_back(sample); },
+            [this](const ZoomSample& sample) { zoom_.push_back(sample); }});
   }
 
   // Receives Kestrel's packets.
@@ -139,6 +140,7 @@ class AutopilotTest : public testing::Test {
   std::vector<PoseSample> poses_;
   std::vector<PoseSample> true_poses_;
   std::vector<GimbalSample> gimbal_;
+  std::vector<ZoomSample> zoom_;
   std::vector<AutopilotEvent> events_;
   std::vector<std::string> texts_;
 };

@@ -107,6 +107,8 @@ class FlightProgram {
   void TakeAutopilotPose(const PoseSample& pose);
   // Takes a report of the gimbal by the autopilot, as above.
   void TakeAutopilotGimbal(const GimbalSample& report);
+  // Takes a report of the camera's zoom, in the same way.
+  void TakeZoom(const ZoomSample& report);
 
  private:
   // The steps whose latency is measured.

@@ -13,6 +13,7 @@
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/vision/pipeline/calibration_monitor.h"
 #include "kestrel/vision/pipeline/camera_lag.h"
+#include "kestrel/vision/pipeline/camera_lens.h"
 #include "kestrel/vision/pipeline/camera_poses.h"
 #include "kestrel/vision/pipeline/camera_watch.h"
 #include "kestrel/vision/pipeline/input_contradictions.h"
@@ -73,6 +74,7 @@ class LandingPipeline::Impl {
 
   PoseStatus AddPose(const PoseSample& sample);
   PoseStatus AddGimbal(const GimbalSample& sample);
+  PoseStatus AddZoom(const ZoomSample& sample);
   void SetAltitude(std::optional<double> altitude_m) { altitude_m_ = altitude_m; }
   void LimitSearch(double max_search_ms) { max_search_ms_ = max_search_ms; }
   void ChangeOptions(const LandingPipelineOptions& options);
@@ -126,7 +128,10 @@ class LandingPipeline::Impl {
     Duration ahead;  // the first camera's clock minus that of this camera's images
     CameraLag lag;   // of the stamps, beside 'ahead'; none of the first camera, which is the clock
     StampLag stamp_lag;  // what its sightings alone say about the stamps; of several cameras
-    std::optional<RigidTransform> fixed_mount;  // camera from body
+    std::optional<CameraLens> zoom;                  // nothing: the lens is fixed
+    double view_rad = 0;                             // of the detector's lens, where it zooms
+    std::shared_ptr<const CameraModel> zoomed_lens;  // that lens; null until it is known
+    std::optional<RigidTransform> fixed_mount;       // camera from body
     bool is_track_trusted = true;  // the last detection was where the track predicted it
     std::optional<Sighting> last;
     int next_step = 0;  // step at which the search of the last frame ran out of time
@@ -138,6 +143,9 @@ class LandingPipeline::Impl {
   bool has_several() const { return eyes_.size() > 1; }
   bool IsUsed(std::size_t camera) const { return !has_several() || watch_.IsUsed(camera); }
   bool IsJudged(std::size_t camera) const { return !has_several() || watch_.IsJudged(camera); }
+  static void SetDetector(const CameraModel& camera, const LandingPipelineOptions& options,
+                          Eye* eye);
+  bool FollowZoom(const cv::Mat& image, Time time, Eye* eye) const;
   void Detect(const cv::Mat& image, Eye* eye, LandingObservation* observation) const;
   void LookForOthers(const cv::Mat& image, Eye* eye, LandingObservation* observation);
   GivenView GivenViewOf(const LandingObservation& observation) const;
@@ -178,7 +186,9 @@ LandingPipeline::Impl::Eye::Eye(const CameraCalibration& camera,
       poses(camera, LandingPipelineOptions::kPoseCapacity, DurationFromSeconds(options.pose_gap_s),
             Duration::zero(), DurationFromSeconds(options.pose_extrapolation_s)),
       ahead(ClockOffset(camera) - clock_offset),
-      fixed_mount(CameraFromBody(camera)) {}
+      fixed_mount(CameraFromBody(camera)) {
+  if (camera.zoom) zoom.emplace(camera, LandingPipelineOptions::kPoseCapacity);
+}
 
 LandingPipeline::Impl::Impl(std::span<const CameraCalibration> cameras,
                             std::vector<std::unique_ptr<const TargetDetector>> own_detectors,
@@ -193,6 +203,9 @@ LandingPipeline::Impl::Impl(std::span<const CameraCalibration> cameras,
                                           : MakeTargetDetector(CameraModel(cameras[i].intrinsics),
                                                                options.target, options.detector),
                        options, ClockOffset(cameras.front()));
+    if (are_detectors_own_ && cameras[i].zoom) {
+      throw InputError("a camera that zooms has a detector of its own, expected one by options");
+    }
     if (are_detectors_own_) continue;
     eyes_.back().others = OthersOf(eyes_.back().detector->camera(), options.target);
   }
@@ -202,11 +215,32 @@ void LandingPipeline::Impl::ChangeOptions(const LandingPipelineOptions& options)
   RequireValid(options);
   for (Eye& eye : eyes_) {
     if (are_detectors_own_) break;
-    eye.detector = MakeTargetDetector(eye.detector->camera(), options.target, options.detector);
-    eye.workspace = eye.detector->MakeWorkspace();
+    SetDetector(eye.detector->camera(), options, &eye);
     eye.others = OthersOf(eye.detector->camera(), options.target);
   }
   options_ = options;
+}
+
+void LandingPipeline::Impl::SetDetector(const CameraModel& camera,
+                                        const LandingPipelineOptions& options, Eye* eye) {
+  eye->detector = MakeTargetDetector(camera, options.target, options.detector);
+  eye->workspace = eye->detector->MakeWorkspace();
+}
+
+// Gives the detector the lens of this image; false where that moves or is not known.
+bool LandingPipeline::Impl::FollowZoom(const cv::Mat& image, Time time, Eye* eye) const {
+  constexpr double kSame = 0.005;  // of the view
+  const auto view_rad = eye->zoom->ViewAt(image, time);
+  if (!view_rad) return false;
+  if (std::abs(*view_rad - eye->view_rad) <= kSame * *view_rad) return true;
+  const auto lens = eye->zoom->LensOf(*view_rad);
+  if (!lens) return false;
+  eye->view_rad = *view_rad;
+  eye->zoomed_lens = std::make_shared<const CameraModel>(*lens);
+  SetDetector(*eye->zoomed_lens, options_, eye);
+  if (eye->others) eye->others = OthersOf(*eye->zoomed_lens, options_.target);
+  eye->calibration = CalibrationMonitor();
+  return true;
 }
 
 PoseStatus LandingPipeline::Impl::AddPose(const PoseSample& sample) {
@@ -219,6 +253,14 @@ PoseStatus LandingPipeline::Impl::AddPose(const PoseSample& sample) {
 PoseStatus LandingPipeline::Impl::AddGimbal(const GimbalSample& sample) {
   PoseStatus status{};
   for (Eye& eye : eyes_) status = eye.poses.Add(sample);
+  return status;
+}
+
+PoseStatus LandingPipeline::Impl::AddZoom(const ZoomSample& sample) {
+  PoseStatus status{};
+  for (Eye& eye : eyes_) {
+    if (eye.zoom) status = eye.zoom->Add(sample);
+  }
   return status;
 }
 
@@ -258,8 +300,14 @@ LandingObservation LandingPipeline::Impl::Process(const cv::Mat& image, Time tim
   }
   observation.pose = eye.poses.Check(time);
   if (has_several()) watch_.AddFrame(camera, image, observation.time);
-  Detect(image, &eye, &observation);
-  LookForOthers(image, &eye, &observation);
+  observation.is_zooming = eye.zoom && !FollowZoom(image, time, &eye);
+  if (observation.is_zooming) {
+    observation.report.reason = "the lens zooms, or its setting is not known";
+  } else {
+    observation.zoomed_lens = eye.zoomed_lens;
+    Detect(image, &eye, &observation);
+    LookForOthers(image, &eye, &observation);
+  }
   LocateInWorld(eye, &observation);
   if (options_.still) return observation;
   Track(&eye, &observation);
@@ -545,6 +593,7 @@ PoseStatus LandingPipeline::AddPose(const PoseSample& sample) { return impl_->Ad
 PoseStatus LandingPipeline::AddGimbal(const GimbalSample& sample) {
   return impl_->AddGimbal(sample);
 }
+PoseStatus LandingPipeline::AddZoom(const ZoomSample& sample) { return impl_->AddZoom(sample); }
 void LandingPipeline::SetAltitude(std::optional<double> altitude_m) {
   impl_->SetAltitude(altitude_m);
 }
