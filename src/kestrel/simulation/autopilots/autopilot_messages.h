@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 
+#include "kestrel/comms/mavlink/camera_messages.h"
 #include "kestrel/comms/mavlink/messages.h"
 #include "kestrel/comms/mavlink/packet.h"
 #include "kestrel/core/base/limits.h"
@@ -19,15 +20,14 @@
 namespace kestrel {
 
 // All messages that a simulated autopilot sends.
-using AutopilotMessage =
-    std::variant<mavlink::Heartbeat, mavlink::Attitude, mavlink::AttitudeQuaternion,
-                 mavlink::LocalPositionNed, mavlink::GlobalPositionInt, mavlink::GpsGlobalOrigin,
-                 mavlink::HomePosition, mavlink::SimState, mavlink::ExtendedSysState,
-                 mavlink::Timesync, mavlink::Statustext, mavlink::CurrentMode,
-                 mavlink::AutopilotVersion, mavlink::ParamValue, mavlink::CommandAck,
-                 mavlink::SysStatus, mavlink::EkfStatusReport, mavlink::EstimatorStatus,
-                 mavlink::RcChannels, mavlink::GimbalManagerInformation,
-                 mavlink::GimbalManagerStatus, mavlink::GimbalDeviceAttitudeStatus>;
+using AutopilotMessage = std::variant<
+    mavlink::Heartbeat, mavlink::Attitude, mavlink::AttitudeQuaternion, mavlink::LocalPositionNed,
+    mavlink::GlobalPositionInt, mavlink::GpsGlobalOrigin, mavlink::HomePosition, mavlink::SimState,
+    mavlink::ExtendedSysState, mavlink::Timesync, mavlink::Statustext, mavlink::CurrentMode,
+    mavlink::AutopilotVersion, mavlink::ParamValue, mavlink::CommandAck, mavlink::SysStatus,
+    mavlink::EkfStatusReport, mavlink::EstimatorStatus, mavlink::RcChannels,
+    mavlink::GimbalManagerInformation, mavlink::GimbalManagerStatus,
+    mavlink::GimbalDeviceAttitudeStatus, mavlink::CameraFovStatus>;
 
 // All messages that it handles.
 using CompanionMessage =
