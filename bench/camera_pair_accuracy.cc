@@ -38,6 +38,7 @@ namespace {
 using Settings = std::vector<std::string>;
 
 constexpr double kFaultAt_s = 2.5;
+constexpr Duration kPosesAhead = std::chrono::milliseconds(100);
 constexpr std::array kFaults = {"none", "dead", "frozen", "late", "mount"};
 constexpr std::array kExpected = {CameraHealth::kGood, CameraHealth::kSilent, CameraHealth::kFrozen,
                                   CameraHealth::kContradicts, CameraHealth::kContradicts};
@@ -99,7 +100,6 @@ struct Result {
 Result RunFlight(const Flight& flight, const RecordingPlan::Camera* second) {
   const std::size_t count = second == nullptr ? 1 : 2;
   LandingPipeline pipeline(std::span(flight.cameras()).first(count), {});
-  for (const PoseSample& pose : flight.poses()) pipeline.AddPose(pose);
   std::multimap<Time, std::pair<std::size_t, std::size_t>> images;  // by time of the first clock
   for (std::size_t i = 0; i < flight.plan().times.size(); ++i) {
     images.insert({flight.plan().times[i], {0, i}});
@@ -110,8 +110,12 @@ Result RunFlight(const Flight& flight, const RecordingPlan::Camera* second) {
   }
   Result result;
   std::optional<std::size_t> last;
+  auto pose = flight.poses().begin();
   for (const auto& [time, image] : images) {
     const auto [camera, index] = image;
+    // As they come in a flight: the pipeline keeps the latest ten seconds.
+    const Time needed = time + *flight.cameras()[0].clock_offset + kPosesAhead;
+    for (; pose != flight.poses().end() && pose->time < needed; ++pose) pipeline.AddPose(*pose);
     const auto before = pipeline.tracker().Predict(time);
     const LandingObservation seen =
         camera == 0 ? pipeline.Process(flight.Image(0, index), time, 0)

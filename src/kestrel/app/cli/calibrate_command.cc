@@ -86,6 +86,7 @@ void RunCalibrate(const CalibrateArguments& arguments, FlightCalibrationOptions 
   const MountAndClock given = GivenMountAndClock(
       calibration, arguments.camera.empty() ? arguments.recording : arguments.camera);
   const std::vector<PoseSample> poses = RequirePoses(*source, arguments.recording);
+  RequireOwnLens(calibration, source->zoom(), arguments.recording);
   FlightSightings flight(calibration.intrinsics, landing);
   CatchInterrupts();
   ProgressBar progress(source->frame_count());

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
@@ -17,6 +19,8 @@
 #include "kestrel/app/evaluation/lens_plots.h"
 #include "kestrel/calibration/lens/even_sample.h"
 #include "kestrel/calibration/lens/lens_calibration.h"
+#include "kestrel/core/camera/zoom_lens.h"
+#include "kestrel/core/geometry/angles.h"
 #include "kestrel/io/recording/euroc/calibration_output.h"
 #include "kestrel/io/recording/euroc/euroc_text.h"
 #include "kestrel/io/recording/output_folder.h"
@@ -43,6 +47,7 @@ struct LensArguments {
   std::string model;
   std::string board;
   OptionArguments options;
+  std::optional<double> zoom_deg;
   bool force = false;
 };
 
@@ -102,6 +107,27 @@ void WritePlots(const LensCalibration& lens, const OutputFolder& folder) {
   }
 }
 
+// Where to start from at a setting of the zoom: as the views have it, beside the file's own lens.
+CameraIntrinsics StartAt(const CameraCalibration& camera, double view_rad) {
+  const CameraIntrinsics& own = camera.intrinsics;
+  const auto lens = LensAt(ZoomLens{{{ViewOf(own), own}}, {}}, view_rad);
+  if (!lens) throw InputError(fmt::format("--zoom-deg {:g}: no field of view", Degrees(view_rad)));
+  return *lens;
+}
+
+// Replaces the setting of this view, or adds it.
+void SetSetting(const ZoomLens::Setting& setting, CameraCalibration* camera) {
+  constexpr double kSame = 0.01;
+  if (!camera->zoom) camera->zoom.emplace();
+  auto& settings = camera->zoom->settings;
+  std::erase_if(settings, [&](const ZoomLens::Setting& other) {
+    return std::abs(other.view_rad - setting.view_rad) <= kSame * setting.view_rad;
+  });
+  settings.push_back(setting);
+  std::sort(settings.begin(), settings.end(),
+            [](const auto& a, const auto& b) { return a.view_rad < b.view_rad; });
+}
+
 void RunLens(const LensArguments& arguments) {
   RequireFreeForCalibration(arguments.output, arguments.force);
   LensCalibrationOptions options;
@@ -112,6 +138,10 @@ void RunLens(const LensArguments& arguments) {
   if (!arguments.camera.empty()) {
     calibration = ReadCameraFile(arguments.camera);
     options.start = calibration.intrinsics;
+  }
+  if (arguments.zoom_deg) {
+    options.model = calibration.intrinsics.distortion_model;
+    options.start = StartAt(calibration, Radians(*arguments.zoom_deg));
   }
   CatchInterrupts();
   const LensSources sources = ReadSources(arguments.sources, arguments.bag);
@@ -124,7 +154,11 @@ void RunLens(const LensArguments& arguments) {
   }
   const LensCalibration lens = CalibrateLens(sources.images, options);
   PrintResult(lens, sources.images.size());
-  calibration.intrinsics = lens.intrinsics;
+  if (arguments.zoom_deg) {
+    SetSetting({Radians(*arguments.zoom_deg), lens.intrinsics}, &calibration);
+  } else {
+    calibration.intrinsics = lens.intrinsics;
+  }
   WriteCalibration(calibration, sources.rate_hz, arguments.output, arguments.force);
   if (!arguments.plots.empty()) WritePlots(lens, OutputFolder(arguments.plots, arguments.force));
 }
@@ -147,6 +181,13 @@ void AddCalibrateLensCommand(CLI::App* calibrate) {
       ->add_option("--camera", arguments->camera,
                    "Calibration to start from (default: several guesses are tried)")
       ->type_name("FILE");
+  CLI::Option* const camera = command->get_option("--camera");
+  command
+      ->add_option("--zoom-deg", arguments->zoom_deg,
+                   "The result is a setting of a camera that zooms, beside those in the file of "
+                   "--camera: the horizontal field of view that the camera reports there")
+      ->type_name("DEG")
+      ->needs(camera);
   command
       ->add_option("--model", arguments->model,
                    "Distortion model (default: the one that fits the views best)")

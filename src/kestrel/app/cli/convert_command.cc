@@ -80,6 +80,9 @@ void WarnOfLoss(const ConvertArguments& arguments, const RecordingHead& head) {
   if (is_bag && head.calibration && head.calibration->gimbal) {
     fmt::print(stderr, "kestrel: a bag cannot hold the gimbal: convert to a folder to keep it\n");
   }
+  if (is_bag && head.calibration && head.calibration->zoom) {
+    fmt::print(stderr, "kestrel: a bag cannot hold the zoom: convert to a folder to keep it\n");
+  }
   if ((!is_bag || arguments.for_foxglove) && head.has_motion) {
     fmt::print(stderr, "kestrel: {} velocities: they are left out\n",
                is_bag ? "Foxglove's poses cannot hold" : "a EuRoC folder cannot hold");
@@ -126,6 +129,7 @@ void RunConvert(const ConvertArguments& arguments) {
   }
   for (; pose != poses.end(); ++pose) recording->AddPose(*pose);
   recording->AddGimbal(source->gimbal());
+  recording->AddZoom(source->zoom());
   recording->Close();
   fmt::print(stderr, "{} frames, {} poses{}\n", frames, pose - poses.begin(),
              LeftOutInWords(*source));

@@ -175,6 +175,7 @@ class DoctorVisit {
       options.gimbal_device_id = gimbal->device_id;
       options.points_gimbal = true;
     }
+    if (const auto& zoom = source_.live.calibration.zoom) options.zoom_device_id = zoom->device_id;
     autopilot_.emplace(
         options, &*connection_,
         AutopilotListener{
@@ -183,6 +184,7 @@ class DoctorVisit {
             .event = [this](const AutopilotEvent& e) { examination_->TakeEvent(e); },
             .text = {},
             .gimbal = [this](const GimbalSample& report) { TakeGimbal(report); },
+            .zoom = [this](const ZoomSample& report) { examination_->TakeZoom(report); },
         });
   }
 

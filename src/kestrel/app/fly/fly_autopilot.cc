@@ -47,6 +47,8 @@ FlyAutopilot MakeFlyAutopilot(const std::string& name, const FlyOptions& options
   simulated.firmware = name.substr(kSimulated.size());
   simulated.signing_key = options.link.signing_key;
   simulated.model.has_gimbal = has_gimbal;
+  simulated.model.zoom = source->simulated.zoom();
+  simulated.model.zoomed_lens = source->simulated.lens();
   if (guides) PrepareGuidance(name, &simulated);
   const auto seed = static_cast<std::uint64_t>(options.sim_seed);
   const int port = FreeLoopbackPort();

@@ -169,10 +169,11 @@ std::vector<OverlayLayer> LandingLayers() {
 std::vector<OverlayShape> LandingShapes(const LandingView& view,
                                         const LandingObservation& observation) {
   std::vector<OverlayShape> shapes;
-  if (observation.target && observation.world_from_camera) {
+  const CameraModel& camera = observation.zoomed_lens ? *observation.zoomed_lens : view.camera;
+  if (observation.target && observation.world_from_camera && !observation.is_zooming) {
     std::string no_label;
     AddClosedLine(TrackEllipse(observation.target->motion),
-                  ByPose(view.camera, observation.world_from_camera->Inverse()),
+                  ByPose(camera, observation.world_from_camera->Inverse()),
                   OverlayLayer::kPrediction, &no_label, &shapes);
   }
   if (!observation.report.detection) return shapes;
@@ -183,10 +184,10 @@ std::vector<OverlayShape> LandingShapes(const LandingView& view,
                                         is_rejected ? ", far from the track" : "");
   const bool is_seen_elsewhere = found.diagnostics.is_misfit() && found.diagnostics.seen;
   if (is_seen_elsewhere) {
-    const PlaneWarp warp = found.diagnostics.seen->Warp(view.camera);
+    const PlaneWarp warp = found.diagnostics.seen->Warp(camera);
     AddOutlines(view.shape, AsSeen(warp), layer, label + ", as seen", &shapes);
   }
-  AddOutlines(view.shape, ByPose(view.camera, found.camera_from_target),
+  AddOutlines(view.shape, ByPose(camera, found.camera_from_target),
               is_seen_elsewhere ? OverlayLayer::kRejected : layer,
               is_seen_elsewhere
                   ? fmt::format("by the calibration: {:.1f} px beside", found.diagnostics.misfit_px)

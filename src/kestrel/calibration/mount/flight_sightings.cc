@@ -33,6 +33,20 @@ std::optional<FlownGimbal> FlownGimbalOf(const CameraCalibration& calibration,
                      ToSeconds(image_offset)};
 }
 
+void RequireOwnLens(const CameraCalibration& calibration, const std::vector<ZoomSample>& reports,
+                    const std::string& file) {
+  constexpr double kTolerance = 0.02;
+  if (!calibration.zoom) return;
+  const double own = calibration.intrinsics.fx_px;
+  for (const ZoomSample& report : reports) {
+    const auto lens = LensAt(*calibration.zoom, report.view_rad);
+    if (lens && std::abs(lens->fx_px - own) <= kTolerance * own) continue;
+    throw InputError(file +
+                     ": the lens zooms in it, expected a flight at the setting of the "
+                     "camera file's own lens");
+  }
+}
+
 void SetMountAndClock(const MountAndClock& estimate, CameraCalibration* calibration) {
   const Duration offset = DurationFromSeconds(estimate.clock_offset_s);
   if (auto& gimbal = calibration->gimbal) {

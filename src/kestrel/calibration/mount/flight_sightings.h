@@ -28,6 +28,11 @@ MountAndClock GivenMountAndClock(const CameraCalibration& calibration, const std
 std::optional<FlownGimbal> FlownGimbalOf(const CameraCalibration& calibration,
                                          std::vector<GimbalSample> reports,
                                          const std::string& file);
+// Throws InputError where the lens has zoomed: a flight is calibrated with the file's own lens.
+// 'reports': of the zoom that the calibration may have; 'file': of the flight.
+void RequireOwnLens(const CameraCalibration& calibration, const std::vector<ZoomSample>& reports,
+                    const std::string& file);
+
 // Replaces mount and clock of a calibration by an estimate.
 void SetMountAndClock(const MountAndClock& estimate, CameraCalibration* calibration);
 

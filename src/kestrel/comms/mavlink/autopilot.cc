@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/comms/mavlink/camera_messages.h"
 #include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/comms/mavlink/ned.h"
 #include "kestrel/core/base/options.h"
@@ -18,6 +19,7 @@ namespace {
 constexpr double kLandedRate_hz = 5;
 constexpr double kRangeRate_hz = 20;
 constexpr double kGimbalRate_hz = 50;
+constexpr double kZoomRate_hz = 10;
 constexpr double kGimbalControl_hz = 5;
 constexpr double kStatusRate_hz = 2;
 constexpr double kAcceleration_hz = 50;
@@ -61,6 +63,7 @@ Autopilot::Autopilot(const AutopilotOptions& options, Connection* connection,
       poses_(kPositionAge_s) {
   RequireValid(options);
   if (options.gimbal_device_id) gimbal_.emplace(*options.gimbal_device_id);
+  if (options.zoom_device_id) zoom_.emplace(*options.zoom_device_id);
 }
 
 bool Autopilot::is_armed() const { return IsArmed(heartbeat_); }
@@ -111,6 +114,7 @@ void Autopilot::Handle(const mavlink::Packet& packet, Time received) {
     return;
   }
   HandleGimbal(packet, received);
+  HandleZoom(packet, received);
   if (IsFromAutopilot(packet)) HandleFromAutopilot(packet, received);
 }
 
@@ -121,6 +125,15 @@ void Autopilot::HandleGimbal(const mavlink::Packet& packet, Time received) {
   if (!sample) return;
   if (packet.component != component_) streams_.Count(packet.id);
   if (listener_.gimbal) listener_.gimbal(*sample);
+}
+
+// A camera is behind the autopilot, or another component of the vehicle.
+void Autopilot::HandleZoom(const mavlink::Packet& packet, Time received) {
+  if (!zoom_ || system_ == 0 || packet.system != system_) return;
+  const auto sample = zoom_->Handle(packet, received, component_, clock_.sync());
+  if (!sample) return;
+  if (packet.component != component_) streams_.Count(packet.id);
+  if (listener_.zoom) listener_.zoom(*sample);
 }
 
 bool Autopilot::IsFromAutopilot(const mavlink::Packet& packet) {
@@ -433,6 +446,7 @@ void Autopilot::WantStreams() {
   // Not every vehicle has a range sensor.
   streams_.WantIfThere(mavlink::DistanceSensor::kId, kRangeRate_hz);
   if (gimbal_) streams_.WantIfThere(mavlink::GimbalDeviceAttitudeStatus::kId, kGimbalRate_hz);
+  if (zoom_) streams_.WantIfThere(mavlink::CameraFovStatus::kId, kZoomRate_hz);
   const bool is_px4 = kind_ == AutopilotKind::kPx4;
   if (options_.points_gimbal) {
     streams_.WantIfThere(mavlink::GimbalManagerStatus::kId, kGimbalControl_hz);

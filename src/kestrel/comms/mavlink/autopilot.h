@@ -20,6 +20,7 @@
 #include "kestrel/comms/mavlink/parameter_reader.h"
 #include "kestrel/comms/mavlink/parameter_writer.h"
 #include "kestrel/comms/mavlink/stream_requests.h"
+#include "kestrel/comms/mavlink/zoom_reports.h"
 #include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/poses/gimbal_history.h"
@@ -36,6 +37,7 @@ struct AutopilotOptions {
   double mode_rate_hz = 0;
   bool wants_true_pose = false;                        // which only simulated vehicles know
   std::optional<int> gimbal_device_id = std::nullopt;  // see GimbalReports; nothing: no gimbal
+  std::optional<int> zoom_device_id = std::nullopt;    // see ZoomReports; nothing: no zoom
   bool wants_acceleration = false;                     // that the accelerometer measures
   bool points_gimbal = false;                          // wants what GimbalManager needs
   bool poses_as_ground_station = false;
@@ -103,6 +105,7 @@ struct AutopilotListener {
   std::function<void(const AutopilotEvent&)> event;
   std::function<void(std::uint8_t severity, std::string_view text)> text;  // STATUSTEXT
   std::function<void(const GimbalSample&)> gimbal;                         // on the local clock
+  std::function<void(const ZoomSample&)> zoom;                             // on the local clock
   // Attitude and turn alone (place and velocity are 0), with or without a position.
   std::function<void(const PoseSample&)> attitude = {};
   // Acceleration that the accelerometer measures, in the body (FLU), m/s^2: with gravity's
@@ -194,6 +197,7 @@ class Autopilot {
   void ReportChange(const mavlink::Heartbeat& before);
   void HandleFromAutopilot(const mavlink::Packet& packet, Time received);
   void HandleGimbal(const mavlink::Packet& packet, Time received);
+  void HandleZoom(const mavlink::Packet& packet, Time received);
   bool HandlePose(const mavlink::Packet& packet, Time received);
   bool HandleTruePose(const mavlink::Packet& packet, Time received);
   bool HandleAcceleration(const mavlink::Packet& packet);
@@ -244,6 +248,7 @@ class Autopilot {
   AutopilotStatus status_;
   AutopilotPoses poses_;
   std::optional<GimbalReports> gimbal_;
+  std::optional<ZoomReports> zoom_;
   std::optional<Time> newest_pose_;
   StreamRequests streams_;
   CommandRequests commands_;

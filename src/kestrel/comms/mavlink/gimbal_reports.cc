@@ -18,8 +18,6 @@ using Eigen::AngleAxisd;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr int kLastBehindAutopilot = 6;  // last device id that names no component
-
 YawFrame YawFrameOf(std::uint16_t flags) {
   if ((flags & mavlink::kGimbalYawInVehicleFrame) != 0) return YawFrame::kVehicle;
   const std::uint16_t earth = mavlink::kGimbalYawInEarthFrame | mavlink::kGimbalYawLock;
@@ -78,7 +76,7 @@ std::optional<GimbalSample> GimbalReports::Handle(const mavlink::Packet& packet,
   int device_id = packet.component;
   if (const auto report = packet.As<mavlink::GimbalDeviceAttitudeStatus>()) {
     const int reported = report->gimbal_device_id;
-    if (reported > 0 && reported <= kLastBehindAutopilot) device_id = reported;
+    if (reported > 0 && reported <= mavlink::kLastDeviceBehindAutopilot) device_id = reported;
     has_new_reports_ = true;
     sample = GimbalSampleOf(*report);
     boot_ms = report->time_boot_ms;

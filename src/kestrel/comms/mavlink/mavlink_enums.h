@@ -41,6 +41,8 @@ inline constexpr std::uint16_t kGimbalPitchLock = 8;
 inline constexpr std::uint16_t kGimbalYawLock = 16;
 inline constexpr std::uint16_t kGimbalYawInVehicleFrame = 32;
 inline constexpr std::uint16_t kGimbalYawInEarthFrame = 64;
+// Gimbals and cameras up to this device id are behind the autopilot, the others are components.
+inline constexpr int kLastDeviceBehindAutopilot = 6;
 
 // CAMERA_CAP_FLAGS
 inline constexpr std::uint32_t kCameraHasStream = 256;

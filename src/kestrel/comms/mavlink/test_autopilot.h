@@ -36,6 +36,7 @@ class AutopilotTest : public testing::Test {
             .event = [this](const AutopilotEvent& event) { events_.push_back(event); },
             .text = [this](std::uint8_t, std::string_view text) { texts_.emplace_back(text); },
             .gimbal = [this](const GimbalSample& sample) { gimbal_.push_back(sample); },
+            .zoom = [this](const ZoomSample& sample) { zoom_.push_back(sample); },
             .attitude = [this](const PoseSample& pose) { attitudes_.push_back(pose); },
             .acceleration =
                 [this](Time, const Eigen::Vector3d& acceleration) {
@@ -146,6 +147,7 @@ class AutopilotTest : public testing::Test {
   std::vector<GimbalSample> gimbal_;
   std::vector<PoseSample> attitudes_;
   std::vector<Eigen::Vector3d> accelerations_;
+  std::vector<ZoomSample> zoom_;
   std::vector<AutopilotEvent> events_;
   std::vector<std::string> texts_;
 };

@@ -6,6 +6,7 @@
 
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/camera_model.h"
+#include "kestrel/core/camera/zoom_lens.h"
 #include "kestrel/core/geometry/rigid_transform.h"
 
 namespace kestrel {
@@ -23,8 +24,12 @@ struct CameraCalibration {
   CameraIntrinsics intrinsics;
   std::optional<RigidTransform> body_from_camera;  // the mount; of a gimbal's: level, looking ahead
   std::optional<GimbalMount> gimbal;               // where the mount moves
+  std::optional<ZoomLens> zoom;                    // where the lens changes
   std::optional<Duration> clock_offset;            // t_nav = t_image + clock_offset
   std::string name;                                // as in the file; empty when it has none
 };
+
+// Throws InputError where the lens changes, which 'task' ("a hunt") does not follow.
+void RequireFixedLens(const CameraCalibration& camera, const std::string& task);
 
 }  // namespace kestrel

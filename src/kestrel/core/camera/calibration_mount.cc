@@ -17,6 +17,7 @@
 
 #include "kestrel/core/base/load_yaml.h"
 #include "kestrel/core/base/read_file.h"
+#include "kestrel/core/geometry/angles.h"
 
 namespace kestrel {
 namespace {
@@ -121,17 +122,31 @@ double ClockOffsetOf(const CalibrationEntry& entry) {
   return offset_s;
 }
 
-// Returns the description of the gimbal: the map itself, or sensor.yaml of the folder that it
-// names, which stands beside the camera's folder.
-CalibrationEntry DescriptionOf(const CalibrationEntry& gimbal) {
-  if (gimbal.node().IsMap()) return gimbal;
-  const std::string name = gimbal.Text();
+// Returns the description of a gimbal or a zoom: the map itself, or sensor.yaml of the folder that
+// it names, which stands beside the camera's folder. 'example': such a name.
+CalibrationEntry DescriptionOf(const CalibrationEntry& entry, const char* example) {
+  if (entry.node().IsMap()) return entry;
+  const std::string name = entry.Text();
   if (name.empty() || name.find('/') != std::string::npos || name == "." || name == "..") {
-    gimbal.Fail(fmt::format("is '{}', expected the name of a folder, as gimbal0, or a map", name));
+    entry.Fail(
+        fmt::format("is '{}', expected the name of a folder, as {}, or a map", name, example));
   }
-  const std::filesystem::path camera_folder = std::filesystem::path(gimbal.file()).parent_path();
+  const std::filesystem::path camera_folder = std::filesystem::path(entry.file()).parent_path();
   const std::string file = (camera_folder / ".." / name / "sensor.yaml").lexically_normal();
   return {LoadYaml(ReadFile(file), file), file};
+}
+
+void SetClockAndDevice(const CalibrationEntry& description, Duration* clock_offset,
+                       int* device_id) {
+  if (const auto offset = description.Find({"time_offset_s"})) {
+    *clock_offset = DurationFromSeconds(ClockOffsetOf(*offset));
+  }
+  if (const auto id = description.Find({"device_id"})) {
+    *device_id = id->Integer();
+    if (*device_id < 0 || *device_id > kMaxDevice) {
+      id->Fail(fmt::format("is {}, expected 0 to {}", *device_id, kMaxDevice));
+    }
+  }
 }
 
 // A camera on a gimbal has T_GS, its place on the platform, in place of a mount on the body.
@@ -144,22 +159,66 @@ void SetGimbal(const CalibrationEntry& camera, CameraCalibration* calibration) {
   if (calibration->body_from_camera) {
     on_platform->Fail("stands beside a mount on the body, expected one of them");
   }
-  const CalibrationEntry description = DescriptionOf(*gimbal);
+  const CalibrationEntry description = DescriptionOf(*gimbal, "gimbal0");
   GimbalMount mount;
   mount.platform_from_camera = TransformOf(*on_platform);
   mount.body_from_pivot =
       TransformOf(description.Get({"T_BG"}, "the gimbal's platform, level and ahead, to body"));
-  if (const auto offset = description.Find({"time_offset_s"})) {
-    mount.clock_offset = DurationFromSeconds(ClockOffsetOf(*offset));
-  }
-  if (const auto id = description.Find({"device_id"})) {
-    mount.device_id = id->Integer();
-    if (mount.device_id < 0 || mount.device_id > kMaxDevice) {
-      id->Fail(fmt::format("is {}, expected 0 to {}", mount.device_id, kMaxDevice));
-    }
-  }
+  SetClockAndDevice(description, &mount.clock_offset, &mount.device_id);
   calibration->body_from_camera = mount.body_from_pivot * mount.platform_from_camera;
   calibration->gimbal = mount;
+}
+
+// One row of a zoom's table: the reported view, the focal lengths, the principal point, and the
+// coefficients of the camera's distortion model.
+ZoomLens::Setting SettingOf(const CalibrationEntry& table, const YAML::Node& row,
+                            const CameraIntrinsics& lens) {
+  const auto fail = [&] {
+    table.Fail(fmt::format(
+        "has a row that is no list of {} numbers, expected [hfov_deg, fu, fv, cu, cv{}]",
+        5 + lens.distortion.size(), lens.distortion.empty() ? "" : ", the coefficients"));
+  };
+  std::vector<double> numbers;
+  try {
+    numbers = row.as<std::vector<double>>();
+  } catch (const YAML::Exception&) {
+    fail();
+  }
+  if (numbers.size() != 5 + lens.distortion.size()) fail();
+  ZoomLens::Setting setting{Radians(numbers[0]), lens};
+  setting.lens.fx_px = numbers[1];
+  setting.lens.fy_px = numbers[2];
+  setting.lens.cx_px = numbers[3];
+  setting.lens.cy_px = numbers[4];
+  setting.lens.distortion.assign(numbers.begin() + 5, numbers.end());
+  const std::vector<std::string> violations = setting.lens.Validate();
+  if (!violations.empty()) table.Fail(fmt::format("has a row whose {}", violations.front()));
+  if (!(numbers[0] > 0 && numbers[0] < 360)) table.Fail("has a row whose hfov_deg is no angle");
+  return setting;
+}
+
+// Without a table the file's own lens is the only setting, at the view that it has.
+void SetZoom(const CalibrationEntry& camera, CameraCalibration* calibration) {
+  const auto entry = camera.Find({"zoom"});
+  if (!entry) return;
+  const CalibrationEntry description = DescriptionOf(*entry, "zoom0");
+  ZoomLens zoom;
+  SetClockAndDevice(description, &zoom.clock_offset, &zoom.device_id);
+  const CameraIntrinsics& lens = calibration->intrinsics;
+  if (const auto table = description.Find({"settings"})) {
+    if (!table->node().IsSequence()) table->Fail("is no list, expected a row for each setting");
+    for (const YAML::Node& row : table->node()) {
+      zoom.settings.push_back(SettingOf(*table, row, lens));
+    }
+    std::sort(zoom.settings.begin(), zoom.settings.end(),
+              [](const auto& a, const auto& b) { return a.view_rad < b.view_rad; });
+    const auto same = std::adjacent_find(
+        zoom.settings.begin(), zoom.settings.end(),
+        [](const auto& a, const auto& b) { return !(b.view_rad > 1.01 * a.view_rad); });
+    if (same != zoom.settings.end()) table->Fail("has two rows of one hfov_deg, expected one");
+  }
+  if (zoom.settings.empty()) zoom.settings.push_back({ViewOf(lens), lens});
+  calibration->zoom = zoom;
 }
 
 void SetMount(const CalibrationEntry& camera, CameraCalibration* calibration) {
@@ -179,6 +238,7 @@ void SetMount(const CalibrationEntry& camera, CameraCalibration* calibration) {
 void ReadMountAndClock(const CalibrationEntry& camera, CameraCalibration* calibration) {
   SetMount(camera, calibration);
   SetGimbal(camera, calibration);
+  SetZoom(camera, calibration);
   // Kalibr, VINS (the same sign), and the cameras of a recording with several of them.
   const auto shift = camera.Find({"timeshift_cam_imu", "td", "time_offset_s"});
   if (shift) calibration->clock_offset = DurationFromSeconds(ClockOffsetOf(*shift));

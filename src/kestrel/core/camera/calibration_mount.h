@@ -6,8 +6,8 @@
 
 namespace kestrel {
 
-// Sets mount and clock offset from the keys of 'camera' that hold them. Throws InputError as
-// ReadCalibration does.
+// Sets mount, zoom and clock offset from the keys of 'camera' that hold them; 'calibration' has its
+// lens. Throws InputError as ReadCalibration does.
 void ReadMountAndClock(const CalibrationEntry& camera, CameraCalibration* calibration);
 
 }  // namespace kestrel

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/core/camera/calibration_mount.h"
 
+#include <cmath>
+
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,6 +10,8 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/load_yaml.h"
 #include "kestrel/core/base/test_folder.h"
+#include "kestrel/core/camera/calibration_reader.h"
+#include "kestrel/core/geometry/angles.h"
 
 namespace kestrel {
 namespace {
@@ -94,6 +98,54 @@ TEST(CalibrationMount, RefusesIncompleteGimbals) {
               HasSubstr("stands beside a mount on the body"));
   EXPECT_THAT(error_of(fmt::format("T_GS: {0}\ngimbal: {{T_BG: {0}, device_id: 300}}\n", kPivot)),
               HasSubstr("is 300, expected 0 to 255"));
+}
+
+// 'keys' beside a pinhole of 640x480 px with k1, k2, p1, p2.
+CameraCalibration ReadZoom(const std::string& keys) {
+  return ParseCalibration(
+      "resolution: [640, 480]\nintrinsics: [560, 560, 320, 240]\n"
+      "distortion_model: radtan\ndistortion_coefficients: [0, 0, 0, 0]\n" +
+          keys,
+      "lens.yaml");
+}
+
+TEST(CalibrationMount, ReadsTableOfZoom) {
+  const CameraCalibration read = ReadZoom(
+      "zoom:\n  time_offset_s: -0.1\n  device_id: 100\n  settings:\n"
+      "  - [60, 560, 561, 320, 240, -0.1, 0, 0, 0]\n"
+      "  - [20, 1800, 1801, 321, 241, 0.1, 0, 0, 0]\n");
+  ASSERT_TRUE(read.zoom);
+  EXPECT_EQ(read.zoom->clock_offset, DurationFromSeconds(-0.1));
+  EXPECT_EQ(read.zoom->device_id, 100);
+  ASSERT_EQ(read.zoom->settings.size(), 2u);
+  EXPECT_NEAR(read.zoom->settings[0].view_rad, Radians(20), 1e-9);
+  EXPECT_EQ(read.zoom->settings[0].lens.fy_px, 1801);
+  EXPECT_EQ(read.zoom->settings[1].lens.distortion[0], -0.1);
+  EXPECT_EQ(read.zoom->settings[1].lens.width_px, 640);
+}
+
+TEST(CalibrationMount, ZoomWithoutTableHasOwnLens) {
+  const CameraCalibration read = ReadZoom("zoom: {}\n");
+  ASSERT_TRUE(read.zoom);
+  ASSERT_EQ(read.zoom->settings.size(), 1u);
+  EXPECT_NEAR(read.zoom->settings[0].view_rad, 2 * std::atan(320.0 / 560), 1e-9);
+  EXPECT_FALSE(ReadZoom("").zoom);
+}
+
+TEST(CalibrationMount, RefusesBadTablesOfZoom) {
+  const auto error_of = [](const std::string& settings) {
+    return InputErrorOf([&] { ReadZoom("zoom:\n  settings: " + settings + "\n"); });
+  };
+  EXPECT_THAT(error_of("wide"), HasSubstr("is no list"));
+  EXPECT_THAT(error_of("[[60, 560, 560, 320, 240]]"), HasSubstr("expected [hfov_deg, fu, fv"));
+  EXPECT_THAT(error_of("[[x, 560, 560, 320, 240, 0, 0, 0, 0]]"), HasSubstr("list of 9 numbers"));
+  EXPECT_THAT(error_of("[[60, -560, 560, 320, 240, 0, 0, 0, 0]]"), HasSubstr("a row whose"));
+  EXPECT_THAT(error_of("[[-60, 560, 560, 320, 240, 0, 0, 0, 0]]"), HasSubstr("no angle"));
+  EXPECT_THAT(error_of("[[60, 560, 560, 320, 240, 0, 0, 0, 0], "
+                       "[60, 570, 560, 320, 240, 0, 0, 0, 0]]"),
+              HasSubstr("two rows"));
+  EXPECT_THAT(InputErrorOf([] { ReadZoom("zoom: ../zoom0\n"); }),
+              HasSubstr("expected the name of a folder, as zoom0"));
 }
 
 TEST(CalibrationMount, RefusesContradictoryMounts) {

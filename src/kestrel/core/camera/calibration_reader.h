@@ -26,7 +26,9 @@ namespace kestrel {
 // or extrinsicRotation with extrinsicTranslation, and the clock offset from timeshift_cam_imu, td
 // or time_offset_s (s, t_imu = t_cam + shift). A camera on a gimbal has T_GS (platform_from_camera)
 // and 'gimbal': a map with T_BG (body_from_pivot), time_offset_s and device_id, or the name of the
-// folder whose sensor.yaml has these. 'notify' is called with the keys that are not known, a line
+// folder whose sensor.yaml has these. A camera that zooms has 'zoom', in the same two forms, with
+// settings (rows of hfov_deg, fu, fv, cu, cv and the coefficients), time_offset_s and device_id.
+// 'notify' is called with the keys that are not known, a line
 // for the user.
 //
 // Throws InputError with file, line, key and what was expected: file missing, not YAML or

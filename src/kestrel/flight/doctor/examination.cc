@@ -17,6 +17,7 @@
 #include "kestrel/flight/doctor/mount_checks.h"
 #include "kestrel/flight/doctor/parameter_checks.h"
 #include "kestrel/flight/doctor/statistics.h"
+#include "kestrel/flight/doctor/zoom_checks.h"
 
 namespace kestrel {
 namespace {
@@ -86,6 +87,10 @@ void Examination::Capture() {
       events_.Push(*report);
       continue;
     }
+    if (const auto* report = std::get_if<ZoomSample>(&*event)) {
+      events_.Push(*report);
+      continue;
+    }
     auto& frame = std::get<Frame>(*event);
     frames_.push_back({frame.time, Now()});
     width_px_ = frame.image.cols;
@@ -104,6 +109,8 @@ void Examination::See() {
       poses_.Add(*pose);
     } else if (const auto* report = std::get_if<GimbalSample>(&event)) {
       pipeline_->AddGimbal(*report);
+    } else if (const auto* report = std::get_if<ZoomSample>(&event)) {
+      pipeline_->AddZoom(*report);
     } else {
       Look(std::get<Frame>(event));
     }
@@ -166,6 +173,12 @@ void Examination::TakeGimbal(const GimbalSample& report) {
   events_.Push(report);
   gimbal_reports_ += listening_ ? 1 : 0;
   if (world_from_body_ && gimbal_.size() < kMost) gimbal_.push_back({report, *world_from_body_});
+}
+
+void Examination::TakeZoom(const ZoomSample& report) {
+  events_.Push(report);
+  zoom_reports_ += listening_ ? 1 : 0;
+  view_rad_ = report.view_rad;
 }
 
 void Examination::WantParameters() {
@@ -252,6 +265,8 @@ void Examination::SummarizeLink(Time end, LinkObservations* link) const {
   link->attitudes = attitudes_;
   link->positions = positions_;
   if (parts_.calibration.gimbal) link->gimbal_reports = gimbal_reports_;
+  link->zoom_reports = zoom_reports_;
+  link->view_rad = view_rad_;
   link->attitude_age_s = ToSeconds(end - attitude_time_);
   link->position_age_s = ToSeconds(end - position_time_);
   link->has_good_position = autopilot.is_position_good(end);
@@ -309,6 +324,7 @@ std::vector<Finding> Check(const DoctorObservations& observations) {
   add(CheckMount(observations));
   add(CheckLink(observations.link, observations.use));
   add(CheckGimbal(observations));
+  if (observations.calibration.zoom) add({CheckZoom(observations)});
   add(CheckParameters(observations));
   add(CheckComputer(observations));
   return findings;

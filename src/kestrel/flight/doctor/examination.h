@@ -41,6 +41,7 @@ class Examination {
   // calls Run.
   void TakePose(const PoseSample& pose);
   void TakeGimbal(const GimbalSample& report);
+  void TakeZoom(const ZoomSample& report);
   // Takes an event from the autopilot's listener. Called by the same thread.
   void TakeEvent(const AutopilotEvent& event);
 
@@ -86,6 +87,8 @@ class Examination {
   bool is_one_way_ = false;  // TIMESYNC is not answered
   int attitudes_ = 0;
   int gimbal_reports_ = 0;
+  int zoom_reports_ = 0;
+  std::optional<double> view_rad_;        // the newest of these
   std::optional<GimbalManager> manager_;  // of the camera's gimbal; it takes no control
   std::vector<GimbalObservation> gimbal_;
   std::optional<Eigen::Quaterniond> world_from_body_;  // by the newest pose

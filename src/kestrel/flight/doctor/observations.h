@@ -105,6 +105,8 @@ struct LinkObservations {
   int attitudes = 0;      // messages in that time
   int positions = 0;
   std::optional<int> gimbal_reports;  // in that time; nothing: the camera is on no gimbal
+  int zoom_reports = 0;               // in that time
+  std::optional<double> view_rad;     // the newest one of these
   double attitude_age_s = 0;          // age of the newest attitude at the end
   double position_age_s = 0;
   std::optional<bool> has_good_position;  // according to the autopilot's own estimator

@@ -189,6 +189,7 @@ void FlightProgram::Take(Event event) {
     return TakePose(*pose);
   }
   if (const auto* report = std::get_if<GimbalSample>(&event)) return TakeGimbal(*report);
+  if (const auto* report = std::get_if<ZoomSample>(&event)) return TakeZoom(*report);
   auto& frame = std::get<Frame>(event);
   arrival_ = Now() - frame.time;
   latency_.step(kArrival).Add(arrival_);
@@ -207,6 +208,11 @@ void FlightProgram::TakePose(const PoseSample& pose) {
 void FlightProgram::TakeGimbal(const GimbalSample& report) {
   events_.Push(report);
   if (const auto recorder = Recorder()) recorder->AddGimbal(report);
+}
+
+void FlightProgram::TakeZoom(const ZoomSample& report) {
+  events_.Push(report);
+  if (const auto recorder = Recorder()) recorder->AddZoom(report);
 }
 
 // --- The vision thread ---
@@ -228,6 +234,10 @@ void FlightProgram::See() {
     }
     if (const auto* report = std::get_if<GimbalSample>(&event)) {
       parts_.vision->AddGimbal(*report);
+      continue;
+    }
+    if (const auto* report = std::get_if<ZoomSample>(&event)) {
+      parts_.vision->AddZoom(*report);
       continue;
     }
     const auto& frame = std::get<Frame>(event);

@@ -113,6 +113,8 @@ class FlightProgram {
   void TakeAutopilotAcceleration(Time time, const Eigen::Vector3d& acceleration);
   // Takes a report of the gimbal by the autopilot, as above.
   void TakeAutopilotGimbal(const GimbalSample& report);
+  // Takes a report of the camera's zoom, in the same way.
+  void TakeZoom(const ZoomSample& report);
 
  private:
   // The steps whose latency is measured.

@@ -22,6 +22,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kRecords = 4096;  // several seconds of any autopilot
 constexpr double kPoseRate_hz = 50;     // as requested from the autopilot
 constexpr double kGimbalRate_hz = 50;   // requested; the rows have their own times
+constexpr double kZoomRate_hz = 10;     // as above
 
 void RequireDone(const std::error_code& error, const fs::path& folder) {
   if (!error) return;
@@ -64,6 +65,7 @@ FlightRecorder::FlightRecorder(const fs::path& folder, bool replace,
       notify_(std::move(notify)),
       utc_offset_(UtcOffset()),
       gimbal_(calibration.gimbal),
+      zoom_(calibration.zoom),
       writer_(Emptied(folder_), kEurocTables, 1 + further.size()),
       images_(static_cast<std::size_t>(options.queue_frames)),
       records_(kRecords),
@@ -74,6 +76,7 @@ FlightRecorder::FlightRecorder(const fs::path& folder, bool replace,
     writer_.WriteCamera(further[i], rate_hz, i + 1);
   }
   writer_.WritePoseSensor(kPoseRate_hz);
+  if (zoom_) writer_.WriteZoomSensor(*zoom_, kZoomRate_hz);
   write_thread_ = std::thread([this] { RunWriter(); });
   commit_thread_ = std::thread([this] { RunCommitter(); });
 }
@@ -110,6 +113,10 @@ void FlightRecorder::AddPose(const PoseSample& pose) {
 }
 
 void FlightRecorder::AddGimbal(const GimbalSample& report) {
+  if (records_.Push(report)) lost_count_.fetch_add(1, std::memory_order_relaxed);
+}
+
+void FlightRecorder::AddZoom(const ZoomSample& report) {
   if (records_.Push(report)) lost_count_.fetch_add(1, std::memory_order_relaxed);
 }
 
@@ -241,6 +248,10 @@ void FlightRecorder::WriteRecord(const GimbalSample& report) {
     writer_.WriteGimbalSensor(*gimbal_, *yaw_frame_, kGimbalRate_hz);
   }
   if (report.yaw_frame == *yaw_frame_) writer_.AddGimbal(report);
+}
+
+void FlightRecorder::WriteRecord(const ZoomSample& report) {
+  if (zoom_ && IsNext(kZoom, report.time)) writer_.AddZoom(report);
 }
 
 void FlightRecorder::WriteRecord(const TruePose& truth) {

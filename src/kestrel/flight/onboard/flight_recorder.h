@@ -92,6 +92,7 @@ class FlightRecorder {
   void AddFrame(const Frame& frame, const std::optional<TruePattern>& truth = std::nullopt);
   void AddPose(const PoseSample& pose);
   void AddGimbal(const GimbalSample& report);
+  void AddZoom(const ZoomSample& report);
   void AddTruePose(const PoseSample& pose);
   void AddExposure(Time from, double exposure_s);
   // Takes a MAVLink packet as it was on the wire; longer ones than 280 bytes are left out.
@@ -103,7 +104,7 @@ class FlightRecorder {
 
  private:
   // Kinds of records; those of one kind, and of one camera, must come in order of time.
-  enum Kind : std::size_t { kExposures, kPoses, kGimbal, kTruePoses, kKindCount };
+  enum Kind : std::size_t { kExposures, kPoses, kGimbal, kZoom, kTruePoses, kKindCount };
   struct RecordedImage {
     Frame frame;
     std::optional<TruePattern> truth;
@@ -126,7 +127,8 @@ class FlightRecorder {
     std::size_t size;
     std::array<std::uint8_t, kMaxSize> bytes;
   };
-  using Record = std::variant<PoseSample, GimbalSample, TruePose, Exposure, Dropped, Packet>;
+  using Record =
+      std::variant<PoseSample, GimbalSample, ZoomSample, TruePose, Exposure, Dropped, Packet>;
 
   void RunWriter();
   void RunCommitter();
@@ -144,6 +146,7 @@ class FlightRecorder {
   bool IsNext(Kind kind, Time time) { return IsNext(time, &last_times_[kind]); }
   void WriteRecord(const PoseSample& pose);
   void WriteRecord(const GimbalSample& report);
+  void WriteRecord(const ZoomSample& report);
   void WriteRecord(const TruePose& truth);
   void WriteRecord(const Exposure& exposure);
   void WriteRecord(const Dropped& dropped);
@@ -156,6 +159,7 @@ class FlightRecorder {
   std::optional<JpegEncoder> jpeg_encoder_;  // for images that are not PNG
   Duration utc_offset_;                      // UTC minus Now()
   std::optional<GimbalMount> gimbal_;        // of the calibration
+  std::optional<ZoomLens> zoom_;             // of the calibration
   EurocWriter writer_;
   BoundedQueue<RecordedImage> images_;
   BoundedQueue<Record> records_;

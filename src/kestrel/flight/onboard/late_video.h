@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "kestrel/calibration/mount/image_turn.h"
 #include "kestrel/calibration/mount/video_delay.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/flight/session/live_source.h"
+#include "kestrel/vision/pipeline/image_turn.h"
 
 namespace kestrel {
 

@@ -124,6 +124,7 @@ class Flight : public LiveSession {
   }
   void TakePose(const PoseSample& pose);
   void TakeGimbal(const GimbalSample& report);
+  void TakeZoom(const ZoomSample& report) { program_->TakeZoom(report); }
   void TakeTruePose(const PoseSample& pose);
 
   const OpenedLiveSource& live_;
@@ -279,6 +280,7 @@ AutopilotOptions Flight::WantedOfAutopilot() const {
     wanted.gimbal_device_id = gimbal->device_id;
     wanted.points_gimbal = Points();
   }
+  if (const auto& zoom = live_.calibration.zoom) wanted.zoom_device_id = zoom->device_id;
   return wanted;
 }
 
@@ -303,6 +305,7 @@ void Flight::OpenAutopilot() {
                                Notify(WordsOfAutopilot(text), LevelOf(severity));
                              },
                          .gimbal = [this](const GimbalSample& report) { TakeGimbal(report); },
+                         .zoom = [this](const ZoomSample& report) { TakeZoom(report); },
                          .attitude =
                              [this](const PoseSample& pose) {
                                if (program_) program_->TakeAutopilotAttitude(pose);

@@ -35,6 +35,8 @@ void RealtimeReplay::Begin() {
   poses_ = source_->poses();
   gimbal_ = source_->gimbal();
   next_gimbal_ = 0;
+  zoom_ = source_->zoom();
+  next_zoom_ = 0;
   if (!ReadFrame()) return;
   const auto is_early = [this](const PoseSample& pose) {
     return pose.time - clock_offset_ < OnFirstClock(*frame_) - kPosesAhead;
@@ -61,7 +63,9 @@ std::optional<Event> RealtimeReplay::Next(Duration timeout) {
   const Time now = Now();
   if (!std::exchange(is_started_, true)) shift_ = now + kPosesAhead - OnFirstClock(*frame_);
   const Time due = IsPoseNext() ? DueOf(poses_[next_pose_]) : DueOf(*frame_);
-  if (IsGimbalNext(std::min(due, now))) return TakeGimbal();
+  const Time first = std::min(due, now);
+  if (IsReportNext(gimbal_, next_gimbal_, first)) return TakeReport(gimbal_, &next_gimbal_);
+  if (IsReportNext(zoom_, next_zoom_, first)) return TakeReport(zoom_, &next_zoom_);
   if (due > now + timeout) {
     std::this_thread::sleep_for(timeout);
     return std::nullopt;
@@ -82,12 +86,15 @@ bool RealtimeReplay::IsPoseNext() const {
   return !has_pose_after && due <= *last_frame_ + DurationFromSeconds(1 / source_->rate_hz());
 }
 
-bool RealtimeReplay::IsGimbalNext(Time due) const {
-  return next_gimbal_ < gimbal_.size() && DueOf(gimbal_[next_gimbal_]) <= due;
+template <class Report>
+bool RealtimeReplay::IsReportNext(const std::vector<Report>& reports, std::size_t next,
+                                  Time due) const {
+  return next < reports.size() && DueOf(reports[next]) <= due;
 }
 
-Event RealtimeReplay::TakeGimbal() {
-  GimbalSample report = gimbal_[next_gimbal_++];
+template <class Report>
+Event RealtimeReplay::TakeReport(const std::vector<Report>& reports, std::size_t* next) const {
+  Report report = reports[(*next)++];
   report.time += shift_;
   return report;
 }

@@ -41,11 +41,14 @@ class RealtimeReplay : public LiveSource {
   Time DueOf(const Frame& frame) const { return OnFirstClock(frame) + shift_; }
   Time DueOf(const PoseSample& pose) const { return pose.time - clock_offset_ + shift_; }
   Time DueOf(const GimbalSample& report) const { return report.time - clock_offset_ + shift_; }
+  Time DueOf(const ZoomSample& report) const { return report.time - clock_offset_ + shift_; }
   bool IsPoseNext() const;
-  bool IsGimbalNext(Time due) const;
+  template <class Report>
+  bool IsReportNext(const std::vector<Report>& reports, std::size_t next, Time due) const;
   bool IsRoundOver() const { return !frame_ && !IsPoseNext(); }
   std::optional<Event> TakePose();
-  Event TakeGimbal();
+  template <class Report>
+  Event TakeReport(const std::vector<Report>& reports, std::size_t* next) const;
   Event TakeFrame();
   void BeginAgainOrEnd();
   template <class Step>
@@ -60,6 +63,8 @@ class RealtimeReplay : public LiveSource {
   std::size_t next_pose_ = 0;
   std::vector<GimbalSample> gimbal_;
   std::size_t next_gimbal_ = 0;
+  std::vector<ZoomSample> zoom_;
+  std::size_t next_zoom_ = 0;
   std::optional<Frame> frame_;      // the next one; nothing after the last
   std::optional<Time> last_frame_;  // times last given out, of a frame and of a pose
   std::optional<Time> last_pose_;

@@ -95,6 +95,7 @@ bool RecordedSession::RunToEnd(const std::function<bool()>& is_stopped) {
     if (std::holds_alternative<EndOfStream>(event)) return true;
     if (const auto* pose = std::get_if<PoseSample>(&event)) mutable_vision().AddPose(*pose);
     if (const auto* report = std::get_if<GimbalSample>(&event)) mutable_vision().AddGimbal(*report);
+    if (const auto* report = std::get_if<ZoomSample>(&event)) mutable_vision().AddZoom(*report);
     const auto* frame = std::get_if<Frame>(&event);
     if (frame == nullptr) continue;
     if (is_stopped()) return false;

@@ -50,6 +50,7 @@ class LandingVision : public Vision {
 
   void AddPose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
   void AddGimbal(const GimbalSample& sample) override { pipeline_.AddGimbal(sample); }
+  void AddZoom(const ZoomSample& sample) override { pipeline_.AddZoom(sample); }
   Duration pose_lead() const override { return pose_lead_; }
   Observation Process(const Frame& frame) override;
   TrackSnapshot snapshot() const override { return snapshot_; }
@@ -99,6 +100,7 @@ class LandingVision : public Vision {
   std::vector<std::string> faults_;  // of the cameras, in words
   TrackSnapshot snapshot_;
   std::map<PoseLookup, std::size_t> poses_;
+  std::size_t zooming_ = 0;  // frames that were not searched therefore
 };
 
 LandingVision::LandingVision(const SessionCamera& camera, const LandingPipelineOptions& options,
@@ -124,6 +126,7 @@ Observation LandingVision::Process(const Frame& frame) {
   LandingObservation seen = pipeline_.Process(frame.image, frame.time, frame.camera);
   if (cameras_.size() > 1) Watch(seen);
   ++poses_[seen.pose];
+  zooming_ += seen.is_zooming;
   ++snapshot_.frames;
   snapshot_.detections += seen.report.detection.has_value();
   snapshot_.other_tag = seen.other_tag;
@@ -225,8 +228,9 @@ ObservationPainter LandingVision::MakePainter() const {
   const TargetDetector& detector = pipeline_.detector(0);
   return [camera = detector.camera(), shape = detector.shape()](const Observation& observation) {
     const Frame& frame = observation.frame;
-    return DrawLandingOverlay(frame.color.empty() ? frame.image : frame.color, camera, shape,
-                              std::get<LandingObservation>(observation.seen));
+    const auto& seen = std::get<LandingObservation>(observation.seen);
+    return DrawLandingOverlay(frame.color.empty() ? frame.image : frame.color,
+                              seen.zoomed_lens ? *seen.zoomed_lens : camera, shape, seen);
   };
 }
 
@@ -306,6 +310,11 @@ std::string LandingVision::Remarks() const {
   if (!is_lens_unknown_) remarks = LensWarning();
   if (!remarks.empty()) remarks += "\n";
   for (const std::string& fault : faults_) remarks += fault + "\n";
+  if (zooming_ > 0) {
+    remarks += fmt::format(
+        "{} frames left out: the lens zoomed, or no report of its view held (docs/mounts.md)\n",
+        zooming_);
+  }
   // Only where there are poses for some of the frames; a source without any is not unusual.
   for (const auto& [pose, count] : poses_) {
     if (pose == PoseLookup::kFound || pose == PoseLookup::kEmpty ||

@@ -80,6 +80,14 @@ void LiveEvents::Push(const GimbalSample& report) {
   changed_.notify_one();
 }
 
+void LiveEvents::Push(const ZoomSample& report) {
+  {
+    const std::lock_guard lock(mutex_);
+    Queue(report);
+  }
+  changed_.notify_one();
+}
+
 void LiveEvents::Queue(const Event& sample) {
   if (sample_count_ == samples_.size()) {
     first_sample_ = (first_sample_ + 1) % samples_.size();

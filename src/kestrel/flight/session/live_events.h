@@ -39,6 +39,7 @@ class LiveEvents : public EventSource {
   void Push(Frame frame);
   void Push(const PoseSample& pose);
   void Push(const GimbalSample& report);  // no frame waits for it
+  void Push(const ZoomSample& report);    // nor for this one
   // Ends the stream: Next returns EndOfStream and waits no more.
   void Close();
 
@@ -71,7 +72,7 @@ class LiveEvents : public EventSource {
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::vector<Event> samples_;  // poses and reports of the gimbal; a ring
+  std::vector<Event> samples_;  // poses and reports; a ring
   std::size_t first_sample_ = 0;
   std::size_t sample_count_ = 0;
   std::optional<Time> newest_pose_;  // that was put in

@@ -13,6 +13,7 @@
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/poses/gimbal_history.h"
 #include "kestrel/core/poses/pose_history.h"
+#include "kestrel/core/poses/zoom_history.h"
 #include "kestrel/flight/session/observation.h"
 #include "kestrel/flight/session/observation_sink.h"
 #include "kestrel/flight/session/result_files.h"
@@ -35,6 +36,8 @@ class Vision {
   virtual void AddPose(const PoseSample& pose) = 0;
   // Takes a report of the gimbal on which the camera is.
   virtual void AddGimbal(const GimbalSample& sample) = 0;
+  // Takes a report of the camera's zoom. Only the landing task sees through a lens that changes.
+  virtual void AddZoom(const ZoomSample& /*sample*/) {}
 
   // Returns how long after a frame's time, on the clock of the navigation, the newest pose may lie
   // that the frame needs: it is processed once poses reach that far.

@@ -149,6 +149,7 @@ std::vector<EurocTable> TablesOf(const RecordingHead& head) {
   std::vector<EurocTable> tables{EurocTable::kImages};
   if (head.has_poses) tables.push_back(EurocTable::kPoses);
   if (head.calibration && head.calibration->gimbal) tables.push_back(EurocTable::kGimbal);
+  if (head.calibration && head.calibration->zoom) tables.push_back(EurocTable::kZoom);
   return tables;
 }
 
@@ -159,7 +160,8 @@ class EurocSink : public RecordingSink {
       : place_(PlaceOfRecording(path)),
         part_(BeginRecording(path, replace)),
         writer_(part_, TablesOf(head)),
-        gimbal_(head.calibration ? head.calibration->gimbal : std::nullopt) {
+        gimbal_(head.calibration ? head.calibration->gimbal : std::nullopt),
+        zoom_(head.calibration ? head.calibration->zoom : std::nullopt) {
     if (head.calibration) writer_.WriteCamera(*head.calibration, head.rate_hz);
   }
   ~EurocSink() override {
@@ -186,6 +188,15 @@ class EurocSink : public RecordingSink {
     writer_.CommitMany();
   }
 
+  void AddZoom(const std::vector<ZoomSample>& reports) override {
+    if (!zoom_ || reports.empty()) return;
+    const double span_s = ToSeconds(reports.back().time - reports.front().time);
+    writer_.WriteZoomSensor(*zoom_,
+                            span_s > 0 ? static_cast<double>(reports.size() - 1) / span_s : 0);
+    for (const ZoomSample& report : reports) writer_.AddZoom(report);
+    writer_.CommitMany();
+  }
+
   void AddFrame(const Frame& frame) override {
     writer_.WriteImage(frame.time, "png", EncodePng(Smallest(frame.image)));
     writer_.ListImage(frame.time, "png");
@@ -204,6 +215,7 @@ class EurocSink : public RecordingSink {
   fs::path part_;
   EurocWriter writer_;
   std::optional<GimbalMount> gimbal_;
+  std::optional<ZoomLens> zoom_;
   std::optional<Time> first_pose_;
   Time last_pose_;
   std::size_t pose_count_ = 0;

@@ -10,6 +10,7 @@
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/core/poses/gimbal_history.h"
 #include "kestrel/core/poses/pose_history.h"
+#include "kestrel/core/poses/zoom_history.h"
 #include "kestrel/io/bags/decompression.h"
 #include "kestrel/io/recording/frame.h"
 
@@ -25,8 +26,9 @@ class RecordingSink {
   // channels are equal.
   virtual void AddPose(const PoseSample& pose) = 0;
   virtual void AddFrame(const Frame& frame) = 0;
-  // Reports of the gimbal have a place in folders only.
+  // Reports of the gimbal and of the zoom have a place in folders only.
   virtual void AddGimbal(const std::vector<GimbalSample>& /*reports*/) {}
+  virtual void AddZoom(const std::vector<ZoomSample>& /*reports*/) {}
 
   // Completes the recording; nothing can be written after it.
   virtual void Close() = 0;

@@ -7,7 +7,11 @@
 namespace kestrel {
 
 RecordingEvents::RecordingEvents(FrameSource* source, std::vector<PoseSample> poses, Duration lead)
-    : source_(source), poses_(std::move(poses)), lead_(lead), gimbal_(source->gimbal()) {}
+    : source_(source),
+      poses_(std::move(poses)),
+      lead_(lead),
+      gimbal_(source->gimbal()),
+      zoom_(source->zoom()) {}
 
 Event RecordingEvents::Next() {
   if (!frame_) {
@@ -16,14 +20,16 @@ Event RecordingEvents::Next() {
     frame_ = std::move(frame);
   }
   if (NeedsPose()) return poses_[next_pose_++];
-  if (NeedsGimbal()) return gimbal_[next_gimbal_++];
+  if (NeedsReport(gimbal_, next_gimbal_)) return gimbal_[next_gimbal_++];
+  if (NeedsReport(zoom_, next_zoom_)) return zoom_[next_zoom_++];
   return *std::exchange(frame_, std::nullopt);
 }
 
-bool RecordingEvents::NeedsGimbal() const {
+template <class Report>
+bool RecordingEvents::NeedsReport(const std::vector<Report>& reports, std::size_t next) const {
   constexpr Duration kAhead = std::chrono::milliseconds(500);
-  if (next_gimbal_ == gimbal_.size()) return false;
-  return next_gimbal_ == 0 || gimbal_[next_gimbal_ - 1].time < frame_->time + lead_ + kAhead;
+  if (next == reports.size()) return false;
+  return next == 0 || reports[next - 1].time < frame_->time + lead_ + kAhead;
 }
 
 bool RecordingEvents::NeedsPose() const {

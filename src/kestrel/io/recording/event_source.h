@@ -9,6 +9,7 @@
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/poses/gimbal_history.h"
 #include "kestrel/core/poses/pose_history.h"
+#include "kestrel/core/poses/zoom_history.h"
 #include "kestrel/io/recording/frame.h"
 #include "kestrel/io/recording/frame_source.h"
 
@@ -18,11 +19,11 @@ namespace kestrel {
 struct EndOfStream {};
 
 // Input of a pipeline: a frame, a pose of the navigation (with its rates, if they are known), or a
-// report of the gimbal on which the camera is.
-using Event = std::variant<EndOfStream, Frame, PoseSample, GimbalSample>;
+// report of the camera's gimbal or zoom.
+using Event = std::variant<EndOfStream, Frame, PoseSample, GimbalSample, ZoomSample>;
 
-// Frames, poses and reports of a gimbal as one stream, the same for a recording as for a camera
-// beside an autopilot. Each of the three is in order of time. A frame comes after the poses and
+// Frames, poses and reports as one stream, the same for a recording as for a camera beside an
+// autopilot. Each kind is in order of time. A frame comes after the poses and
 // reports that it needs, except for those that are late: these come after it.
 class EventSource {
  public:
@@ -35,7 +36,8 @@ class EventSource {
 
 // Gives each frame of a source after the poses that it needs: all poses up to the first one that is
 // not before the frame's time + 'lead' (the clock offset, and the time after its own that a frame
-// needs). The source's reports of a gimbal come half a second ahead: its clock has an offset, too.
+// needs). The source's reports of a gimbal and a zoom come half a second ahead: their clocks have
+// offsets, too.
 // 'source' must outlive this.
 class RecordingEvents : public EventSource {
  public:
@@ -45,7 +47,8 @@ class RecordingEvents : public EventSource {
 
  private:
   bool NeedsPose() const;
-  bool NeedsGimbal() const;
+  template <class Report>
+  bool NeedsReport(const std::vector<Report>& reports, std::size_t next) const;
 
   FrameSource* source_;
   std::vector<PoseSample> poses_;
@@ -53,6 +56,8 @@ class RecordingEvents : public EventSource {
   std::size_t next_pose_ = 0;
   std::vector<GimbalSample> gimbal_;
   std::size_t next_gimbal_ = 0;
+  std::vector<ZoomSample> zoom_;
+  std::size_t next_zoom_ = 0;
   std::optional<Frame> frame_;  // the next frame
 };
 

@@ -14,6 +14,7 @@
 #include "kestrel/core/geometry/rigid_transform.h"
 #include "kestrel/core/poses/gimbal_history.h"
 #include "kestrel/core/poses/pose_history.h"
+#include "kestrel/core/poses/zoom_history.h"
 #include "kestrel/io/recording/frame.h"
 
 namespace kestrel {
@@ -84,6 +85,8 @@ class FrameSource {
   // Returns the reports of the gimbal on which the camera is, on the gimbal's clock, in order of
   // time; empty if there are none.
   virtual std::vector<GimbalSample> gimbal() const { return {}; }
+  // Returns the reports of the camera's zoom in the same way.
+  virtual std::vector<ZoomSample> zoom() const { return {}; }
 
  protected:
   // As Next, but throws BrokenImage for an image that cannot be read.

@@ -34,6 +34,7 @@ class SeveralCameras : public FrameSource {
   CameraMount mount() const override { return first().mount(); }
   std::vector<PoseSample> poses() const override { return first().poses(); }
   std::vector<GimbalSample> gimbal() const override { return first().gimbal(); }
+  std::vector<ZoomSample> zoom() const override { return first().zoom(); }
 
  private:
   struct Queue {

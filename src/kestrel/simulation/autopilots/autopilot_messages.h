@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 
+#include "kestrel/comms/mavlink/camera_messages.h"
 #include "kestrel/comms/mavlink/messages.h"
 #include "kestrel/comms/mavlink/packet.h"
 #include "kestrel/core/base/limits.h"
@@ -26,7 +27,7 @@ using AutopilotMessage = std::variant<
     mavlink::AutopilotVersion, mavlink::ParamValue, mavlink::CommandAck, mavlink::SysStatus,
     mavlink::EkfStatusReport, mavlink::EstimatorStatus, mavlink::RcChannels, mavlink::RawImu,
     mavlink::HighresImu, mavlink::GimbalManagerInformation, mavlink::GimbalManagerStatus,
-    mavlink::GimbalDeviceAttitudeStatus>;
+    mavlink::GimbalDeviceAttitudeStatus, mavlink::CameraFovStatus>;
 
 // All messages that it handles.
 using CompanionMessage =

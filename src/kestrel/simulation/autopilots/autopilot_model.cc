@@ -97,7 +97,7 @@ AutopilotModel::AutopilotModel(AutopilotFirmware firmware, const AutopilotModelO
       pilot_(options.pilot, *world, start),
       detector_(firmware, parameters_),
       return_(firmware, parameters_),
-      streams_(firmware, options.has_gimbal),
+      streams_(firmware, options.has_gimbal, options.zoom.is_there()),
       start_(start),
       stepped_to_(start),
       booted_at_(start),
@@ -372,7 +372,7 @@ void AutopilotModel::Reboot(Time now) {
   booted_at_ = now;
   boot_uptime_s_ = 0;
   clock_jump_ = Duration(0);
-  streams_ = MessageStreams(firmware_, options_.has_gimbal);
+  streams_ = MessageStreams(firmware_, options_.has_gimbal, options_.zoom.is_there());
   px4_clock_ = Px4TimeSync();
   has_gcs_ = false;
 }

@@ -110,6 +110,7 @@ class AutopilotModel {
   bool SendPose(std::uint32_t id, Time now);
   bool SendPlace(std::uint32_t id, Time now);
   bool SendMount(std::uint32_t id) const;
+  bool SendView(std::uint32_t id, Time now) const;
   void SendText(Severity severity, const std::string& text) const;
   std::uint8_t LandedState() const;
   mavlink::Heartbeat HeartbeatOf() const;

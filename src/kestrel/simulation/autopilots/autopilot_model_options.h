@@ -4,11 +4,13 @@
 #include <string>
 
 #include "kestrel/core/base/limits.h"
+#include "kestrel/core/camera/camera_model.h"
 #include "kestrel/simulation/autopilots/autopilot_messages.h"
 #include "kestrel/simulation/autopilots/simulated_mount.h"
 #include "kestrel/simulation/autopilots/simulated_pilot.h"
 #include "kestrel/simulation/autopilots/simulated_uav.h"
 #include "kestrel/simulation/vehicle/navigation_model.h"
+#include "kestrel/simulation/vehicle/zoom_model.h"
 
 namespace kestrel {
 
@@ -56,6 +58,8 @@ struct AutopilotModelOptions {
   PilotOptions pilot;
   bool has_gimbal = false;  // set where the camera is on one
   SimulatedMountOptions gimbal;
+  ZoomOptions zoom;              // set where the camera zooms
+  CameraIntrinsics zoomed_lens;  // of that camera before it does
 
   static void Visit(auto& self, auto&& visit) {
     visit("system_id", self.system_id, Range{1, 255}, "MAVLink system of the autopilot");

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
 #include <limits>
 
 #include "kestrel/comms/mavlink/mavlink_enums.h"
+#include "kestrel/core/camera/zoom_lens.h"
+#include "kestrel/core/geometry/angles.h"
 #include "kestrel/simulation/autopilots/autopilot_model.h"
 
 // Messages that the simulated autopilot sends.
@@ -71,7 +74,7 @@ bool AutopilotModel::SendMessage(std::uint32_t id, Time now) {
       send_(VersionOf());
       return true;
     default:
-      return SendPose(id, now) || SendPlace(id, now) || SendMount(id);
+      return SendPose(id, now) || SendPlace(id, now) || SendMount(id) || SendView(id, now);
   }
 }
 
@@ -140,6 +143,22 @@ bool AutopilotModel::SendMount(std::uint32_t id) const {
     default:
       return false;
   }
+}
+
+// Sends the field of view of its camera, as that has last reported it.
+bool AutopilotModel::SendView(std::uint32_t id, Time now) const {
+  const ZoomOptions& zoom = options_.zoom;
+  if (id != mavlink::CameraFovStatus::kId || !zoom.is_there()) return false;
+  const double since_s = world_.SceneTime(now);
+  const double reported_s = std::floor(since_s * zoom.rate_hz) / zoom.rate_hz;
+  const std::int64_t age_us = std::llround(1e6 * (since_s - reported_s));
+  mavlink::CameraFovStatus message;
+  message.time_boot_ms = static_cast<std::uint32_t>((OwnMicroseconds(now) - age_us) / 1000);
+  message.hfov =
+      static_cast<float>(Degrees(ViewOf(ZoomedLens(zoom, options_.zoomed_lens, reported_s))));
+  message.camera_device_id = 1;
+  send_(message);
+  return true;
 }
 
 bool AutopilotModel::SendPlace(std::uint32_t id, Time now) {

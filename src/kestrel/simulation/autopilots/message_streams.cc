@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kestrel/comms/mavlink/camera_messages.h"
 #include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/comms/mavlink/messages.h"
 
@@ -26,7 +27,8 @@ constexpr DefaultRate kDefaultRates[] = {
 
 }  // namespace
 
-MessageStreams::MessageStreams(AutopilotFirmware firmware, bool has_gimbal) : firmware_(firmware) {
+MessageStreams::MessageStreams(AutopilotFirmware firmware, bool has_gimbal, bool has_zoom)
+    : firmware_(firmware) {
   const bool is_px4 = firmware == AutopilotFirmware::kPx4;
   for (const DefaultRate& rate : kDefaultRates) {
     const double hz = is_px4 ? rate.px4_hz : rate.ardupilot_hz;
@@ -45,6 +47,7 @@ MessageStreams::MessageStreams(AutopilotFirmware firmware, bool has_gimbal) : fi
     // Only ArduPilot's simulator sends the truth.
     streams_.push_back({mavlink::SimState::kId, 0, 0});
   }
+  if (has_zoom) streams_.push_back({mavlink::CameraFovStatus::kId, 0, 0});
   if (!has_gimbal) return;
   constexpr std::int64_t kPx4Attitude_us = 200'000, kPx4Status_us = 2'000'000;
   const auto add = [&](std::uint32_t id, std::int64_t px4_us) {

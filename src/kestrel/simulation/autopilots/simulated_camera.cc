@@ -57,6 +57,7 @@ SimulatedCameraOptions SimulatedCameraOptions::OfSecond() const {
   options.clock_offset_s = second.clock_offset_s;
   options.fault = second.fault;
   options.second = {};
+  options.zoom = {};
   return options;
 }
 
@@ -93,9 +94,14 @@ SimulatedCamera::SimulatedCamera(const SimulatedCameraOptions& options, VehicleW
   lens.half_angle_deg = options.lens.half_angle_deg;
   lens.vignette = options.lens.vignette;
   if (surroundings.landing_legs) lens.airframe = LandingLegs(calibration_.intrinsics, true);
-  camera_ = std::make_unique<FlightCamera>(CameraModel(calibration_.intrinsics), lens,
-                                           options.shutter, options.sensor, drawn_,
-                                           [this](double time_s) { return CameraAt(time_s); });
+  const CameraIntrinsics& own = calibration_.intrinsics;
+  if (options.zoom.is_there()) calibration_.zoom = ZoomLens{{{ViewOf(own), own}}, {}};
+  camera_ = std::make_unique<const ZoomingCamera>(
+      options.zoom, own, [this, lens](const CameraIntrinsics& zoomed) {
+        return std::make_shared<const FlightCamera>(
+            CameraModel(zoomed), lens, options_.shutter, options_.sensor, drawn_,
+            [this](double time_s) { return CameraAt(time_s); });
+      });
   world_.ListenToPoses(
       this, [this](const PoseSample& pose, const VehicleWorld::PlatformAttitude& platform) {
         Place(pose, platform, true);
@@ -201,7 +207,8 @@ std::optional<Frame> SimulatedCamera::Capture(Time capture) {
     return frame;
   }
   const double gain = fault == CameraFault::kBright ? kBright : 1;
-  frame.image = camera_->Capture(snapshot_.time_s, gain, Hash(seed_, noise));
+  const auto camera = camera_->At(snapshot_.time_s);
+  frame.image = camera->Capture(snapshot_.time_s, gain, Hash(seed_, noise));
   if (fault == CameraFault::kBlack) frame.image.setTo(0);
   if (options_.fault.kind == "frozen") last_image_ = frame.image.clone();
   return frame;
@@ -284,8 +291,9 @@ RigidTransform SimulatedCamera::PatternAt(Time stamp) const {
 }
 
 std::optional<TruePattern> SimulatedCamera::Truth(const Frame& frame) const {
-  return SeenPattern(frame.time, world_.SceneTime(CaptureOf(frame.time)), *camera_,
-                     world_.scene().print, world_.scene().world_from_pattern);
+  const double time_s = world_.SceneTime(CaptureOf(frame.time));
+  return SeenPattern(frame.time, time_s, *camera_->At(time_s), world_.scene().print,
+                     world_.scene().world_from_pattern);
 }
 
 }  // namespace kestrel

@@ -20,6 +20,7 @@
 #include "kestrel/io/recording/frame.h"
 #include "kestrel/simulation/autopilots/camera_faults.h"
 #include "kestrel/simulation/autopilots/vehicle_world.h"
+#include "kestrel/simulation/recordings/zooming_camera.h"
 #include "kestrel/simulation/rendering/flight_camera.h"
 #include "kestrel/simulation/scene/light_options.h"
 #include "kestrel/simulation/scene/world.h"
@@ -54,6 +55,7 @@ struct SimulatedCameraOptions {
   LensViewOptions lens;
   ShutterOptions shutter;
   SensorOptions sensor;
+  ZoomOptions zoom;
   CameraFaultOptions fault;
   SecondSimulatedCameraOptions second;
 
@@ -67,6 +69,7 @@ struct SimulatedCameraOptions {
     visit.Group("lens", self.lens);
     visit.Group("shutter", self.shutter);
     visit.Group("sensor", self.sensor);
+    visit.Group("zoom", self.zoom);
     visit.Group("fault", self.fault);
     visit.Group("second", self.second);
   }
@@ -149,7 +152,7 @@ class SimulatedCamera {
   std::uint64_t seed_;
   CameraCalibration calibration_;
   World drawn_;  // with the UAV's shadow
-  std::unique_ptr<FlightCamera> camera_;
+  std::unique_ptr<const ZoomingCamera> camera_;
   Snapshot snapshot_;
   cv::Mat last_image_;
   std::int64_t next_ = 0;  // index of the next image

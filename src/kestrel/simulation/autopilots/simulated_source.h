@@ -38,6 +38,11 @@ class SimulatedSource {
 
   // True when the camera is on a gimbal, which only a simulated autopilot has.
   bool has_gimbal() const { return !cameras_.empty() && cameras_[0]->calibration().gimbal; }
+  // The zoom of the camera, and its lens before it does.
+  ZoomOptions zoom() const { return cameras_.empty() ? ZoomOptions() : options_.zoom; }
+  CameraIntrinsics lens() const {
+    return cameras_.empty() ? CameraIntrinsics() : cameras_[0]->calibration().intrinsics;
+  }
 
   // Poses from the autopilot. They place the camera: the true poses, if there are any, else the
   // estimated ones.

@@ -22,7 +22,8 @@ bool IsInside(const Vector2d& pixel, const CameraModel& camera, double margin_px
 
 // Returns the part of the upper face that is inside of the image, with nothing in front of it.
 double VisiblePart(const HuntObject& object, const SimulatedFlight& flight, double time_s) {
-  const FlightCamera& camera = flight.camera();
+  const auto camera_now = flight.CameraAt(time_s);
+  const FlightCamera& camera = *camera_now;
   constexpr int kSteps = 10;
   const Vector2d along(std::cos(object.yaw), std::sin(object.yaw));
   int inside = 0;
@@ -50,7 +51,8 @@ double VisiblePart(const HuntObject& object, const SimulatedFlight& flight, doub
 
 // Returns one row, or nothing when the object is not in view.
 std::string ObjectRow(const HuntObject& object, const SimulatedFlight& flight, double time_s) {
-  const FlightCamera& camera = flight.camera();
+  const auto camera_now = flight.CameraAt(time_s);
+  const FlightCamera& camera = *camera_now;
   const CameraModel& model = camera.lens().camera();
   const auto pixel = camera.Project(time_s, object.center);
   if (!pixel) return "";

@@ -56,6 +56,13 @@ CameraCalibration OnGimbal(CameraCalibration camera) {
   return camera;
 }
 
+CameraCalibration Nominal(const FlightRecordingOptions& options, CameraCalibration camera) {
+  if (options.gimbal.is_there()) camera = OnGimbal(camera);
+  const CameraIntrinsics& lens = camera.intrinsics;
+  if (options.zoom.is_there()) camera.zoom = ZoomLens{{{ViewOf(lens), lens}}, {}};
+  return camera;
+}
+
 std::function<double(double)> GainControl(const SensorOptions& options, std::uint64_t seed) {
   constexpr double kPeriod_s = 5;
   constexpr double kLeast = 0.1;
@@ -71,17 +78,17 @@ SimulatedFlight::SimulatedFlight(const FlightRecordingOptions& options,
                                  World world, Motion world_from_body, const Path& target,
                                  std::uint64_t seed)
     : options_(options),
-      nominal_(options.gimbal.is_there() ? OnGimbal(camera) : camera),
+      nominal_(Nominal(options, camera)),
       world_(std::move(world)),
       world_from_body_(std::move(world_from_body)),
       seed_(seed),
       errors_(ErrorsOf(options.navigation, seed)),
       gain_(GainControl(options.sensor, seed)) {
   for (int i = 0; i < options.frames; ++i) times_s_.push_back(i / options.rate_hz);
-  LensOptions lens;
-  lens.half_angle_deg = options.lens.half_angle_deg;
-  lens.vignette = options.lens.vignette;
-  lens.airframe = airframe;
+  LensOptions view;
+  view.half_angle_deg = options.lens.half_angle_deg;
+  view.vignette = options.lens.vignette;
+  view.airframe = airframe;
   RigidTransform mount = *nominal_.body_from_camera;
   Motion world_from_base = world_from_body_;
   if (options.gimbal.is_there()) {
@@ -95,14 +102,17 @@ SimulatedFlight::SimulatedFlight(const FlightRecordingOptions& options,
   }
   const Motion motion =
       CameraMotion(world_from_base, errors_.TrueMount(mount), options.navigation, seed);
-  camera_ = std::make_unique<FlightCamera>(CameraModel(camera.intrinsics), lens, options.shutter,
-                                           options.sensor, world_, motion);
+  camera_ = std::make_unique<const ZoomingCamera>(
+      options.zoom, camera.intrinsics, [this, view, motion](const CameraIntrinsics& lens) {
+        return std::make_shared<const FlightCamera>(CameraModel(lens), view, options_.shutter,
+                                                    options_.sensor, world_, motion);
+      });
 }
 
 cv::Mat SimulatedFlight::Image(std::size_t index, double gain) const {
   const double time_s = times_s_[index];
-  return camera_->Capture(time_s, gain * gain_(time_s),
-                          Hash(SeedOf(seed_, FlightPart::kNoise), index));
+  return CameraAt(time_s)->Capture(time_s, gain * gain_(time_s),
+                                   Hash(SeedOf(seed_, FlightPart::kNoise), index));
 }
 
 void SimulatedFlight::EndBefore(std::size_t index) { times_s_.resize(index); }
@@ -147,7 +157,16 @@ std::vector<RecordingFile> SimulatedFlight::Files() const {
       {euroc::kPoses, EurocPoseText(poses)},
       {euroc::kTruePoses, TrueStateText(world_from_body_, begin_s(), end_s, times_s_)}};
   if (gimbal_) AddGimbal(&files);
+  if (nominal_.zoom) AddZoom(&files);
   return files;
+}
+
+void SimulatedFlight::AddZoom(std::vector<RecordingFile>* files) const {
+  files->push_back({euroc::kZoom, EurocZoomText(ZoomReportsOf(
+                                      options_.zoom, nominal_.intrinsics, begin_s(),
+                                      times_s_.back() + kMargin_s, errors_.clock_offset_s))});
+  files->push_back(
+      {euroc::kZoomSensor, EurocZoomSensorText(*nominal_.zoom, options_.zoom.rate_hz)});
 }
 
 void SimulatedFlight::AddGimbal(std::vector<RecordingFile>* files) const {

@@ -10,12 +10,14 @@
 #include "kestrel/core/base/limits.h"
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/simulation/recordings/recording_plan.h"
+#include "kestrel/simulation/recordings/zooming_camera.h"
 #include "kestrel/simulation/rendering/flight_camera.h"
 #include "kestrel/simulation/scene/drawing.h"
 #include "kestrel/simulation/scene/light_options.h"
 #include "kestrel/simulation/scene/motion.h"
 #include "kestrel/simulation/vehicle/gimbal_model.h"
 #include "kestrel/simulation/vehicle/navigation_model.h"
+#include "kestrel/simulation/vehicle/zoom_model.h"
 
 namespace kestrel {
 
@@ -25,6 +27,7 @@ struct FlightRecordingOptions {
   double rate_hz = 30;
   NavigationOptions navigation;
   GimbalOptions gimbal;
+  ZoomOptions zoom;
   LensViewOptions lens;
   ShutterOptions shutter;
   SensorOptions sensor;
@@ -34,6 +37,7 @@ struct FlightRecordingOptions {
     visit("rate_hz", self.rate_hz, Range{0.1, 1000}, "images per second");
     visit.Group("navigation", self.navigation);
     visit.Group("gimbal", self.gimbal);
+    visit.Group("zoom", self.zoom);
     visit.Group("lens", self.lens);
     visit.Group("shutter", self.shutter);
     visit.Group("sensor", self.sensor);
@@ -53,7 +57,8 @@ class SimulatedFlight {
   SimulatedFlight(const SimulatedFlight&) = delete;  // the camera refers to the world in it
   SimulatedFlight& operator=(const SimulatedFlight&) = delete;
 
-  const FlightCamera& camera() const { return *camera_; }
+  // The camera with its lens at a time, which zooms if the options have it so.
+  std::shared_ptr<const FlightCamera> CameraAt(double time_s) const { return camera_->At(time_s); }
   const World& world() const { return world_; }
   const NavigationErrors& errors() const { return errors_; }
   const std::vector<double>& times_s() const { return times_s_; }  // image times
@@ -71,11 +76,12 @@ class SimulatedFlight {
   // Returns the part of scene.yaml that all flights share; further lines may follow.
   std::string SceneText(const std::string& kind) const;
 
-  // cam0/sensor.yaml, nav0, gimbal0 if there is one, and state_groundtruth_estimate0.
+  // cam0/sensor.yaml, nav0, gimbal0 and zoom0 if there are any, and state_groundtruth_estimate0.
   std::vector<RecordingFile> Files() const;
 
  private:
   void AddGimbal(std::vector<RecordingFile>* files) const;
+  void AddZoom(std::vector<RecordingFile>* files) const;
 
   FlightRecordingOptions options_;
   CameraCalibration nominal_;
@@ -86,7 +92,7 @@ class SimulatedFlight {
   std::vector<double> times_s_;
   std::function<double(double time_s)> gain_;
   std::shared_ptr<const SimulatedGimbal> gimbal_;  // null: the camera is fixed to the body
-  std::unique_ptr<FlightCamera> camera_;
+  std::unique_ptr<const ZoomingCamera> camera_;
 };
 
 }  // namespace kestrel

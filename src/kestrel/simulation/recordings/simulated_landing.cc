@@ -48,8 +48,8 @@ std::string SimulatedLanding::SceneText(const std::string& kind, const std::stri
 std::vector<RecordingFile> SimulatedLanding::Files() const {
   std::string rows = LandingTruthHeader();
   for (const double time_s : flight_.times_s()) {
-    const auto seen =
-        SeenPattern(TimeOfFlight(time_s), time_s, flight_.camera(), print_, world_from_pattern_);
+    const auto seen = SeenPattern(TimeOfFlight(time_s), time_s, *flight_.CameraAt(time_s), print_,
+                                  world_from_pattern_);
     if (seen) rows += LandingTruthRow(*seen);
   }
   std::vector<RecordingFile> files = flight_.Files();

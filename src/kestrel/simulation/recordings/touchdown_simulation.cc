@@ -61,10 +61,18 @@ TouchdownSimulationOptions::TouchdownSimulationOptions() {
                      .max_tilt_deg = multicopter.max_tilt_deg};
 }
 
-// A simulated gimbal needs to know the whole flight, which this loop decides as it goes.
+// A simulated gimbal needs to know the whole flight, which this loop decides as it goes; and there
+// are no reports of a zoom in it.
 std::vector<std::string> TouchdownSimulationOptions::Validate() const {
-  if (!recording.gimbal.is_there()) return {};
-  return {"gimbal.rate_hz is more than 0, expected 0: the camera of a touchdown is fixed"};
+  std::vector<std::string> violations;
+  if (recording.gimbal.is_there()) {
+    violations.emplace_back(
+        "gimbal.rate_hz is more than 0, expected 0: the camera of a touchdown is fixed");
+  }
+  if (recording.zoom.is_there()) {
+    violations.emplace_back("zoom.rate_hz is more than 0, expected 0: the lens is fixed, too");
+  }
+  return violations;
 }
 
 TouchdownSimulation::TouchdownSimulation(const TouchdownSimulationOptions& options,

@@ -77,7 +77,7 @@ void LandingSearch::TestPrediction() {
 
 // Takes the likely steps in the likely part of the image, then all others.
 void LandingSearch::TakeSteps() {
-  const cv::Rect all = AllOf(image_.whole());
+  const cv::Rect all = prior_.PartBelowHorizon().value_or(AllOf(image_.whole()));
   const cv::Rect likely = prior_.PartOfImage(hint_.center_sigma_m).value_or(all);
   const bool is_likely_all = likely == all;
   const int first = std::clamp(hint_.first_step, 0, 2 * static_cast<int>(kSearchSteps) - 1);

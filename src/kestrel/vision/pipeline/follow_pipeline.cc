@@ -65,7 +65,9 @@ class FollowPipeline::Impl {
         camera_(calibration.intrinsics),
         poses_(calibration, FollowPipelineOptions::kPoseCapacity, kPoseGap, Duration::zero(),
                DurationFromSeconds(options.pose_extrapolation_s)),
-        tracker_(options.Tracker()) {}
+        tracker_(options.Tracker()) {
+    RequireFixedLens(calibration, "what is marked");
+  }
 
   PoseStatus AddPose(const PoseSample& sample) { return poses_.Add(sample); }
   PoseStatus AddGimbal(const GimbalSample& sample) { return poses_.Add(sample); }

@@ -89,7 +89,9 @@ HuntPipeline::Impl::Impl(const CameraCalibration& calibration, const ObjectModel
       poses_(calibration, HuntPipelineOptions::kPoseCapacity,
              DurationFromSeconds(options.pose_gap_s), DurationFromSeconds(options.pose_smoothing_s),
              DurationFromSeconds(options.pose_extrapolation_s)),
-      map_(model, options.map) {}
+      map_(model, options.map) {
+  RequireFixedLens(calibration, "a hunt");
+}
 
 void HuntPipeline::Impl::ChangeOptions(const HuntPipelineOptions& options) {
   RequireValid(options);

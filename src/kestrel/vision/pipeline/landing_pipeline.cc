@@ -10,8 +10,10 @@
 #include <fmt/format.h>
 
 #include "kestrel/core/base/options.h"
+#include "kestrel/core/geometry/angles.h"
 #include "kestrel/vision/pipeline/calibration_monitor.h"
 #include "kestrel/vision/pipeline/camera_lag.h"
+#include "kestrel/vision/pipeline/camera_lens.h"
 #include "kestrel/vision/pipeline/camera_poses.h"
 #include "kestrel/vision/pipeline/camera_watch.h"
 #include "kestrel/vision/pipeline/input_contradictions.h"
@@ -72,6 +74,7 @@ class LandingPipeline::Impl {
 
   PoseStatus AddPose(const PoseSample& sample);
   PoseStatus AddGimbal(const GimbalSample& sample);
+  PoseStatus AddZoom(const ZoomSample& sample);
   void SetAltitude(std::optional<double> altitude_m) { altitude_m_ = altitude_m; }
   void LimitSearch(double max_search_ms) { max_search_ms_ = max_search_ms; }
   void ChangeOptions(const LandingPipelineOptions& options);
@@ -125,10 +128,14 @@ class LandingPipeline::Impl {
     Duration ahead;  // the first camera's clock minus that of this camera's images
     CameraLag lag;   // of the stamps, beside 'ahead'; none of the first camera, which is the clock
     StampLag stamp_lag;  // what its sightings alone say about the stamps; of several cameras
-    std::optional<RigidTransform> fixed_mount;  // camera from body
+    std::optional<CameraLens> zoom;                  // nothing: the lens is fixed
+    double view_rad = 0;                             // of the detector's lens, where it zooms
+    std::shared_ptr<const CameraModel> zoomed_lens;  // that lens; null until it is known
+    std::optional<RigidTransform> fixed_mount;       // camera from body
     bool is_track_trusted = true;  // the last detection was where the track predicted it
     std::optional<Sighting> last;
     int next_step = 0;  // step at which the search of the last frame ran out of time
+    int misses = 0;     // frames since the pad was found
     InputContradictions contradictions;
     CalibrationMonitor calibration;
   };
@@ -136,9 +143,13 @@ class LandingPipeline::Impl {
   bool has_several() const { return eyes_.size() > 1; }
   bool IsUsed(std::size_t camera) const { return !has_several() || watch_.IsUsed(camera); }
   bool IsJudged(std::size_t camera) const { return !has_several() || watch_.IsJudged(camera); }
+  static void SetDetector(const CameraModel& camera, const LandingPipelineOptions& options,
+                          Eye* eye);
+  bool FollowZoom(const cv::Mat& image, Time time, Eye* eye) const;
   void Detect(const cv::Mat& image, Eye* eye, LandingObservation* observation) const;
   void LookForOthers(const cv::Mat& image, Eye* eye, LandingObservation* observation);
   GivenView GivenViewOf(const LandingObservation& observation) const;
+  static std::optional<double> SkyAbove(const Eye& eye, const LandingObservation& observation);
   double AltitudeExcess(const Eye& eye) const;
   static void AddErrorOfFocalLength(const Eye& eye, TargetDetection* detection);
   void AddTrack(const Eye& eye, const LandingObservation& observation, TargetHint* hint) const;
@@ -175,7 +186,9 @@ LandingPipeline::Impl::Eye::Eye(const CameraCalibration& camera,
       poses(camera, LandingPipelineOptions::kPoseCapacity, DurationFromSeconds(options.pose_gap_s),
             Duration::zero(), DurationFromSeconds(options.pose_extrapolation_s)),
       ahead(ClockOffset(camera) - clock_offset),
-      fixed_mount(CameraFromBody(camera)) {}
+      fixed_mount(CameraFromBody(camera)) {
+  if (camera.zoom) zoom.emplace(camera, LandingPipelineOptions::kPoseCapacity);
+}
 
 LandingPipeline::Impl::Impl(std::span<const CameraCalibration> cameras,
                             std::vector<std::unique_ptr<const TargetDetector>> own_detectors,
@@ -190,6 +203,9 @@ LandingPipeline::Impl::Impl(std::span<const CameraCalibration> cameras,
                                           : MakeTargetDetector(CameraModel(cameras[i].intrinsics),
                                                                options.target, options.detector),
                        options, ClockOffset(cameras.front()));
+    if (are_detectors_own_ && cameras[i].zoom) {
+      throw InputError("a camera that zooms has a detector of its own, expected one by options");
+    }
     if (are_detectors_own_) continue;
     eyes_.back().others = OthersOf(eyes_.back().detector->camera(), options.target);
   }
@@ -199,11 +215,32 @@ void LandingPipeline::Impl::ChangeOptions(const LandingPipelineOptions& options)
   RequireValid(options);
   for (Eye& eye : eyes_) {
     if (are_detectors_own_) break;
-    eye.detector = MakeTargetDetector(eye.detector->camera(), options.target, options.detector);
-    eye.workspace = eye.detector->MakeWorkspace();
+    SetDetector(eye.detector->camera(), options, &eye);
     eye.others = OthersOf(eye.detector->camera(), options.target);
   }
   options_ = options;
+}
+
+void LandingPipeline::Impl::SetDetector(const CameraModel& camera,
+                                        const LandingPipelineOptions& options, Eye* eye) {
+  eye->detector = MakeTargetDetector(camera, options.target, options.detector);
+  eye->workspace = eye->detector->MakeWorkspace();
+}
+
+// Gives the detector the lens of this image; false where that moves or is not known.
+bool LandingPipeline::Impl::FollowZoom(const cv::Mat& image, Time time, Eye* eye) const {
+  constexpr double kSame = 0.005;  // of the view
+  const auto view_rad = eye->zoom->ViewAt(image, time);
+  if (!view_rad) return false;
+  if (std::abs(*view_rad - eye->view_rad) <= kSame * *view_rad) return true;
+  const auto lens = eye->zoom->LensOf(*view_rad);
+  if (!lens) return false;
+  eye->view_rad = *view_rad;
+  eye->zoomed_lens = std::make_shared<const CameraModel>(*lens);
+  SetDetector(*eye->zoomed_lens, options_, eye);
+  if (eye->others) eye->others = OthersOf(*eye->zoomed_lens, options_.target);
+  eye->calibration = CalibrationMonitor();
+  return true;
 }
 
 PoseStatus LandingPipeline::Impl::AddPose(const PoseSample& sample) {
@@ -216,6 +253,14 @@ PoseStatus LandingPipeline::Impl::AddPose(const PoseSample& sample) {
 PoseStatus LandingPipeline::Impl::AddGimbal(const GimbalSample& sample) {
   PoseStatus status{};
   for (Eye& eye : eyes_) status = eye.poses.Add(sample);
+  return status;
+}
+
+PoseStatus LandingPipeline::Impl::AddZoom(const ZoomSample& sample) {
+  PoseStatus status{};
+  for (Eye& eye : eyes_) {
+    if (eye.zoom) status = eye.zoom->Add(sample);
+  }
   return status;
 }
 
@@ -255,8 +300,14 @@ LandingObservation LandingPipeline::Impl::Process(const cv::Mat& image, Time tim
   }
   observation.pose = eye.poses.Check(time);
   if (has_several()) watch_.AddFrame(camera, image, observation.time);
-  Detect(image, &eye, &observation);
-  LookForOthers(image, &eye, &observation);
+  observation.is_zooming = eye.zoom && !FollowZoom(image, time, &eye);
+  if (observation.is_zooming) {
+    observation.report.reason = "the lens zooms, or its setting is not known";
+  } else {
+    observation.zoomed_lens = eye.zoomed_lens;
+    Detect(image, &eye, &observation);
+    LookForOthers(image, &eye, &observation);
+  }
   LocateInWorld(eye, &observation);
   if (options_.still) return observation;
   Track(&eye, &observation);
@@ -276,16 +327,29 @@ void LandingPipeline::Impl::Detect(const cv::Mat& image, Eye* eye,
     AddLastSighting(*eye, *observation, &hint);
     hint.first_step = eye->next_step;
     hint.max_search_ms = max_search_ms_;
+    hint.sky_above_rad = SkyAbove(*eye, *observation);
   }
   const auto start = std::chrono::steady_clock::now();
   observation->report = eye->detector->Detect(image, hint, *eye->workspace);
   observation->detect_time = std::chrono::steady_clock::now() - start;
   eye->next_step = observation->report.diagnostics.next_step;
   auto& detection = observation->report.detection;
+  eye->misses = detection ? 0 : eye->misses + 1;
   if (!detection) return;
   if (IsJudged(observation->camera)) eye->contradictions.Add(given, *detection);
   if (IsUsed(observation->camera)) eye->calibration.Add(*detection);
   if (!options_.still) AddErrorOfFocalLength(*eye, &*detection);
+}
+
+// From where on (rad above the horizon) the image is left out of the search: of three frames in
+// four, because an attitude that is wrong, such as that of a camera upside down, must not hide the
+// pad; and of none where the pad has shown that it is wrong.
+std::optional<double> LandingPipeline::Impl::SkyAbove(const Eye& eye,
+                                                      const LandingObservation& observation) {
+  constexpr double kMargin = Radians(5), kSigmas = 3;
+  constexpr int kRound = 4;
+  if (eye.misses % kRound == kRound - 1 || eye.contradictions.Attitude()) return std::nullopt;
+  return kMargin + kSigmas * observation.pose_uncertainty.attitude_rad;
 }
 
 // Returns by how much (m) the given altitude is too large, as far as the detections contradict it.
@@ -529,6 +593,7 @@ PoseStatus LandingPipeline::AddPose(const PoseSample& sample) { return impl_->Ad
 PoseStatus LandingPipeline::AddGimbal(const GimbalSample& sample) {
   return impl_->AddGimbal(sample);
 }
+PoseStatus LandingPipeline::AddZoom(const ZoomSample& sample) { return impl_->AddZoom(sample); }
 void LandingPipeline::SetAltitude(std::optional<double> altitude_m) {
   impl_->SetAltitude(altitude_m);
 }

@@ -18,6 +18,7 @@
 #include "kestrel/core/geometry/rigid_transform.h"
 #include "kestrel/core/poses/gimbal_history.h"
 #include "kestrel/core/poses/pose_history.h"
+#include "kestrel/core/poses/zoom_history.h"
 #include "kestrel/vision/landing/landing_pattern_detector.h"
 #include "kestrel/vision/pipeline/camera_state.h"
 #include "kestrel/vision/pipeline/measurement_noise.h"
@@ -112,6 +113,10 @@ struct LandingObservation {
   std::optional<TargetEstimate> target;
   Duration detect_time{};  // time of TargetDetector::Detect alone
   std::size_t camera = 0;  // index of the camera among the pipeline's
+  // Of a camera that zooms: its lens; null where that moved or is not known, so that the frame was
+  // not searched.
+  std::shared_ptr<const CameraModel> zoomed_lens = nullptr;
+  bool is_zooming = false;  // it was not searched therefore
 };
 
 // Returns in words why the target was not found in a frame: that another tag was, or else as
@@ -150,6 +155,8 @@ class LandingPipeline {
   // Adds a report of the gimbal on which the calibration has the camera, in the same way. All
   // cameras on a gimbal are on the same one.
   PoseStatus AddGimbal(const GimbalSample& sample);
+  // Adds a report of the zoom that the calibration has, in the same way.
+  PoseStatus AddZoom(const ZoomSample& sample);
 
   // Sets the height (m) of the camera above the pattern for frames without a pose; nothing when not
   // known.
@@ -164,7 +171,8 @@ class LandingPipeline {
   void ChangeOptions(const LandingPipelineOptions& options);
 
   // Processes one frame of a camera, by its index. 'image': CV_8UC1 of the camera's size; 'time':
-  // on the clock of its images. Does not throw, and does not allocate once it has warmed up.
+  // on the clock of its images. Does not throw, and does not allocate once it has warmed up, except
+  // for the first frame after a zoom has come to rest, which takes some milliseconds more.
   LandingObservation Process(const cv::Mat& image, Time time, std::size_t camera = 0);
 
   std::size_t camera_count() const;

@@ -285,6 +285,43 @@ TEST_F(LandingPipelineTest, UpsideDownCameraIsReportedAndHidesNothing) {
   EXPECT_GT(pipeline.contradictions().Attitude()->difference, 2.5);
 }
 
+// With such a mount the pad seems to be in the sky.
+TEST_F(LandingPipelineTest, TurnedCameraHidesPadInThreeFramesAtMost) {
+  for (const double turn : {1.2, 1.6, 2.0, 2.4}) {
+    CameraCalibration wrong = calibration_;
+    wrong.body_from_camera->rotation =
+        wrong.body_from_camera->rotation * Rotation(turn, Eigen::Vector3d::UnitX());
+    LandingPipeline pipeline(wrong, options_);
+    for (int i = 0; i < 16; ++i) {
+      const Time time = kTime + i * DurationFromSeconds(0.1);
+      world_from_body_.translation.x() = 10 + 0.05 * i;
+      pipeline.AddPose({time, world_from_body_});
+      const bool is_found = pipeline.Process(Draw(), time).report.detection.has_value();
+      EXPECT_TRUE(i < 3 || is_found) << turn << ", frame " << i;
+    }
+  }
+}
+
+TEST_F(LandingPipelineTest, ZoomGivesLensOfFrameAtRestOnly) {
+  const CameraIntrinsics wide = calibration_.intrinsics;
+  calibration_.zoom = ZoomLens{{{ViewOf(wide), wide}}, {}};
+  LandingPipeline pipeline(calibration_, options_);
+  for (int i = 0; i < 16; ++i) {
+    // A report before each image; from the eighth image on another sensor.
+    const Time time = kTime + i * DurationFromSeconds(0.1);
+    calibration_.intrinsics.fx_px = calibration_.intrinsics.fy_px = i < 8 ? 400 : 600;
+    pipeline.AddZoom({time - DurationFromSeconds(0.01), ViewOf(calibration_.intrinsics)});
+    pipeline.AddPose({time, world_from_body_});
+    const LandingObservation seen = pipeline.Process(Draw(), time);
+    EXPECT_EQ(seen.is_zooming, i == 8) << i;
+    EXPECT_EQ(seen.center_in_world.has_value(), i != 8) << i;
+    if (!seen.center_in_world) continue;
+    EXPECT_LT((*seen.center_in_world - world_from_pattern_.translation).norm(), 0.03) << i;
+    ASSERT_TRUE(seen.zoomed_lens);
+    EXPECT_NEAR(seen.zoomed_lens->intrinsics().fx_px, calibration_.intrinsics.fx_px, 1e-6);
+  }
+}
+
 TEST_F(LandingPipelineTest, WrongUserAltitudeIsReportedAndHidesNothing) {
   LandingPipeline pipeline(calibration_, options_);
   pipeline.SetAltitude(20);

@@ -7,6 +7,7 @@
 
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/core/geometry/mirror_pose.h"
+#include "kestrel/vision/target/part_below_horizon.h"
 
 namespace kestrel {
 namespace {
@@ -74,22 +75,27 @@ bool PadSearch::MayHaveSize(int pass) const {
 
 cv::Rect PadSearch::SearchedPart() const {
   const cv::Rect whole(0, 0, image_.cols, image_.rows);
+  std::optional<cv::Rect> ground;
+  if (hint_.up_in_camera && hint_.sky_above_rad) {
+    ground = PartBelowHorizon(models_.camera, *hint_.up_in_camera, *hint_.sky_above_rad);
+  }
+  const cv::Rect all = ground.value_or(whole);
   Eigen::Vector2d center;
   if (!hint_.center_in_camera ||
       models_.camera.Project(*hint_.center_in_camera, &center) == ProjectionStatus::kOutsideModel) {
-    return whole;
+    return all;
   }
   const double reach = models_.radius_m + kSigmas * hint_.center_sigma_m;
   const double radius_px = models_.part_factor * models_.camera.intrinsics().fx_px * reach /
                                std::max(0.1, hint_.center_in_camera->norm()) +
                            models_.part_margin_px;
   const double most = image_.cols + image_.rows;
-  if (!(radius_px < most)) return whole;
+  if (!(radius_px < most)) return all;
   const cv::Rect part =
       whole & cv::Rect(static_cast<int>(center.x() - radius_px),
                        static_cast<int>(center.y() - radius_px), static_cast<int>(2 * radius_px),
                        static_cast<int>(2 * radius_px));
-  return part.empty() ? whole : part;
+  return part.empty() ? all : part;
 }
 
 void PadSearch::ExamineBorders(std::size_t count, std::string_view reason) {

@@ -48,6 +48,12 @@ std::vector<GimbalSample> ReadGimbal(const fs::path& folder) {
   return ParseGimbalRows(ReadFile(rows), rows, ReadYawFrame((folder / "sensor.yaml").string()));
 }
 
+std::vector<ZoomSample> ReadZoom(const fs::path& folder) {
+  const std::string rows = (folder / "data.csv").string();
+  if (!fs::exists(rows)) return {};
+  return ParseZoomRows(ReadFile(rows), rows);
+}
+
 }  // namespace
 
 std::vector<ImageRow> ParseImageRows(std::string_view text, const std::string& file) {
@@ -81,6 +87,17 @@ std::vector<GimbalSample> ParseGimbalRows(std::string_view text, const std::stri
   std::vector<GimbalSample> samples;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     samples.push_back({times[row], attitude.Parse(row), yaw_frame});
+  }
+  return samples;
+}
+
+std::vector<ZoomSample> ParseZoomRows(std::string_view text, const std::string& file) {
+  const CsvTable table(text, file);
+  const std::vector<Time> times = ParseTimes(table, "timestamp [ns]");
+  const std::size_t view = table.Column("hfov [rad]");
+  std::vector<ZoomSample> samples;
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    samples.push_back({times[row], table.Number(row, view)});
   }
   return samples;
 }
@@ -126,7 +143,8 @@ ImageSequence OpenEurocRecording(const std::string& folder, const std::string& c
   std::vector<PoseSample> poses;
   if (fs::exists(navigation)) poses = ParsePoseRows(ReadFile(navigation), navigation);
   return ImageSequence(std::move(items), fs::exists(calibration) ? calibration.string() : "",
-                       std::move(poses), ReadGimbal(fs::path(*root) / "gimbal0"));
+                       std::move(poses), ReadGimbal(fs::path(*root) / "gimbal0"),
+                       ReadZoom(fs::path(*root) / "zoom0"));
 }
 
 }  // namespace kestrel

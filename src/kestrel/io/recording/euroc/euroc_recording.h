@@ -27,6 +27,8 @@ std::vector<PoseSample> ParsePoseRows(std::string_view text, const std::string& 
 // Parses the text of gimbal0/data.csv, with the yaw frame that sensor.yaml says, in the same way.
 std::vector<GimbalSample> ParseGimbalRows(std::string_view text, const std::string& file,
                                           YawFrame yaw_frame);
+// Parses the text of zoom0/data.csv.
+std::vector<ZoomSample> ParseZoomRows(std::string_view text, const std::string& file);
 
 // Returns the folder of cam0: 'folder' itself, its mav0, or the folder in which the camera's folder
 // 'folder' is; nothing when it is not a recording.
@@ -37,8 +39,9 @@ std::optional<std::string> FindEurocRoot(const std::string& folder);
 std::vector<std::string> EurocCameras(const std::string& folder);
 
 // Opens a camera of a recording in the EuRoC / ASL layout (data.csv, data/, sensor.yaml) and, if
-// there, nav0/data.csv and gimbal0 (data.csv, sensor.yaml). 'camera': its name; empty: the first of
-// EurocCameras. Throws InputError when 'folder' is not a recording or its files are not valid.
+// there, nav0/data.csv, gimbal0 (data.csv, sensor.yaml) and zoom0/data.csv. 'camera': its name;
+// empty: the first of EurocCameras. Throws InputError when 'folder' is not a recording or its files
+// are not valid.
 ImageSequence OpenEurocRecording(const std::string& folder, const std::string& camera = "");
 
 }  // namespace kestrel

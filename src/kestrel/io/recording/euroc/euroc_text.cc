@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "kestrel/core/geometry/angles.h"
+
 namespace kestrel {
 namespace {
 
@@ -19,6 +21,19 @@ std::string Indented(const std::string& lines) {
   std::string text = "  " + lines;
   for (std::size_t at = text.find('\n'); at + 1 < text.size(); at = text.find('\n', at + 1)) {
     text.insert(at + 1, "  ");
+  }
+  return text;
+}
+
+std::string SettingsText(const ZoomLens& zoom) {
+  std::string text = fmt::format("time_offset_s: {}\n", ToSeconds(zoom.clock_offset));
+  if (zoom.device_id != 0) text += fmt::format("device_id: {}\n", zoom.device_id);
+  text += "settings:  # hfov_deg as reported, fu, fv, cu, cv, coefficients\n";
+  for (const auto& [view_rad, lens] : zoom.settings) {
+    text += fmt::format("- [{}, {}, {}, {}, {}", Degrees(view_rad), lens.fx_px, lens.fy_px,
+                        lens.cx_px, lens.cy_px);
+    for (const double coefficient : lens.distortion) text += fmt::format(", {}", coefficient);
+    text += "]\n";
   }
   return text;
 }
@@ -68,7 +83,9 @@ std::string EurocCameraText(const CameraCalibration& calibration, double rate_hz
   } else if (calibration.body_from_camera) {
     text += "T_BS:\n" + EurocTransformText(*calibration.body_from_camera);
   }
-  return text;
+  if (!calibration.zoom) return text;
+  if (gimbal == GimbalPlace::kFolder) return text + "zoom: zoom0\n";
+  return text + "zoom:\n" + Indented(SettingsText(*calibration.zoom));
 }
 
 std::string EurocCalibrationText(const CameraCalibration& calibration, double rate_hz,
@@ -103,6 +120,22 @@ std::string EurocGimbalCells(const GimbalSample& sample) {
 std::string EurocGimbalText(const std::vector<GimbalSample>& samples) {
   std::string text = EurocGimbalColumns() + "\n";
   for (const GimbalSample& sample : samples) text += EurocGimbalCells(sample) + "\n";
+  return text;
+}
+
+std::string EurocZoomSensorText(const ZoomLens& zoom, double rate_hz) {
+  return fmt::format("sensor_type: zoom\nrate_hz: {}\n", rate_hz) + SettingsText(zoom);
+}
+
+std::string EurocZoomColumns() { return "#timestamp [ns],hfov [rad]"; }
+
+std::string EurocZoomCells(const ZoomSample& sample) {
+  return fmt::format("{},{:.6f}", ToNanoseconds(sample.time), sample.view_rad);
+}
+
+std::string EurocZoomText(const std::vector<ZoomSample>& samples) {
+  std::string text = EurocZoomColumns() + "\n";
+  for (const ZoomSample& sample : samples) text += EurocZoomCells(sample) + "\n";
   return text;
 }
 

@@ -7,13 +7,15 @@
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/core/poses/gimbal_history.h"
 #include "kestrel/core/poses/pose_history.h"
+#include "kestrel/core/poses/zoom_history.h"
 
 namespace kestrel {
 
 // Returns the name in calibration files: "equidistant", "radial-tangential" or "none".
 const char* DistortionName(DistortionModel model);
 
-// The place of a gimbal's description: a folder of the recording, gimbal0, or the camera's file.
+// The place of the descriptions of a gimbal and a zoom: folders of the recording, gimbal0 and
+// zoom0, or the camera's file.
 enum class GimbalPlace { kFolder, kCameraFile };
 
 // Returns the text of cam0/sensor.yaml in the EuRoC layout: lens, size, rate and, if the
@@ -35,6 +37,12 @@ std::string EurocGimbalCells(const GimbalSample& sample);
 
 // Returns the text of gimbal0/data.csv.
 std::string EurocGimbalText(const std::vector<GimbalSample>& samples);
+
+// The same of zoom0.
+std::string EurocZoomSensorText(const ZoomLens& zoom, double rate_hz);
+std::string EurocZoomColumns();
+std::string EurocZoomCells(const ZoomSample& sample);
+std::string EurocZoomText(const std::vector<ZoomSample>& samples);
 
 // Returns the text of nav0/sensor.yaml.
 std::string EurocPoseSensorText(double rate_hz);

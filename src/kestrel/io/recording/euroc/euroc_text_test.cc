@@ -67,6 +67,31 @@ TEST(EurocTextTest, GimbalRoundTrip) {
   EXPECT_EQ(rows[0].yaw_frame, YawFrame::kVehicle);
 }
 
+TEST(EurocTextTest, ZoomRoundTrip) {
+  CameraCalibration written;
+  written.intrinsics = {
+      640, 480, 560, 560, 320, 240, DistortionModel::kRadialTangential, {-0.1, 0, 0, 0}};
+  CameraIntrinsics narrow = written.intrinsics;
+  narrow.fx_px = narrow.fy_px = 1800.25;
+  narrow.distortion[0] = 0.1;
+  written.zoom =
+      ZoomLens{{{0.375, narrow}, {1.05, written.intrinsics}}, std::chrono::milliseconds(-150), 2};
+  const CameraCalibration read = ParseCalibration(EurocCalibrationText(written, 30), "lens.yaml");
+  ASSERT_TRUE(read.zoom);
+  EXPECT_EQ(read.zoom->clock_offset, written.zoom->clock_offset);
+  EXPECT_EQ(read.zoom->device_id, 2);
+  ASSERT_EQ(read.zoom->settings.size(), 2u);
+  EXPECT_NEAR(read.zoom->settings[0].view_rad, 0.375, 1e-12);
+  EXPECT_EQ(read.zoom->settings[0].lens.fx_px, 1800.25);
+  EXPECT_EQ(read.zoom->settings[0].lens.distortion[0], 0.1);
+
+  const auto rows =
+      ParseZoomRows(EurocZoomText({{TimeFromNanoseconds(7), 0.375}}), "zoom0/data.csv");
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].time, TimeFromNanoseconds(7));
+  EXPECT_NEAR(rows[0].view_rad, 0.375, 1e-6);
+}
+
 TEST(EurocTextTest, PosesRoundTrip) {
   const std::vector<PoseSample> written = {
       {TimeFromNanoseconds(5), {Eigen::Quaterniond(0.6, 0, 0.8, 0), {1, -2, 3.5}}},

@@ -32,6 +32,8 @@ RecordedFiles::File FileOf(EurocTable table) {
       return {root / euroc::kPoses, EurocPoseColumns("WB") + "\n"};
     case EurocTable::kGimbal:
       return {root / euroc::kGimbal, EurocGimbalColumns() + "\n"};
+    case EurocTable::kZoom:
+      return {root / euroc::kZoom, EurocZoomColumns() + "\n"};
     case EurocTable::kTruePoses:
       return {root / euroc::kTruePoses, TrueStateHeader()};
     case EurocTable::kTruePatterns:
@@ -115,6 +117,10 @@ void EurocWriter::WriteGimbalSensor(const GimbalMount& gimbal, YawFrame yaw_fram
             EurocGimbalSensorText(gimbal, yaw_frame, rate_hz));
 }
 
+void EurocWriter::WriteZoomSensor(const ZoomLens& zoom, double rate_hz) const {
+  WriteFile(folder_ / kRoot / euroc::kZoomSensor, EurocZoomSensorText(zoom, rate_hz));
+}
+
 void EurocWriter::WriteImage(Time time, std::string_view extension, std::string_view bytes,
                              std::size_t camera) const {
   ReplaceFile(folder_ / RecordedImagePath(time, extension, camera), bytes);
@@ -138,6 +144,10 @@ void EurocWriter::AddPose(const PoseSample& pose) {
 
 void EurocWriter::AddGimbal(const GimbalSample& report) {
   Add(EurocTable::kGimbal, EurocGimbalCells(report) + "\n");
+}
+
+void EurocWriter::AddZoom(const ZoomSample& report) {
+  Add(EurocTable::kZoom, EurocZoomCells(report) + "\n");
 }
 
 void EurocWriter::AddTruePose(const PoseSample& pose) {

@@ -13,6 +13,7 @@
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/core/poses/gimbal_history.h"
 #include "kestrel/core/poses/pose_history.h"
+#include "kestrel/core/poses/zoom_history.h"
 #include "kestrel/io/recording/euroc/recorded_files.h"
 #include "kestrel/io/recording/euroc/truth_rows.h"
 
@@ -30,14 +31,16 @@ enum class EurocTable {
   kDroppedImages,
   kPoses,
   kGimbal,
+  kZoom,
   kTruePoses,
   kTruePatterns,
   kPackets
 };
 
 inline constexpr std::array kEurocTables{
-    EurocTable::kImages, EurocTable::kExposures, EurocTable::kDroppedImages, EurocTable::kPoses,
-    EurocTable::kGimbal, EurocTable::kTruePoses, EurocTable::kTruePatterns,  EurocTable::kPackets};
+    EurocTable::kImages,    EurocTable::kExposures,    EurocTable::kDroppedImages,
+    EurocTable::kPoses,     EurocTable::kGimbal,       EurocTable::kZoom,
+    EurocTable::kTruePoses, EurocTable::kTruePatterns, EurocTable::kPackets};
 
 // Returns the table's path in a recording.
 std::filesystem::path PathOf(EurocTable table);
@@ -59,12 +62,13 @@ class EurocWriter {
   EurocWriter(const EurocWriter&) = delete;
   EurocWriter& operator=(const EurocWriter&) = delete;
 
-  // Write the sensor.yaml of a camera, of the poses and of the gimbal. Throw InputError when they
-  // cannot.
+  // Write the sensor.yaml of a camera, of the poses, of the gimbal and of the zoom. Throw
+  // InputError when they cannot.
   void WriteCamera(const CameraCalibration& calibration, double rate_hz,
                    std::size_t camera = 0) const;
   void WritePoseSensor(double rate_hz) const;
   void WriteGimbalSensor(const GimbalMount& gimbal, YawFrame yaw_frame, double rate_hz) const;
+  void WriteZoomSensor(const ZoomLens& zoom, double rate_hz) const;
 
   // Writes the file of an encoded image, which is not listed yet. Several threads may write
   // different images. Throws InputError when it cannot be written; then no part of it is there.
@@ -77,6 +81,7 @@ class EurocWriter {
   void AddDroppedImage(Time time, std::string_view reason, std::size_t camera = 0);
   void AddPose(const PoseSample& pose);
   void AddGimbal(const GimbalSample& report);
+  void AddZoom(const ZoomSample& report);
   void AddTruePose(const PoseSample& pose);  // without motion: at rest
   void AddTruePattern(const TruePattern& pattern);
   void AddPacket(std::int64_t utc_us, std::span<const std::uint8_t> bytes);

@@ -91,11 +91,13 @@ void AddFile(const std::string& name, const std::string& path,
 }  // namespace
 
 ImageSequence::ImageSequence(std::vector<Item> items, std::string calibration_file,
-                             std::vector<PoseSample> poses, std::vector<GimbalSample> gimbal)
+                             std::vector<PoseSample> poses, std::vector<GimbalSample> gimbal,
+                             std::vector<ZoomSample> zoom)
     : items_(std::move(items)),
       calibration_file_(std::move(calibration_file)),
       poses_(std::move(poses)),
-      gimbal_(std::move(gimbal)) {}
+      gimbal_(std::move(gimbal)),
+      zoom_(std::move(zoom)) {}
 
 bool ImageSequence::ReadNext(Frame* frame) {
   if (next_ == items_.size()) return false;

@@ -20,7 +20,8 @@ class ImageSequence : public FrameSource {
 
   // 'items' are in order of time, at least one. The others are as FrameSource returns them.
   explicit ImageSequence(std::vector<Item> items, std::string calibration_file = "",
-                         std::vector<PoseSample> poses = {}, std::vector<GimbalSample> gimbal = {});
+                         std::vector<PoseSample> poses = {}, std::vector<GimbalSample> gimbal = {},
+                         std::vector<ZoomSample> zoom = {});
 
   bool Read(std::size_t index, Frame* frame) const override;
   std::optional<std::size_t> frame_count() const override { return items_.size(); }
@@ -30,6 +31,7 @@ class ImageSequence : public FrameSource {
   const std::string& calibration_file() const { return calibration_file_; }
   std::vector<PoseSample> poses() const override { return poses_; }
   std::vector<GimbalSample> gimbal() const override { return gimbal_; }
+  std::vector<ZoomSample> zoom() const override { return zoom_; }
 
  private:
   bool ReadNext(Frame* frame) override;
@@ -38,6 +40,7 @@ class ImageSequence : public FrameSource {
   std::string calibration_file_;
   std::vector<PoseSample> poses_;
   std::vector<GimbalSample> gimbal_;
+  std::vector<ZoomSample> zoom_;
   std::size_t next_ = 0;
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "kestrel/core/geometry/angles.h"
+#include "kestrel/vision/target/part_below_horizon.h"
 
 namespace kestrel {
 namespace {
@@ -63,6 +64,11 @@ std::optional<cv::Rect> PriorKnowledge::PartOfImage(double sigma_m) const {
   const int y1 = std::min(camera_.height_px(), align(pixel.y() + reach) + kAlign);
   if (x1 - x0 < kAlign || y1 - y0 < kAlign) return std::nullopt;
   return cv::Rect(x0, y0, x1 - x0, y1 - y0);
+}
+
+std::optional<cv::Rect> PriorKnowledge::PartBelowHorizon() const {
+  if (!hint_.up_in_camera || !hint_.sky_above_rad) return std::nullopt;
+  return kestrel::PartBelowHorizon(camera_, *hint_.up_in_camera, *hint_.sky_above_rad);
 }
 
 std::optional<CirclePose> PriorKnowledge::PredictedRing() const {

@@ -27,6 +27,9 @@ class PriorKnowledge {
   // image.
   std::optional<cv::Rect> PartOfImage(double sigma_m) const;
 
+  // As kestrel::PartBelowHorizon; nothing where the hint has no sky.
+  std::optional<cv::Rect> PartBelowHorizon() const;
+
   // Returns the predicted ring. Nothing when the hint lacks centre or up, or shows the ring from
   // below.
   std::optional<CirclePose> PredictedRing() const;

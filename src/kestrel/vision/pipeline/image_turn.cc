@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/calibration/mount/image_turn.h"
+#include "kestrel/vision/pipeline/image_turn.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kFinest_px = 160;  // width; each coarser level has half of it
 constexpr int kFinestStep_px = 4;
+constexpr int kLighter = 3, kGrowth = 4;  // of a Turn
 
 // Returns the gray value between the pixels; NaN outside of the image.
 float GrayAt(const cv::Mat& image, const Eigen::Vector2f& at) {
@@ -51,7 +52,7 @@ ImageTurn::Level ImageTurn::MakeLevel(const CameraModel& camera, int width_px, i
   return level;
 }
 
-ImageTurn::ImageTurn(const CameraIntrinsics& camera) {
+ImageTurn::ImageTurn(const CameraIntrinsics& camera, bool may_zoom) : may_zoom_(may_zoom) {
   const CameraModel model(camera);
   int width_px = std::min(kFinest_px, camera.width_px);
   int step_px = kFinestStep_px;
@@ -62,7 +63,7 @@ ImageTurn::ImageTurn(const CameraIntrinsics& camera) {
   }
 }
 
-bool ImageTurn::Fit(const Level& level, Turn* turn) {
+bool ImageTurn::Fit(const Level& level, Turn* turn) const {
   constexpr int kIterations = 6;
   constexpr float kOutlier = 20;           // gray levels, of what moves by itself
   constexpr float kMostUnexplained = 0.3;  // share of the contrast
@@ -71,16 +72,18 @@ bool ImageTurn::Fit(const Level& level, Turn* turn) {
   float unexplained = 0;
   float weights = 0;
   const auto mean = static_cast<float>(cv::mean(level.before)[0]);
+  const Eigen::Vector2f middle(0.5F * level.before.cols, 0.5F * level.before.rows);
   for (int i = 0; i < kIterations; ++i) {
-    Eigen::Matrix4f normal = Eigen::Matrix4f::Zero();
+    Eigen::Matrix<float, 5, 5> normal = Eigen::Matrix<float, 5, 5>::Zero();
     Turn right = Turn::Zero();
     contrast = unexplained = weights = 0;
     for (const Sample& sample : level.samples) {
       const Eigen::Vector3f rotation = turn->head<3>();
+      const Eigen::Vector2f place(sample.x, sample.y);
       const Eigen::Vector2f at =
-          Eigen::Vector2f(sample.x, sample.y) + sample.shift_of_turn * rotation;
+          place + sample.shift_of_turn * rotation + (*turn)[kGrowth] * (place - middle);
       const float before = level.before.at<float>(sample.y, sample.x);
-      const float difference = GrayAt(level.now, at) - before - (*turn)[3];
+      const float difference = GrayAt(level.now, at) - before - (*turn)[kLighter];
       if (std::isnan(difference)) continue;
       const float slope_x = level.slope_x.at<float>(sample.y, sample.x);
       const float slope_y = level.slope_y.at<float>(sample.y, sample.x);
@@ -89,6 +92,8 @@ bool ImageTurn::Fit(const Level& level, Turn* turn) {
         row[axis] =
             sample.shift_of_turn(0, axis) * slope_x + sample.shift_of_turn(1, axis) * slope_y;
       }
+      row[kGrowth] = 0;
+      if (may_zoom_) row[kGrowth] = (place - middle).dot(Eigen::Vector2f(slope_x, slope_y));
       const float weight = 1 / (1 + difference * difference / (kOutlier * kOutlier));
       normal += weight * row * row.transpose();
       right += weight * difference * row;
@@ -96,12 +101,37 @@ bool ImageTurn::Fit(const Level& level, Turn* turn) {
       unexplained += weight * difference * difference;
       weights += weight;
     }
+    if (!may_zoom_) normal(kGrowth, kGrowth) = 1;
     const Turn step = normal.ldlt().solve(right);
     if (!step.allFinite()) return false;
     *turn -= step;
   }
-  return weights > 0.3F * static_cast<float>(level.samples.size()) &&
+  // An image that has become larger shows less of the one before.
+  const float factor = std::max(1.0F, 1 + (*turn)[kGrowth]);
+  return weights > 0.3F / (factor * factor) * static_cast<float>(level.samples.size()) &&
          contrast > kLeastContrast * weights && unexplained < kMostUnexplained * contrast;
+}
+
+bool ImageTurn::FitAll(Turn* turn) const {
+  bool is_good = false;
+  for (std::size_t i = levels_.size(); i-- > 0;) is_good = Fit(levels_[i], turn);
+  return is_good;
+}
+
+// Tries factors so close together that the coarsest image leads from one of them to the true one.
+bool ImageTurn::FitZoom(Turn* turn) const {
+  constexpr float kStep = 1.2F;
+  constexpr int kSteps = 6;
+  float factor = 1;
+  for (int i = 0; i < kSteps; ++i) {
+    factor *= kStep;
+    for (const float start : {factor, 1 / factor}) {
+      *turn = Turn::Zero();
+      (*turn)[kGrowth] = start - 1;
+      if (Fit(levels_.back(), turn) && FitAll(turn)) return true;
+    }
+  }
+  return false;
 }
 
 std::optional<Eigen::Vector3d> ImageTurn::Add(const cv::Mat& image) {
@@ -120,9 +150,8 @@ std::optional<Eigen::Vector3d> ImageTurn::Add(const cv::Mat& image) {
   }
   if (!std::exchange(has_before_, true)) return std::nullopt;
   Turn turn = Turn::Zero();
-  bool is_good = false;
-  for (std::size_t i = levels_.size(); i-- > 0;) is_good = Fit(levels_[i], &turn);
-  if (!is_good) return std::nullopt;
+  if (!FitAll(&turn) && !(may_zoom_ && FitZoom(&turn))) return std::nullopt;
+  scale_ = 1 + turn[kGrowth];
   return turn.head<3>().cast<double>();
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kestrel/calibration/mount/image_turn.h"
+#include "kestrel/vision/pipeline/image_turn.h"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace kestrel {
 namespace {
 
-CameraIntrinsics Camera() {
+CameraIntrinsics TurningCamera() {
   return {.width_px = 640,
           .height_px = 480,
           .fx_px = 500,
@@ -52,14 +52,14 @@ cv::Mat View(const Eigen::Matrix3d& world_from_camera, Random* random) {
   return view;
 }
 
-Eigen::Matrix3d Rotation(const Eigen::Vector3d& turn) {
+Eigen::Matrix3d TurnedBy(const Eigen::Vector3d& turn) {
   return Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
 }
 
 TEST(ImageTurnTest, RotationIsThatOfCamera) {
   constexpr double kLargest = Radians(2);  // of each axis: 60 deg/s, 30 images/s
   Random random(1);
-  ImageTurn turns(Camera());
+  ImageTurn turns(TurningCamera());
   Eigen::Matrix3d attitude = Eigen::Matrix3d::Identity();
   EXPECT_FALSE(turns.Add(View(attitude, &random)));
   for (int i = 0; i < 20; ++i) {
@@ -68,7 +68,7 @@ TEST(ImageTurnTest, RotationIsThatOfCamera) {
         kLargest;
     const Eigen::Matrix3d before = attitude;
     attitude.setIdentity();
-    if (i % 2 == 0) attitude = before * Rotation(turn);
+    if (i % 2 == 0) attitude = before * TurnedBy(turn);
     const Eigen::AngleAxisd truth(before.transpose() * attitude);
     const auto seen = turns.Add(View(attitude, &random));
     ASSERT_TRUE(seen);
@@ -80,7 +80,7 @@ TEST(ImageTurnTest, RotationIsThatOfCamera) {
 
 TEST(ImageTurnTest, ImagesWithoutTextureHaveNoRotation) {
   Random random(2);
-  ImageTurn turns(Camera());
+  ImageTurn turns(TurningCamera());
   turns.Add(View(Eigen::Matrix3d::Identity(), &random));
   EXPECT_FALSE(turns.Add(cv::Mat(480, 640, CV_8UC1, cv::Scalar(90))));
   EXPECT_FALSE(turns.Add(View(Eigen::Matrix3d::Identity(), &random)));
