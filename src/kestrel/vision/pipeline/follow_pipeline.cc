@@ -49,7 +49,7 @@ TargetTrackerOptions FollowPipelineOptions::Tracker() const {
   tracker.acceleration_noise = 0.3;
   tracker.turn_noise = 0.3;
   tracker.sway_sigma_m = 0;
-  tracker.max_speed_mps = max_speed_mps;
+  tracker.max_speed_mps = 30;
   return tracker;
 }
 
