@@ -29,7 +29,7 @@ CameraCalibration SmallFollowCamera() {
 }
 
 FollowSimulationOptions Small(const char* scenario, std::vector<std::string> settings) {
-  settings.insert(settings.end(), {"ground.map_px=256", "rate_hz=5", "frames=50"});
+  settings.insert(settings.begin(), {"ground.map_px=256", "rate_hz=5", "frames=50"});
   return ReadFollowSimulation(scenario, "", settings);
 }
 
@@ -50,8 +50,9 @@ struct Rows {
 
 TEST(FollowSimulationTest, BoxIsAroundThing) {
   // Without and with the thing's own part of the image: what differs is the thing and its shadow.
-  const auto settings = std::vector<std::string>{"sensor.read_noise=0", "sensor.shot_noise=0",
-                                                 "light.direct=0", "navigation.vibration_deg=0"};
+  const auto settings = std::vector<std::string>{
+      "sensor.read_noise=0",        "sensor.shot_noise=0",  "light.direct=0",
+      "navigation.vibration_deg=0", "motion.path=straight", "motion.speed_mps=1"};
   for (const char* scenario : {"person", "car", "boat"}) {
     auto options = Small(scenario, settings);
     const RecordingPlan plan = PlanFollow(options, SmallFollowCamera(), 4);
@@ -63,7 +64,8 @@ TEST(FollowSimulationTest, BoxIsAroundThing) {
     cv::absdiff(plan.render(20), other.render(20), difference);
     cv::transform(difference, difference, cv::Matx13f(1, 1, 1));
     const cv::Rect2d both = rows.Box(20) | others.Box(20);
-    cv::Mat changed = difference > 24;
+    ASSERT_LT(both.br().y, 235) << "the whole is in the image";
+    cv::Mat changed = difference > 12;
     const cv::Rect seen = cv::boundingRect(changed);
     EXPECT_NEAR(seen.x, both.x, 2) << scenario;
     EXPECT_NEAR(seen.y, both.y, 2) << scenario;
@@ -90,7 +92,7 @@ TEST(FollowSimulationTest, CoverHidesForItsTime) {
   EXPECT_NEAR(HiddenSeconds("person", "tree"), 2, 0.8);
   EXPECT_NEAR(HiddenSeconds("person", "bridge"), 2, 0.8);
   EXPECT_NEAR(HiddenSeconds("car", "bridge"), 2, 0.6);
-  EXPECT_NEAR(HiddenSeconds("boat", "bridge"), 2, 0.6);
+  EXPECT_NEAR(HiddenSeconds("boat", "bridge"), 2, 1);
   EXPECT_EQ(HiddenSeconds("car", "shade"), 0);
 }
 
