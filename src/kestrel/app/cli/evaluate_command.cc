@@ -8,11 +8,13 @@
 #include <fmt/format.h>
 
 #include "kestrel/app/cli/commands.h"
+#include "kestrel/app/evaluation/evaluate_follow.h"
 #include "kestrel/app/evaluation/evaluate_hunt.h"
 #include "kestrel/app/evaluation/evaluate_landing.h"
 #include "kestrel/app/evaluation/report.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/io/recording/output_folder.h"
+#include "kestrel/io/recording/tables/follow_csv.h"
 
 namespace kestrel {
 namespace {
@@ -30,10 +32,13 @@ Report Evaluate(const EvaluateArguments& arguments) {
   const fs::path output(arguments.output);
   if (!fs::is_directory(output)) {
     throw InputError(arguments.output +
-                     ": no folder, expected the output of `kestrel land` or `hunt`");
+                     ": no folder, expected the output of `kestrel land`, `hunt` or `follow`");
   }
   if (fs::exists(output / "object_detections.csv")) {
     return EvaluateHunt(arguments.recording, arguments.output);
+  }
+  if (fs::exists(output / kFollowTable)) {
+    return EvaluateFollow(arguments.recording, arguments.output);
   }
   return EvaluateLanding(arguments.recording, arguments.output);
 }
@@ -57,7 +62,7 @@ void AddEvaluateCommand(CLI::App* app) {
       ->required();
   command
       ->add_option("OUTPUT", arguments->output,
-                   "Folder that `kestrel land` or `kestrel hunt` wrote for it by --output")
+                   "Folder that `kestrel land`, `hunt` or `follow` wrote for it by --output")
       ->required();
   command
       ->add_option("--report", arguments->report,

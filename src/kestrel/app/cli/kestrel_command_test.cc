@@ -153,7 +153,7 @@ TEST_F(KestrelCommandTest, ConfigPrintsSimulatorOptionsSeparately) {
   const std::string users = Succeed("config").out;
   EXPECT_THAT(users, HasSubstr("min_ring_px:"));
   EXPECT_THAT(users, Not(HasSubstr("sim_")));
-  EXPECT_LE(std::ranges::count(users, '#'), 202);
+  EXPECT_LE(std::ranges::count(users, '#'), 200);
   EXPECT_THAT(Succeed("config --set fly.sim_seed=7").out, HasSubstr("sim_seed: 7 "));
   const std::string simulators = Succeed("config --simulation").out;
   EXPECT_THAT(simulators, HasSubstr("sim_camera:"));

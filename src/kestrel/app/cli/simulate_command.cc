@@ -18,6 +18,7 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/options.h"
 #include "kestrel/io/recording/euroc/recording_place.h"
+#include "kestrel/simulation/recordings/follow_simulation.h"
 #include "kestrel/simulation/recordings/hunt_simulation.h"
 #include "kestrel/simulation/recordings/landing_simulation.h"
 #include "kestrel/simulation/recordings/recording_plan.h"
@@ -48,7 +49,7 @@ void Render(const RecordingPlan& plan, const SimulateArguments& arguments, int w
              took.count());
 }
 
-// The parts in which `landing` and `hunt` differ.
+// The parts in which `landing`, `hunt` and `follow` differ.
 template <class Options>
 struct Kind {
   std::span<const Scenario> scenarios;
@@ -101,6 +102,9 @@ void AddSimulateCommand(CLI::App* app) {
   AddKind(command, "hunt", "A flight over coloured objects (colour camera, rolling shutter)",
           Kind<HuntSimulationOptions>{HuntScenarios(), ReadHuntSimulation, PlanHunt,
                                       HuntCalibration()});
+  AddKind(command, "follow", "A flight beside a person, a car or a boat (colour camera)",
+          Kind<FollowSimulationOptions>{FollowScenarios(), ReadFollowSimulation, PlanFollow,
+                                        FollowCalibration()});
   AddTouchdownCommand(command);
 }
 

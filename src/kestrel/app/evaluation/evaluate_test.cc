@@ -4,9 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kestrel/app/evaluation/evaluate_follow.h"
 #include "kestrel/app/evaluation/evaluate_hunt.h"
 #include "kestrel/app/evaluation/evaluate_landing.h"
 #include "kestrel/app/evaluation/test_flight.h"
+#include "kestrel/io/recording/tables/follow_csv.h"
 
 namespace kestrel {
 namespace {
@@ -51,6 +53,32 @@ class EvaluateTest : public ::testing::Test {
 
   TestFlight files_;
 };
+
+// Images of a thing that is seen, on a look-alike, beside both, hidden, and found again.
+TEST_F(EvaluateTest, FollowReportCountsEachVerdict) {
+  constexpr const char* kHeader =
+      "#timestamp [ns],x [px],y [px],width [px],height [px],p_WR_W_x [m],p_WR_W_y [m],p_WR_W_z [m],"
+      "v_WR_W_x [m s^-1],v_WR_W_y [m s^-1],v_WR_W_z [m s^-1],visible_fraction []\n";
+  std::string truth = kHeader, other = kHeader, rows = FollowCsvHeader();
+  const double visible[] = {1, 1, 1, 0, 1};
+  const char* boxes[] = {"104,100,20,40", "300,100,20,40", "200,300,20,40", "100,100,20,40",
+                         "100,100,20,40"};
+  const char* places[] = {"2.0,0.3,0,,,,0.2,0.1", "5,5,0,,,,1,1", "5,5,0,,,,1,1", "2,0,0,,,,1,1",
+                          "2.0,0.3,0,,,,0.2,0.1"};
+  for (int i = 0; i < 5; ++i) {
+    truth += fmt::format("{},100,100,20,40,2,0,0,1,0,0,{}\n", TestFlight::TimeNs(i), visible[i]);
+    other += fmt::format("{},300,100,20,40,4,0,0,1,0,0,1\n", TestFlight::TimeNs(i));
+    rows +=
+        fmt::format("{},{},following,{},0.9,{},1\n", i, TestFlight::TimeNs(i), boxes[i], places[i]);
+  }
+  files_.WriteTruth("region0/data.csv", truth);
+  files_.WriteTruth("region1/data.csv", other);
+  files_.WriteResult("follow_track.csv", rows);
+  const std::string page = ToMarkdown(EvaluateFollow(files_.recording(), files_.output()));
+  EXPECT_THAT(page, HasSubstr("| 5 | 4 | 2 | 1 | 1 | 1 | 0.8"));
+  EXPECT_THAT(page, HasSubstr("| 2 | 0.300 | 0.300 | 8.85 |")) << "across the line of sight";
+  EXPECT_THAT(page, HasSubstr("| 0.10 | 0.00 |"));
+}
 
 TEST_F(EvaluateTest, LandingReportHasTablesAndPlots) {
   WriteLanding();

@@ -27,6 +27,19 @@ void PrepareGuidance(std::string_view name, SimulatedAutopilotOptions* options) 
   if (name == kSimulatedPx4 && parameters.empty()) parameters = "LNDMC_XY_VEL_MAX=12";
 }
 
+// The pilot keeps the UAV where its camera sees the thing to follow, unless the user set a place.
+void PrepareFollow(PilotOptions* pilot) {
+  const PilotOptions usual;
+  if (pilot->offset_east_m != usual.offset_east_m ||
+      pilot->offset_north_m != usual.offset_north_m) {
+    return;
+  }
+  pilot->offset_east_m = 0;
+  pilot->offset_north_m = -12;
+  pilot->heading_deg = 0;
+  pilot->start_altitude_m = 8;
+}
+
 }  // namespace
 
 FlyAutopilot MakeFlyAutopilot(const std::string& name, const FlyOptions& options, bool guides,
@@ -50,6 +63,7 @@ FlyAutopilot MakeFlyAutopilot(const std::string& name, const FlyOptions& options
   simulated.model.zoom = source->simulated.zoom();
   simulated.model.zoomed_lens = source->simulated.lens();
   if (guides) PrepareGuidance(name, &simulated);
+  if (source->simulated.World()->options().thing.is_there()) PrepareFollow(&simulated.model.pilot);
   const auto seed = static_cast<std::uint64_t>(options.sim_seed);
   const int port = FreeLoopbackPort();
   auto uav = std::make_unique<SimulatedAutopilot>(

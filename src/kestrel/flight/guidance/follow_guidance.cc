@@ -18,7 +18,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kCoast_s = 1;  // the UAV flies on by the prediction alone for no longer
+constexpr double kCoast_s = 1;    // the UAV flies on by the prediction alone for no longer
+constexpr double kResume_s = 10;  // lost for longer, following needs a new confirmation
 // Parts of the distance: the largest standard deviation of the target's place to begin with, and to
 // go on with; and the errors of the distance below which it is following, and beyond which not.
 constexpr double kKnown = 0.2, kStillKnown = 0.3;
@@ -91,7 +92,7 @@ void FollowGuidance::ChoosePhase(const GuidanceInput& input) {
   TakeOrder(input, trouble);
   if (mark_ == 0) return;
   Remember(trouble != nullptr, input.now, &lost_);
-  if (IsLongerThan(options().follow.resume_s, lost_, input.now)) {
+  if (IsLongerThan(kResume_s, lost_, input.now)) {
     mark_ = 0;
     return Stop("was lost for too long: needs a new confirmation");
   }

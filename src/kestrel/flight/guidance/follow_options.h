@@ -14,7 +14,6 @@ struct FollowOptions {
   double distance_m = 12;
   double height_m = 8;
   std::string side = "free";
-  double resume_s = 10;
 
   static void Visit(auto& self, auto&& visit) {
     visit("distance_m", self.distance_m, Range{2, 200},
@@ -23,8 +22,7 @@ struct FollowOptions {
     visit("side", self.side,
           "where the UAV stays: free (on the line to it), behind (its motion), or the bearing from "
           "it to the UAV in degrees clockwise from north");
-    visit("resume_s", self.resume_s, Range{0, 3600},
-          "time for which it may be lost until following it needs a new confirmation");
+    visit.Gone({"resume_s"});
   }
   std::vector<std::string> Validate() const;
 

@@ -40,9 +40,11 @@ CameraCalibration Scaled(CameraCalibration calibration, double scale) {
   return calibration;
 }
 
-// Returns the paper's camera, on a gimbal if there is one.
-CameraCalibration FirstCalibration(double scale, const std::optional<GimbalMount>& gimbal) {
-  CameraCalibration calibration = Scaled(PaperCalibration(), scale);
+// Returns the paper's camera, or the one for a thing to follow; on a gimbal if there is one.
+CameraCalibration FirstCalibration(const VehicleWorld& world, double scale,
+                                   const std::optional<GimbalMount>& gimbal) {
+  const bool follows = world.options().thing.is_there();
+  CameraCalibration calibration = Scaled(follows ? FollowCalibration() : PaperCalibration(), scale);
   if (gimbal) {
     calibration.gimbal = gimbal;
     calibration.body_from_camera = gimbal->body_from_pivot * gimbal->platform_from_camera;
@@ -71,7 +73,8 @@ SimulatedCameraOptions::SimulatedCameraOptions() { shutter.rays_per_pixel = 3; }
 SimulatedCamera::SimulatedCamera(const SimulatedCameraOptions& options, VehicleWorld* world,
                                  Time start, std::uint64_t seed,
                                  const std::optional<GimbalMount>& gimbal)
-    : SimulatedCamera(options, world, start, seed, FirstCalibration(options.scale, gimbal)) {}
+    : SimulatedCamera(options, world, start, seed,
+                      FirstCalibration(*world, options.scale, gimbal)) {}
 
 SimulatedCamera::SimulatedCamera(const SimulatedCameraOptions& options, VehicleWorld* world,
                                  Time start, std::uint64_t seed,

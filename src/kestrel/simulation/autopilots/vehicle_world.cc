@@ -29,6 +29,10 @@ std::vector<VehicleScenario> MakeSitlScenarios() {
       {"circle",
        "drives on a circle of 15 m around the origin at 2 m/s",
        {"vehicle.path=circle", "vehicle.speed_mps=2"}},
+      {"follow",
+       "a person to follow, who waits until the UAV has been 5 m high, then walks, stops and turns",
+       {"thing.kind=person", "vehicle.path=stops", "vehicle.speed_mps=1.6", "drive_altitude_m=5",
+        "drive_delay_s=15", "surroundings.landing_legs=false"}},
       {"figure8",
        "the contest: 15 km/h on a figure of eight through the origin",
        {"vehicle.path=figure8", "vehicle.speed_mps=4.2"}},
@@ -52,12 +56,35 @@ const VehicleScenario& FindSitlScenario(const std::string& name) {
       fmt::format("there is no scenario 'sim:{}', expected {}", name, fmt::join(names, ", ")));
 }
 
+// A thing stands where the pad would be.
+LandingScene MakeScene(const VehicleWorldOptions& options, std::uint64_t seed) {
+  if (!options.thing.is_there()) {
+    return MakeLandingScene(options, kTrackDuration_s, /*channels=*/1, seed);
+  }
+  LandingScene scene;
+  Random random = RandomOf(seed, LandingPart::kVehicle);
+  scene.world_from_pattern = VehicleMotion(options.vehicle, &random);
+  scene.target = [thing = scene.world_from_pattern](double time_s) {
+    return Eigen::Vector3d(thing(time_s).translation);
+  };
+  // The UAV is expected behind it.
+  const Path eye = [thing = scene.world_from_pattern](double time_s) {
+    return Eigen::Vector3d(thing(time_s) * Eigen::Vector3d(-12, 0, 8));
+  };
+  scene.world = MakeFollowScene(options.thing, {options.ground, options.light},
+                                scene.world_from_pattern, eye, /*channels=*/3, seed)
+                    .world;
+  scene.print = PrintOfTarget(options.target, scene.pattern);
+  return scene;
+}
+
 }  // namespace
 
 // The board is at the height of the ground, because a simulated autopilot lands on nothing else.
 // There are few things around, because every surface costs time in each frame; a coarser ground is
 // drawn sooner.
 VehicleWorldOptions::VehicleWorldOptions() {
+  thing.kind = "none";
   board.carrier = "none";
   ground.map_px = 2048;
   surroundings.vehicles = 1;
@@ -82,13 +109,12 @@ VehicleWorld::VehicleWorld(const VehicleWorldOptions& options, Time start, std::
     : options_(Checked(options)),
       start_(options.start_s > 0 ? Time(DurationFromSeconds(options.start_s)) : start),
       departure_s_(kWaiting),
-      scene_(MakeLandingScene(options, kTrackDuration_s, /*channels=*/1, seed)) {
-  constexpr std::size_t kVehicleBody = 1;
+      scene_(MakeScene(options, seed)) {
   const auto delayed = [this](const auto& motion) {
     return [this, motion](double time_s) { return motion(DrivenTime(time_s)); };
   };
-  Motion& vehicle = scene_.world.bodies[kVehicleBody];
-  vehicle = delayed(vehicle);
+  // The vehicle, or the thing and its look-alikes; whatever else has a body stands.
+  for (Motion& body : scene_.world.bodies) body = delayed(body);
   scene_.world_from_pattern = delayed(scene_.world_from_pattern);
   scene_.target = delayed(scene_.target);
 }
@@ -102,6 +128,7 @@ Eigen::Vector3d VehicleWorld::VelocityAt(Time time) const {
 }
 
 bool VehicleWorld::IsOnBoard(const Eigen::Vector3d& point_in_pattern) const {
+  if (options_.thing.is_there()) return false;
   const double half = 0.5 * scene_.print.board_size_m + options_.board.border_m;
   return ReachOnBoard(scene_.print, point_in_pattern.head<2>()) <= half;
 }

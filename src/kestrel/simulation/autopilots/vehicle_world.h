@@ -17,22 +17,26 @@
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/geometry/rigid_transform.h"
 #include "kestrel/core/poses/pose_history.h"
+#include "kestrel/simulation/scene/follow_scene.h"
 #include "kestrel/simulation/scene/landing_scene.h"
 #include "kestrel/simulation/scene/vehicle_scenarios.h"
 #include "kestrel/vision/landing/landing_pattern.h"
 
 namespace kestrel {
 
-// The vehicle with the pattern in the autopilot's local frame (ENU), driving in real time.
+// The vehicle with the pattern in the autopilot's local frame (ENU), driving in real time; or a
+// thing to follow, which has the vehicle's motion, and no pad.
 struct VehicleWorldOptions : LandingSceneOptions {
   VehicleWorldOptions();
 
+  FollowedThingOptions thing;
   double drive_altitude_m = 0;
   double drive_delay_s = 0;
   double drive_acceleration = 1;
   double start_s = 0;
 
   static void Visit(auto& self, auto&& visit) {
+    visit.Group("thing", self.thing);
     visit("drive_altitude_m", self.drive_altitude_m, Range{0, 1000},
           "height of the UAV that the vehicle waits for; 0: it drives all the time");
     visit("drive_delay_s", self.drive_delay_s, Range{0, 1000},

@@ -39,6 +39,8 @@ struct RecordingPlan {
 CameraCalibration PaperCalibration();
 // The colour camera of a hunt: 1280x720, 77 degrees wide, mounted in the same way.
 CameraCalibration HuntCalibration();
+// A colour camera that looks ahead and 34 degrees down: 752x480, 70 degrees wide.
+CameraCalibration FollowCalibration();
 
 // Plans a flight over the landing pattern, or a hunt, by the name of its scenario and "key=value"
 // settings, as `kestrel simulate` does: "calm", "figure8"; its --list names them. The same

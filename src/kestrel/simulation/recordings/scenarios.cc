@@ -83,6 +83,22 @@ const std::vector<Scenario>& AllHuntScenarios() {
   return scenarios;
 }
 
+const std::vector<Scenario>& AllFollowScenarios() {
+  static const std::vector<Scenario> scenarios = {
+      {"person", "beside a person who walks, stops and turns", {}},
+      {"car",
+       "beside a car at 30 km/h on a wide figure of eight",
+       {"thing.kind=car", "motion.path=figure8", "motion.speed_mps=8.33", "motion.radius_m=40",
+        "flight.distance_m=15", "flight.height_m=10"}},
+      {"boat",
+       "beside a boat that sails on a circle",
+       {"thing.kind=boat", "motion.path=circle", "motion.speed_mps=4", "motion.radius_m=40",
+        "motion.shake_deg=2", "flight.distance_m=18", "flight.height_m=12", "ground.material=water",
+        "ground.markings=0", "ground.details=0", "ground.curb=false", "ground.shadows=false"}},
+  };
+  return scenarios;
+}
+
 // The airframe, the limits and the tracker for a vehicle at 80 km/h or on waves; the UAV flies
 // behind the vehicle already when that is faster than the UAV could come up with.
 constexpr std::array kSwift = {
@@ -173,6 +189,15 @@ RecordingPlan PlanLandingScenario(const std::string& scenario,
                                   const std::vector<std::string>& settings,
                                   const CameraCalibration& camera, std::uint64_t seed) {
   return PlanLanding(ReadLandingSimulation(scenario, "", settings), camera, seed);
+}
+
+std::span<const Scenario> FollowScenarios() { return AllFollowScenarios(); }
+
+FollowSimulationOptions ReadFollowSimulation(const std::string& scenario,
+                                             const std::string& config_file,
+                                             const std::vector<std::string>& settings) {
+  return ReadSimulation<FollowSimulationOptions>(FollowScenarios(), scenario, config_file,
+                                                 settings);
 }
 
 RecordingPlan PlanHuntScenario(const std::string& scenario,

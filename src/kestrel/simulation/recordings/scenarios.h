@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "kestrel/simulation/recordings/follow_simulation.h"
 #include "kestrel/simulation/recordings/hunt_simulation.h"
 #include "kestrel/simulation/recordings/landing_simulation.h"
 #include "kestrel/simulation/recordings/touchdown_simulation.h"
@@ -18,9 +19,10 @@ struct Scenario {
   std::vector<const char*> settings;  // "key=value", as for --set
 };
 
-// The flights of `kestrel simulate landing`, `hunt` and `touchdown`.
+// The flights of `kestrel simulate landing`, `hunt`, `follow` and `touchdown`.
 std::span<const Scenario> LandingScenarios();
 std::span<const Scenario> HuntScenarios();
+std::span<const Scenario> FollowScenarios();
 std::span<const Scenario> TouchdownScenarios();
 
 // Returns the options of a scenario, changed by those of the file (if not empty), and then by the
@@ -32,6 +34,9 @@ LandingSimulationOptions ReadLandingSimulation(const std::string& scenario,
 HuntSimulationOptions ReadHuntSimulation(const std::string& scenario,
                                          const std::string& config_file,
                                          const std::vector<std::string>& settings);
+FollowSimulationOptions ReadFollowSimulation(const std::string& scenario,
+                                             const std::string& config_file,
+                                             const std::vector<std::string>& settings);
 TouchdownSimulationOptions ReadTouchdownSimulation(const std::string& scenario,
                                                    const std::string& config_file,
                                                    const std::vector<std::string>& settings);

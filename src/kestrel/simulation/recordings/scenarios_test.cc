@@ -70,8 +70,9 @@ TEST(ScenariosTest, RefusesMalformedScenarioFiles) {
   EXPECT_THAT(error("flight:\n  end_altitude_m: -0.5\n"),
               HasSubstr("flight.end_altitude_m is -0.5, expected 0.1 to 100"));
   EXPECT_THAT(error("frames: 3\n"), HasSubstr("frames / rate_hz is 0.10 s, expected at least 3."));
-  EXPECT_THAT(error("ground:\n  material: lava\n"),
-              HasSubstr("ground.material is 'lava', expected asphalt, concrete, sand or grass"));
+  EXPECT_THAT(
+      error("ground:\n  material: lava\n"),
+      HasSubstr("ground.material is 'lava', expected asphalt, concrete, sand, grass or water"));
   EXPECT_THAT(error("ground:\n  map_px: 1000\n"),
               HasSubstr("ground.map_px is 1000, expected a power of two"));
   EXPECT_THAT(InputErrorOf([] { ReadLandingSimulation("figure9", "", {}); }),

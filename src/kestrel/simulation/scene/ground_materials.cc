@@ -15,12 +15,13 @@
 namespace kestrel {
 namespace {
 
-const std::array<GroundMaterial, 4>& Materials() {
-  static const std::array<GroundMaterial, 4> materials = {
+const std::array<GroundMaterial, 5>& Materials() {
+  static const std::array<GroundMaterial, 5> materials = {
       GroundMaterial{"asphalt", {0.135, 0.13, 0.128}, 0.16, 0.28, 0.006, true},
       GroundMaterial{"concrete", {0.27, 0.29, 0.3}, 0.12, 0.12, 0.01, true},
       GroundMaterial{"sand", {0.16, 0.24, 0.31}, 0.14, 0.16, 0.008, false},
       GroundMaterial{"grass", {0.045, 0.12, 0.085}, 0.28, 0.55, 0.009, false},
+      GroundMaterial{"water", {0.07, 0.055, 0.03}, 0.25, 0.5, 0.03, false},
   };
   return materials;
 }

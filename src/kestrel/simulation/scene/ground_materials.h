@@ -21,6 +21,7 @@ struct GroundMaterial {
   bool paved;               // roads are made of this material
 };
 
+// The last one is water, all others are land.
 std::span<const GroundMaterial> GroundMaterials();
 
 // Throws InputError for an unknown name.

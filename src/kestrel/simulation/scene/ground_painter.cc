@@ -55,8 +55,8 @@ std::vector<std::string> GroundOptions::Validate() const {
   std::vector<std::string> violations;
   const auto materials = GroundMaterials();
   if (std::ranges::none_of(materials, [&](const auto& m) { return material == m.name; })) {
-    violations.push_back(
-        fmt::format("material is '{}', expected asphalt, concrete, sand or grass", material));
+    violations.push_back(fmt::format(
+        "material is '{}', expected asphalt, concrete, sand, grass or water", material));
   }
   if (map_px < 64 || map_px > 8192 || !std::has_single_bit(static_cast<unsigned>(map_px))) {
     violations.push_back(fmt::format("map_px is {}, expected a power of two, 64 to 8192", map_px));
@@ -329,7 +329,7 @@ Ground MakeGround(const GroundOptions& options, const std::vector<Vector2d>& tra
   painter.Details(options.details - options.details / 2, random);
   if (options.curb) {
     const auto materials = GroundMaterials();
-    const int other = random->Integer(0, static_cast<int>(materials.size()) - 1);
+    const int other = random->Integer(0, static_cast<int>(materials.size()) - 2);  // land
     painter.Curb(options.map_size_m * random->Uniform(0.3, 0.42), materials[other].name, random);
   }
   Ground ground = painter.ToGround(channels);

@@ -26,7 +26,7 @@ struct GroundOptions {
   int map_px = 4096;
 
   static void Visit(auto& self, auto&& visit) {
-    visit("material", self.material, "asphalt, concrete, sand or grass");
+    visit("material", self.material, "asphalt, concrete, sand, grass or water");
     visit("markings", self.markings, Range{0, 1000}, "number of road markings");
     visit("details", self.details, Range{0, 1000},
           "number of manhole covers, drains, cracks, stains and tyre marks");

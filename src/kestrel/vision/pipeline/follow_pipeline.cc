@@ -49,7 +49,7 @@ TargetTrackerOptions FollowPipelineOptions::Tracker() const {
   tracker.acceleration_noise = 0.3;
   tracker.turn_noise = 0.3;
   tracker.sway_sigma_m = 0;
-  tracker.max_speed_mps = max_speed_mps;
+  tracker.max_speed_mps = 30;
   return tracker;
 }
 
@@ -78,6 +78,7 @@ class FollowPipeline::Impl {
     region_.Mark(image, time, box);
     is_marked_ = true;
     tracker_ = TargetTracker(options_.Tracker());
+    last_.reset();
     FollowObservation seen = Begin(time);
     seen.region = RegionReport{RegionState::kFollowing, box, 1};
     seen.detect_time = std::chrono::steady_clock::now() - start;
@@ -103,6 +104,7 @@ class FollowPipeline::Impl {
 
  private:
   FollowObservation Begin(Time time);
+  std::optional<TargetEstimate> Expected(Time time) const;
   std::optional<RegionHint> HintFor(const FollowObservation& seen) const;
   void Locate(FollowObservation* seen);
   std::optional<Eigen::Vector3d> FootRay(const RigidTransform& world_from_camera,
@@ -117,6 +119,8 @@ class FollowPipeline::Impl {
   bool is_marked_ = false;
   PoseUncertainty pose_uncertainty_;  // of the present frame, where it has a pose
   TargetTracker tracker_;
+  std::optional<TargetEstimate> last_;  // the newest one, also when the track is lost
+  Time last_time_;
   Eigen::Vector2d foot_px_ = Eigen::Vector2d::Zero();  // from the middle of the box, last seen
   double size_px_ = 0;                                 // of the box, last seen
 };
@@ -132,10 +136,23 @@ FollowObservation FollowPipeline::Impl::Begin(Time time) {
   return seen;
 }
 
-// The place in the image that the track predicts. The errors that all places share are in its
+// The target by the track, and where it was last when the track is lost: it may have gone on from
+// there, in any direction.
+std::optional<TargetEstimate> FollowPipeline::Impl::Expected(Time time) const {
+  if (const auto target = tracker_.Predict(time)) return target;
+  if (!last_) return std::nullopt;
+  constexpr double kWalk_mps = 1;
+  TargetEstimate target = *last_;
+  const double speed = std::max(kWalk_mps, last_->motion.velocity().head<2>().norm());
+  const double gone_m = speed * ToSeconds(time - last_time_);
+  target.motion.covariance.topLeftCorner<2, 2>().diagonal().array() += 0.5 * gone_m * gone_m;
+  return target;
+}
+
+// The place in the image where the target is expected. The errors that all places share are in its
 // covariance, too, though they cancel here: the search becomes wider than it must be.
 std::optional<RegionHint> FollowPipeline::Impl::HintFor(const FollowObservation& seen) const {
-  const auto target = tracker_.Predict(seen.time);
+  const auto target = Expected(seen.time);
   if (!target || !seen.world_from_camera) return std::nullopt;
   const RigidTransform camera_from_world = seen.world_from_camera->Inverse();
   const Eigen::Vector3d in_camera = camera_from_world * target->motion.position();
@@ -166,6 +183,9 @@ void FollowPipeline::Impl::Locate(FollowObservation* seen) {
   }
   seen->track_state = tracker_.StateAt(seen->time);
   seen->target = tracker_.Predict(seen->time);
+  if (!seen->target) return;
+  last_ = seen->target;
+  last_time_ = seen->time;
 }
 
 // Returns the direction in the world to where the thing in a box stands.

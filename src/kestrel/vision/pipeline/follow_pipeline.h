@@ -23,7 +23,6 @@ struct FollowPipelineOptions {
 
   double ground_height_m = 0;
   double ground_sigma_m = 0.5;
-  double max_speed_mps = 30;
   double pose_extrapolation_s = 0;  // longest prediction of the pose; a flight sets it
 
   static void Visit(auto& self, auto&& visit) {
@@ -31,7 +30,7 @@ struct FollowPipelineOptions {
           "height in the world of the ground under what is followed");
     visit("ground_sigma_m", self.ground_sigma_m, Range{0, 100, true, false},
           "error of that height, standard deviation");
-    visit("max_speed_mps", self.max_speed_mps, MoreThan(0), "speed of the fastest thing");
+    visit.Gone({"max_speed_mps"});
   }
 
   TargetTrackerOptions Tracker() const;  // of the motion in the world
@@ -80,8 +79,8 @@ class FollowPipeline {
   // Adds a report of the gimbal on which the calibration has the camera, in the same way.
   PoseStatus AddGimbal(const GimbalSample& sample);
 
-  // Changes the options, and keeps poses and mark. The speed keeps its old effect. Throws
-  // InputError and changes nothing when they are invalid.
+  // Changes the options, and keeps poses and mark. Throws InputError and changes nothing when they
+  // are invalid.
   void ChangeOptions(const FollowPipelineOptions& options);
 
   // Processes a frame in which a person has marked a region, in place of what was followed before.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -126,9 +127,23 @@ struct RegionTracker::Impl {
   // True when the box has stopped with the background, which the region had not done.
   bool HasDrifted(const Eigen::Vector2d& shift, double seconds, double agreement);
   // Looks for a region that is not seen, around the expected place.
-  void Search(const cv::Mat& image, const Eigen::Vector2d& expected, double radius_px);
+  // 'reach_px': farther from there it cannot be.
+  void Search(const cv::Mat& image, const Eigen::Vector2d& expected, double radius_px,
+              double reach_px);
   Eigen::Vector2d NextPlace(const Eigen::Vector2d& around, double radius_px);
   RegionReport Report(double probability) const;
+  // A window shows more than where the region can be: what looks like it may be there.
+  double ReachOf(const RegionHint& hint) const {
+    constexpr double kMargin = 0.25;  // sizes of the region
+    return RadiusOf(hint) + kMargin * std::sqrt(size.prod());
+  }
+  static double RadiusOf(const RegionHint& hint) {
+    constexpr double kSigmas = 2;
+    return kSigmas * std::sqrt(hint.covariance_px2.trace());
+  }
+  bool IsInImage(const Eigen::Vector2d& at) const {
+    return at.x() >= 0 && at.y() >= 0 && at.x() <= image_size.width && at.y() <= image_size.height;
+  }
 
   WindowSampler sampler;
   SampledWindow window{kCells * kCellPx, 3};
@@ -265,20 +280,25 @@ bool RegionTracker::Impl::HasDrifted(const Eigen::Vector2d& moved, double second
   return still_s > kStill_s;
 }
 
-// The expected place first, then places of a spiral around it, half a window apart.
+// The expected place first, then places of a spiral around it, half a window apart, that are in the
+// image.
 Eigen::Vector2d RegionTracker::Impl::NextPlace(const Eigen::Vector2d& around, double radius_px) {
   constexpr double kGoldenAngle = 2.399963;
+  constexpr int kTries = 16;
   const double spacing = 0.4 * window_px;
-  const double away = spacing * std::sqrt(place);
-  const double angle = place * kGoldenAngle;
-  ++place;
-  if (away + spacing > radius_px) place = 0;
-  const Eigen::Vector2d at = around + away * Eigen::Vector2d(std::cos(angle), std::sin(angle));
-  return at.cwiseMax(0).cwiseMin(Eigen::Vector2d(image_size.width, image_size.height));
+  for (int i = 0; i < kTries; ++i) {
+    const double away = spacing * std::sqrt(place);
+    const double angle = place * kGoldenAngle;
+    ++place;
+    if (away + spacing > radius_px) place = 0;
+    const Eigen::Vector2d at = around + away * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    if (IsInImage(at)) return at;
+  }
+  return around;
 }
 
 void RegionTracker::Impl::Search(const cv::Mat& image, const Eigen::Vector2d& expected,
-                                 double radius_px) {
+                                 double radius_px, double reach_px) {
   Look best;
   for (int i = 0; i < kPlacesPerImage; ++i) {
     const Eigen::Vector2d at = i == 0 ? expected : NextPlace(expected, radius_px);
@@ -288,7 +308,8 @@ void RegionTracker::Impl::Search(const cv::Mat& image, const Eigen::Vector2d& ex
   // A second look, from the place itself: a window's middle is seen best.
   best = LookAt(image, slow, best.center_px, 1);
   const bool was_hit = is_hit;
-  is_hit = best.peak.value > kLeastToFind * slow_usual.value &&
+  is_hit = (best.center_px - expected).norm() < reach_px &&
+           best.peak.value > kLeastToFind * slow_usual.value &&
            best.peak.sharpness > kLeastSharpness * slow_usual.sharpness;
   if (!is_hit) return;
   center = best.center_px;
@@ -321,7 +342,9 @@ RegionReport RegionTracker::Impl::Track(const cv::Mat& image, Time now,
     const Eigen::Vector2d before = center + shift;
     const Look look = Follow(image, expected);
     const double share = look.peak.value / usual.value;
-    if (share > kLeastToSee) {
+    // What jumps from where the region moves in the world is something else.
+    const bool is_there = !hint || (look.center_px - hint->center_px).norm() < ReachOf(*hint);
+    if (share > kLeastToSee && is_there) {
       const double agreement = Accept(image, look);
       if (agreement > kLeastToSee && !HasDrifted(center - before, seconds, agreement)) {
         state = RegionState::kFollowing;
@@ -330,17 +353,18 @@ RegionReport RegionTracker::Impl::Track(const cv::Mat& image, Time now,
         return Report(ProbabilityOf(agreement));
       }
     }
-    state = RegionState::kCoasting;
   }
+  if (state != RegionState::kLost) state = RegionState::kCoasting;
   center = expected.cwiseMax(0).cwiseMin(Eigen::Vector2d(image_size.width, image_size.height));
   const double unseen_s = ToSeconds(now - seen);
   if (unseen_s > kCoasting_s) state = RegionState::kLost;
   // Without a hint the region may move on by a few of its sizes in a second.
-  constexpr double kSizesPerSecond = 4, kSigmas = 3;
+  constexpr double kSizesPerSecond = 4;
   const double radius =
-      hint ? kSigmas * std::sqrt(hint->covariance_px2.trace())
+      hint ? RadiusOf(*hint)
            : kSizesPerSecond * unseen_s * std::sqrt(size.prod()) + velocity.norm() * unseen_s;
-  Search(image, expected, radius);
+  const double reach = hint ? ReachOf(*hint) : std::numeric_limits<double>::infinity();
+  Search(image, center, std::min(radius, std::hypot(image_size.width, image_size.height)), reach);
   if (state == RegionState::kFollowing) return Report(ProbabilityOf(kLeastToFind));
   return Report(state == RegionState::kLost ? 0 : ProbabilityOf(0));
 }
@@ -360,4 +384,5 @@ RegionReport RegionTracker::Track(const cv::Mat& image, Time time,
                                   const std::optional<RegionHint>& hint) {
   return impl_->Track(image, time, hint);
 }
+
 }  // namespace kestrel

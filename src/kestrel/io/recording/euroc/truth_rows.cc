@@ -32,4 +32,22 @@ std::string LandingTruthRow(const TruePattern& pattern) {
                      pattern.visible_fraction);
 }
 
+std::string RegionTruthFile(std::size_t index) { return fmt::format("region{}/data.csv", index); }
+
+std::string RegionTruthHeader() {
+  return "#timestamp [ns],x [px],y [px],width [px],height [px],"
+         "p_WR_W_x [m],p_WR_W_y [m],p_WR_W_z [m],"
+         "v_WR_W_x [m s^-1],v_WR_W_y [m s^-1],v_WR_W_z [m s^-1],visible_fraction []\n";
+}
+
+std::string RegionTruthRow(const TrueRegion& region) {
+  const Eigen::Vector3d& p = region.place_in_world;
+  const Eigen::Vector3d& v = region.velocity_in_world;
+  const cv::Rect2d& box = region.box_px;
+  return fmt::format(
+      "{},{:.2f},{:.2f},{:.2f},{:.2f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.4f}\n",
+      ToNanoseconds(region.time), box.x, box.y, box.width, box.height, p.x(), p.y(), p.z(), v.x(),
+      v.y(), v.z(), region.visible_fraction);
+}
+
 }  // namespace kestrel
