@@ -54,6 +54,7 @@ void HelipadSearch::Follow(const RigidTransform& expected) {
 
 void HelipadSearch::Begin(const cv::Rect& part) {
   helipad_.finder.Begin(image_, part, &candidates_);
+  may_be_in_glare_ = part.size() != image_.size() || candidates_.borders.ShowsGlare();
 }
 
 bool HelipadSearch::MayHaveSize(int pass, double distance_m, double error) const {
@@ -63,8 +64,9 @@ bool HelipadSearch::MayHaveSize(int pass, double distance_m, double error) const
 }
 
 // Where no pass finds intact borders, strokes in any light are looked for, which takes longer; then
-// gray values are searched, whose logarithms glare brings together.
-int HelipadSearch::Steps() const { return 3 * PlaneBorders::kPasses; }
+// gray values are searched, whose logarithms glare brings together: in a whole image only if some
+// of it is overexposed.
+int HelipadSearch::Steps() const { return (may_be_in_glare_ ? 3 : 2) * PlaneBorders::kPasses; }
 
 void HelipadSearch::SearchStep(const cv::Rect& part, int step) {
   {

@@ -55,6 +55,7 @@ class HelipadSearch final : public PadSearch {
 
   const HelipadSearchModels& helipad_;
   HelipadCandidateBuffers& candidates_;
+  bool may_be_in_glare_ = false;
   bool is_linear_ = false;  // the gray values are searched, not their logarithms
 };
 

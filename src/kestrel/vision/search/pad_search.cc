@@ -58,8 +58,9 @@ void PadSearch::Search() {
   }
   const Clock::time_point start = Clock::now();
   const std::chrono::duration<double, std::milli> limit(hint_.max_search_ms);
-  for (int step = hint_.first_step; step < Steps() && !is_found(); ++step) {
-    if (limit.count() > 0 && step > hint_.first_step && Clock::now() - start > limit) {
+  const int first = std::max(0, hint_.first_step) % Steps();
+  for (int step = first; step < Steps() && !is_found(); ++step) {
+    if (limit.count() > 0 && step > first && Clock::now() - start > limit) {
       report_.diagnostics.next_step = step;
       return;
     }

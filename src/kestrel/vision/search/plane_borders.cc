@@ -43,6 +43,14 @@ cv::Mat Inverted(const cv::Mat& image, std::vector<std::uint8_t>* memory) {
 
 }  // namespace
 
+bool BorderBuffers::ShowsGlare() const {
+  constexpr int kLevel = 1;  // areas of 2 x 2 pixels: one alone may be noise
+  constexpr float kOverexposed = 250;
+  static const auto kLeast = static_cast<std::uint8_t>(255 * LogGrays()(kOverexposed));
+  return std::ranges::any_of(pyramid.level(kLevel).minimum,
+                             [](std::uint8_t darkest) { return darkest >= kLeast; });
+}
+
 void NarrowBorderBuffers::Reserve(const cv::Mat& image, BorderBuffers* borders) {
   inverted.resize(image.total());
   top_hat.Binarize(image, 1, &borders->binary);

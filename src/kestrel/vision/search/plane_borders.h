@@ -38,6 +38,9 @@ struct BorderBuffers {
   BinaryImage binary;
   BorderTracer tracer;
   std::vector<Eigen::Vector2d> points;  // points of one border on the plane
+
+  // Returns whether some area of the logarithms in the pyramid is overexposed.
+  bool ShowsGlare() const;
 };
 
 // Memory of one thread's narrow borders.
