@@ -65,8 +65,8 @@ FollowVerdict VerdictOf(const FollowRow& row, const TrueRegion& truth,
 }
 
 // Compares a place with the truth; 'eye': from where it was seen.
-void ComparePlace(const Eigen::Vector2d& eye, ComparedFollow* compared) {
-  const FollowRow::Place& place = *compared->row.place;
+void ComparePlace(const FollowRow::Place& place, const Eigen::Vector2d& eye,
+                  ComparedFollow* compared) {
   const Eigen::Vector2d error =
       place.in_world - Eigen::Vector2d(compared->truth.place_in_world.head<2>());
   const Eigen::Vector2d along = (place.in_world - eye).normalized();
@@ -89,7 +89,7 @@ std::vector<ComparedFollow> Compare(const FlightTruth& flight, const std::vector
       const double both = (*row.box & truth->box_px).area();
       compared.overlap = both / (row.box->area() + truth->box_px.area() - both);
       const auto camera = flight.WorldFromCamera(row.time);
-      if (row.place && camera) ComparePlace(camera->translation.head<2>(), &compared);
+      if (row.place && camera) ComparePlace(*row.place, camera->translation.head<2>(), &compared);
     }
     all.push_back(compared);
   }

@@ -107,10 +107,10 @@ void Examination::See() {
     if (std::holds_alternative<EndOfStream>(event)) return;
     if (const auto* pose = std::get_if<PoseSample>(&event)) {
       poses_.Add(*pose);
-    } else if (const auto* report = std::get_if<GimbalSample>(&event)) {
-      pipeline_->AddGimbal(*report);
-    } else if (const auto* report = std::get_if<ZoomSample>(&event)) {
-      pipeline_->AddZoom(*report);
+    } else if (const auto* gimbal = std::get_if<GimbalSample>(&event)) {
+      pipeline_->AddGimbal(*gimbal);
+    } else if (const auto* zoom = std::get_if<ZoomSample>(&event)) {
+      pipeline_->AddZoom(*zoom);
     } else {
       Look(std::get<Frame>(event));
     }

@@ -28,7 +28,7 @@ CameraCalibration SmallFollowCamera() {
   return camera;
 }
 
-FollowSimulationOptions Small(const char* scenario, std::vector<std::string> settings) {
+FollowSimulationOptions SmallFollow(const char* scenario, std::vector<std::string> settings) {
   settings.insert(settings.begin(), {"ground.map_px=256", "rate_hz=5", "frames=50"});
   return ReadFollowSimulation(scenario, "", settings);
 }
@@ -54,7 +54,7 @@ TEST(FollowSimulationTest, BoxIsAroundThing) {
       "sensor.read_noise=0",        "sensor.shot_noise=0",  "light.direct=0",
       "navigation.vibration_deg=0", "motion.path=straight", "motion.speed_mps=1"};
   for (const char* scenario : {"person", "car", "boat"}) {
-    auto options = Small(scenario, settings);
+    auto options = SmallFollow(scenario, settings);
     const RecordingPlan plan = PlanFollow(options, SmallFollowCamera(), 4);
     options.thing.kind = scenario == std::string("person") ? "boat" : "person";
     const RecordingPlan other = PlanFollow(options, SmallFollowCamera(), 4);
@@ -78,7 +78,7 @@ TEST(FollowSimulationTest, BoxIsAroundThing) {
 // Seconds for which it is hidden.
 double HiddenSeconds(const char* scenario, const char* cover) {
   const RecordingPlan plan =
-      PlanFollow(Small(scenario, {std::string("thing.cover=") + cover, "thing.covered_s=2"}),
+      PlanFollow(SmallFollow(scenario, {std::string("thing.cover=") + cover, "thing.covered_s=2"}),
                  SmallFollowCamera(), 3);
   const Rows rows(plan, "region0/data.csv");
   int hidden = 0;
@@ -97,8 +97,9 @@ TEST(FollowSimulationTest, CoverHidesForItsTime) {
 }
 
 TEST(FollowSimulationTest, LookalikePassesCloseAndHasTruthOfItsOwn) {
-  const RecordingPlan plan = PlanFollow(
-      Small("person", {"thing.lookalikes=1", "thing.first_crossing_s=5"}), SmallFollowCamera(), 2);
+  const RecordingPlan plan =
+      PlanFollow(SmallFollow("person", {"thing.lookalikes=1", "thing.first_crossing_s=5"}),
+                 SmallFollowCamera(), 2);
   const Rows rows(plan, "region0/data.csv"), others(plan, "region1/data.csv");
   double nearest_m = 1e9;
   for (std::size_t i = 0; i < rows.table.row_count(); ++i) {
@@ -112,7 +113,7 @@ TEST(FollowSimulationTest, LookalikePassesCloseAndHasTruthOfItsOwn) {
 
 TEST(FollowSimulationTest, LostFramesAreLeftOut) {
   const RecordingPlan plan =
-      PlanFollow(Small("person", {"lost_frames=0.2", "frames=200"}), SmallFollowCamera(), 2);
+      PlanFollow(SmallFollow("person", {"lost_frames=0.2", "frames=200"}), SmallFollowCamera(), 2);
   EXPECT_NEAR(static_cast<double>(plan.times.size()), 160, 20);
   EXPECT_EQ(Rows(plan, "region0/data.csv").table.row_count(), plan.times.size());
   EXPECT_EQ(plan.render(0).type(), CV_8UC3);
@@ -120,7 +121,7 @@ TEST(FollowSimulationTest, LostFramesAreLeftOut) {
 
 TEST(FollowSimulationTest, ThingsDifferBySeed) {
   const auto image = [](std::uint64_t seed) {
-    const RecordingPlan plan = PlanFollow(Small("person", {}), SmallFollowCamera(), seed);
+    const RecordingPlan plan = PlanFollow(SmallFollow("person", {}), SmallFollowCamera(), seed);
     const cv::Rect box = Rows(plan, "region0/data.csv").Box(0);
     return cv::mean(plan.render(0)(box));
   };
@@ -130,10 +131,10 @@ TEST(FollowSimulationTest, ThingsDifferBySeed) {
 
 TEST(FollowSimulationTest, RefusesCoverOverStandingThing) {
   EXPECT_EQ(InputErrorOf([] {
-              Small("person", {"thing.cover=tree", "motion.path=standing"});
+              SmallFollow("person", {"thing.cover=tree", "motion.path=standing"});
             }),
             "thing.cover: expected a thing that moves");
-  EXPECT_EQ(InputErrorOf([] { Small("person", {"thing.kind=none"}); }),
+  EXPECT_EQ(InputErrorOf([] { SmallFollow("person", {"thing.kind=none"}); }),
             "thing.kind is 'none', expected a thing");
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <optional>
 
 #include <Eigen/Geometry>
@@ -33,11 +34,12 @@ class RegionSeen {
  public:
   RegionSeen(int thing, const SimulatedFlight& flight)
       : motion_(flight.world().bodies[thing]),
-        camera_(flight.camera()),
+        flight_(flight),
         own_(PartOf(flight.world(), thing, true)),
         others_(PartOf(flight.world(), thing, false)) {}
 
-  TrueRegion At(double time_s) const {
+  TrueRegion At(double time_s) {
+    camera_ = flight_.CameraAt(time_s);
     TrueRegion region;
     region.time = TimeOfFlight(time_s);
     region.place_in_world = motion_(time_s).translation;
@@ -49,7 +51,7 @@ class RegionSeen {
 
  private:
   std::optional<Vector2d> PixelOf(const Surface& surface, double x, double y, double time_s) const {
-    return camera_.Project(time_s, [&](double now_s) {
+    return camera_->Project(time_s, [&](double now_s) {
       return Vector3d(motion_(now_s) * (surface.center + x * surface.right + y * surface.up));
     });
   }
@@ -65,7 +67,7 @@ class RegionSeen {
         high = high.max(pixel->array());
       }
     }
-    const CameraModel& model = camera_.lens().camera();
+    const CameraModel& model = camera_->lens().camera();
     low = low.max(0);
     high = high.min(Eigen::Array2d(model.width_px() - 1, model.height_px() - 1));
     if ((high < low).any()) return {};
@@ -75,7 +77,7 @@ class RegionSeen {
   // By points on the surfaces that face the camera, each with the angle that it takes.
   double VisiblePart(double time_s) const {
     constexpr int kSteps = 5;
-    const Vector3d eye = camera_.WorldFromCamera(time_s).translation;
+    const Vector3d eye = camera_->WorldFromCamera(time_s).translation;
     const RigidTransform pose = motion_(time_s);
     double all = 0, visible = 0;
     for (const Surface& surface : own_.surfaces) {
@@ -97,13 +99,14 @@ class RegionSeen {
   }
 
   bool IsInImage(const std::optional<Vector2d>& pixel) const {
-    const CameraModel& model = camera_.lens().camera();
+    const CameraModel& model = camera_->lens().camera();
     return pixel && pixel->x() > -0.5 && pixel->x() < model.width_px() - 0.5 && pixel->y() > -0.5 &&
            pixel->y() < model.height_px() - 0.5;
   }
 
   Motion motion_;
-  const FlightCamera& camera_;
+  const SimulatedFlight& flight_;
+  std::shared_ptr<const FlightCamera> camera_;  // with its lens at the time that is looked at
   World own_, others_;
 };
 
@@ -111,7 +114,7 @@ class RegionSeen {
 
 std::string RegionRowsText(int thing, const SimulatedFlight& flight,
                            const std::vector<double>& image_times_s) {
-  const RegionSeen seen(thing, flight);
+  RegionSeen seen(thing, flight);
   std::string text = RegionTruthHeader();
   for (const double time_s : image_times_s) text += RegionTruthRow(seen.At(time_s));
   return text;
