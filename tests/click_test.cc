@@ -29,7 +29,7 @@ cv::Point2d MiddleOf(const cv::Rect2d& box) {
   return {box.x + 0.5 * (box.width - 1), box.y + 0.5 * (box.height - 1)};
 }
 
-// A flight whose nose turns fastest, at 30 degrees/s, where the picture is marked.
+// A flight whose nose turns by up to 30 degrees/s.
 class TurningFlight {
  public:
   explicit TurningFlight(int seed)

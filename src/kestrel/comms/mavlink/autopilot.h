@@ -105,7 +105,7 @@ struct AutopilotListener {
   std::function<void(const AutopilotEvent&)> event;
   std::function<void(std::uint8_t severity, std::string_view text)> text;  // STATUSTEXT
   std::function<void(const GimbalSample&)> gimbal;                         // on the local clock
-  std::function<void(const ZoomSample&)> zoom;                             // on the local clock
+  std::function<void(const ZoomSample&)> zoom = {};                        // on the local clock
   // Attitude and turn alone (place and velocity are 0), with or without a position.
   std::function<void(const PoseSample&)> attitude = {};
   // Acceleration that the accelerometer measures, in the body (FLU), m/s^2: with gravity's

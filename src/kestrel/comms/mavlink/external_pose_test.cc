@@ -13,7 +13,9 @@ namespace {
 ExternalPose SomePose() {
   ExternalPose pose;
   pose.frame_from_body = {
-      Eigen::Quaterniond(Eigen::AngleAxisd(Radians(30), Eigen::Vector3d::UnitZ())), {1, 2, 3}};
+      Eigen::Quaterniond(Eigen::AngleAxisd(Radians(30), Eigen::Vector3d::UnitZ()) *
+                         Eigen::AngleAxisd(Radians(10), Eigen::Vector3d::UnitX())),
+      {1, 2, 3}};
   pose.covariance = Eigen::Vector3d(0.04, 0.09, 0.01).asDiagonal();
   pose.tilt_sigma = 0.02;
   pose.heading_sigma = 0.1;
@@ -31,8 +33,12 @@ TEST(OdometryOf, UsesFramesOfBothAutopilots) {
     EXPECT_FLOAT_EQ(message.x, 2);  // north
     EXPECT_FLOAT_EQ(message.y, 1);
     EXPECT_FLOAT_EQ(message.z, -3);
-    // 30 degrees from east to north are a heading of 60 degrees.
-    EXPECT_NEAR(std::tan(std::atan2(message.q[3], message.q[0])), std::tan(Radians(30)), 1e-6);
+    // 30 degrees from east to north are a heading of 60 degrees; a roll to the right stays one.
+    const Eigen::Quaternionf sent(message.q[0], message.q[1], message.q[2], message.q[3]);
+    const Eigen::Quaternionf expected =
+        Eigen::Quaternionf(Eigen::AngleAxisf(Radians(60), Eigen::Vector3f::UnitZ())) *
+        Eigen::AngleAxisf(Radians(10), Eigen::Vector3f::UnitX());
+    EXPECT_LT(sent.angularDistance(expected), 1e-3);
     EXPECT_TRUE(std::isnan(message.vx) && std::isnan(message.vy) && std::isnan(message.vz));
   }
 }

@@ -563,8 +563,6 @@ struct SetPositionTargetLocalNed {
   }
 };
 
-// True pose of a simulated vehicle. ArduPilot scales lat and lon wrongly: lat_int and lon_int are
-// right.
 struct HighresImu {
   static constexpr std::uint32_t kId = 105;
   static constexpr std::string_view kName = "HIGHRES_IMU";
@@ -606,6 +604,8 @@ struct HighresImu {
   }
 };
 
+// True pose of a simulated vehicle. ArduPilot scales lat and lon wrongly: lat_int and lon_int are
+// right.
 struct SimState {
   static constexpr std::uint32_t kId = 108;
   static constexpr std::string_view kName = "SIM_STATE";

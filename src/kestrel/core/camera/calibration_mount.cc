@@ -193,7 +193,13 @@ ZoomLens::Setting SettingOf(const CalibrationEntry& table, const YAML::Node& row
   setting.lens.distortion.assign(numbers.begin() + 5, numbers.end());
   const std::vector<std::string> violations = setting.lens.Validate();
   if (!violations.empty()) table.Fail(fmt::format("has a row whose {}", violations.front()));
-  if (!(numbers[0] > 0 && numbers[0] < 360)) table.Fail("has a row whose hfov_deg is no angle");
+  const double widest_deg = lens.distortion_model == DistortionModel::kEquidistant ? 360 : 180;
+  if (!(numbers[0] > 0 && numbers[0] < widest_deg)) {
+    table.Fail(
+        fmt::format("has a row whose hfov_deg is {:g}, expected more than 0 and less than "
+                    "{:g}",
+                    numbers[0], widest_deg));
+  }
   return setting;
 }
 

@@ -37,6 +37,11 @@ CameraIntrinsics Between(const CameraIntrinsics& a, const CameraIntrinsics& b, d
   return lens;
 }
 
+// A report may be of another unit than degrees.
+std::optional<CameraIntrinsics> IfValid(const CameraIntrinsics& lens) {
+  return lens.Validate().empty() ? std::optional(lens) : std::nullopt;
+}
+
 }  // namespace
 
 void RequireFixedLens(const CameraCalibration& camera, const std::string& task) {
@@ -60,7 +65,8 @@ std::optional<CameraIntrinsics> LensAt(const ZoomLens& zoom, double view_rad) {
   }
   const double focal = FocalOf(model, view_rad);
   if (settings.size() == 1) {
-    return Scaled(settings.front().lens, focal / FocalOf(model, settings.front().view_rad));
+    return IfValid(
+        Scaled(settings.front().lens, focal / FocalOf(model, settings.front().view_rad)));
   }
   if (view_rad < (1 - kTolerance) * settings.front().view_rad ||
       view_rad > (1 + kTolerance) * settings.back().view_rad) {
@@ -71,7 +77,7 @@ std::optional<CameraIntrinsics> LensAt(const ZoomLens& zoom, double view_rad) {
   const auto before = next - 1;
   const double from = FocalOf(model, before->view_rad);
   const double part = std::log(focal / from) / std::log(FocalOf(model, next->view_rad) / from);
-  return Between(before->lens, next->lens, std::clamp(part, 0.0, 1.0));
+  return IfValid(Between(before->lens, next->lens, std::clamp(part, 0.0, 1.0)));
 }
 
 }  // namespace kestrel

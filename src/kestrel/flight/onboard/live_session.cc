@@ -281,6 +281,9 @@ AutopilotOptions Flight::WantedOfAutopilot() const {
     wanted.points_gimbal = Points();
   }
   if (const auto& zoom = live_.calibration.zoom) wanted.zoom_device_id = zoom->device_id;
+  for (const CameraCalibration& further : live_.further) {
+    if (further.zoom) throw InputError(further.name + " zooms: expected the first camera alone to");
+  }
   return wanted;
 }
 

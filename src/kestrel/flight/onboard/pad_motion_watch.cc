@@ -13,10 +13,10 @@ using Eigen::Vector2d;
 constexpr Duration kSpan = std::chrono::seconds(1);
 constexpr Duration kKept = 2 * kSpan + std::chrono::milliseconds(300);
 constexpr Duration kGap = std::chrono::milliseconds(150);  // longest between two samples
-constexpr double kLimit_m = 0.5;                           // a pad that has reached 0.5 m/s
-constexpr int kSurePlaces = 5;                             // places in a row
-constexpr double kMean_s = 15;                             // time constant of what stays
-constexpr double kLearn_s = 2;                             // until it is known
+constexpr double kLimit_m = 0.5;  // a pad whose speed has changed by 0.5 m/s at once
+constexpr int kSurePlaces = 5;    // places in a row
+constexpr double kMean_s = 15;    // time constant of what stays
+constexpr double kLearn_s = 2;    // until it is known
 
 template <class Samples>
 void Forget(Time oldest, Samples* samples) {

@@ -51,9 +51,13 @@ ExternalPose PadPlace::Update(const TrackSnapshot::Sight& sight,
 // the one counts that the autopilot's turns lead to.
 double PadPlace::HeadingByPad(const TrackSnapshot::Sight& sight, double own) {
   const double on_pad = HeadingOf(sight.target_from_body.rotation);
-  if (!heading_of_pad_) heading_of_pad_ = own - on_pad;
-  const double period = 2 * kPi / sight.heading_symmetry;
   const double expected = own - heading_drift_;
+  // Tags in a ring determine more than the ring alone did from afar; the ring may be a quarter off.
+  if (!heading_of_pad_ || sight.heading_symmetry < symmetry_) {
+    heading_of_pad_ = expected - on_pad;
+    symmetry_ = sight.heading_symmetry;
+  }
+  const double period = 2 * kPi / sight.heading_symmetry;
   const double heading = expected + std::remainder(on_pad + *heading_of_pad_ - expected, period);
   heading_drift_ = own - heading;
   return heading;

@@ -38,6 +38,7 @@ class PadPlace {
   void CountJump(const ExternalPose& pose);
 
   std::optional<double> heading_of_pad_;  // in the frame, rad
+  int symmetry_ = 0;                      // with which it was seen then
   double heading_drift_ = 0;
   std::optional<ExternalPose> last_;
   int resets_ = 0;

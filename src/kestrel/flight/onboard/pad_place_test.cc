@@ -73,6 +73,17 @@ TEST_F(PadPlaceTest, KeepsQuarterThatPadWasSeenInFirst) {
   EXPECT_EQ(place_.resets(), 0);
 }
 
+// The ring shows one of four headings; its tags, from nearer, the true one.
+TEST_F(PadPlaceTest, KeepsHeadingWhenTagsAppearInRing) {
+  const RigidTransform body{Turn(70), {1, -2, 5}};
+  place_.Update(See(body, 1), body.rotation, HeadingSource::kPad);
+  TrackSnapshot::Sight by_tags = See(body);
+  by_tags.heading_symmetry = 1;
+  const ExternalPose pose = place_.Update(by_tags, body.rotation, HeadingSource::kPad);
+  EXPECT_LT((pose.frame_from_body.translation - body.translation).norm(), 1e-9);
+  EXPECT_NEAR(place_.heading_drift(), 0, 1e-9);
+}
+
 TEST_F(PadPlaceTest, CountsOtherPadAsReset) {
   const RigidTransform body{Turn(0), {0, 0, 4}};
   EXPECT_EQ(place_.Update(See(body), body.rotation, HeadingSource::kAutopilot).resets, 0);

@@ -71,7 +71,7 @@ void PadPosition::TakeAcceleration(Time time, const Eigen::Vector3d& acceleratio
 
 void PadPosition::Send(Time now, const TrackSnapshot& track) {
   if (!autopilot_.is_here()) return;
-  if (!heard_) heard_ = now;
+  if (!heard_ || autopilot_.restarts() != restarts_) BeginWith(now);
   WantParameters();
   SendOrigin(now);
   ReportState(now);
@@ -82,25 +82,32 @@ void PadPosition::Send(Time now, const TrackSnapshot& track) {
   constexpr std::int64_t kNsPerUs = 1000;
   const std::int64_t stamp_ns = autopilot_.time_sync().ToRemote(sight->time);
   if (stamp_ns <= 0) return;
+  newest_ = sight->time;
   const ExternalPose pose =
       place_.Update(*sight, attitude->world_from_body.rotation, HeadingOfEstimator());
   WatchPad(pose);
-  if (is_moving_) return;
-  newest_ = sight->time;
+  if (is_moving_) return known_.reset();
+  known_ = sight->time;
   if (!first_) first_ = now;
-  if (connection_->Send(
-          OdometryOf(pose, autopilot_.kind(), static_cast<std::uint64_t>(stamp_ns / kNsPerUs)))) {
-    ++messages_;
-  }
+  connection_->Send(
+      OdometryOf(pose, autopilot_.kind(), static_cast<std::uint64_t>(stamp_ns / kNsPerUs)));
 }
 
-bool PadPosition::is_known(Time now) const {
-  return newest_ && ToSeconds(now - *newest_) < kKnown_s;
+// An autopilot that has started again has no origin any more.
+void PadPosition::BeginWith(Time now) {
+  restarts_ = autopilot_.restarts();
+  heard_ = now;
+  first_.reset();
+  is_origin_settled_ = was_checked_ = false;
 }
+
+bool PadPosition::is_known(Time now) const { return known_ && ToSeconds(now - *known_) < kKnown_s; }
 
 // A pad that moves would take the world along. On the ground the UAV is pushed and turned by hand.
 void PadPosition::WatchPad(const ExternalPose& pose) {
-  const bool is_flying = autopilot_.is_armed() && autopilot_.landed_state() == LandedState::kInAir;
+  const LandedState landed = autopilot_.landed_state();
+  const bool is_flying =
+      autopilot_.is_armed() && (landed == LandedState::kInAir || landed == LandedState::kLanding);
   if (!is_flying) is_moving_ = false;
   if (!is_flying || pose.resets != std::exchange(watched_resets_, pose.resets)) motion_.Reset();
   if (!motion_.Update(pose.time, pose.frame_from_body.translation)) return;
@@ -149,10 +156,10 @@ void PadPosition::ReportState(Time now) {
       Notify(mavlink::kSeverityWarning, "the autopilot does not use the pad's position: " + why);
     }
   }
-  if (const bool is_known = this->is_known(now); is_known != was_known_) {
-    was_known_ = is_known;
-    Notify(is_known ? mavlink::kSeverityInfo : mavlink::kSeverityWarning,
-           is_known ? "position by the pad" : "no position by the pad");
+  if (const bool knows = is_known(now); knows != was_known_) {
+    was_known_ = knows;
+    Notify(knows ? mavlink::kSeverityInfo : mavlink::kSeverityWarning,
+           knows ? "position by the pad" : "no position by the pad");
   }
   if (place_.resets() != reported_resets_) {
     reported_resets_ = place_.resets();

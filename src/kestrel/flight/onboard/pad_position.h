@@ -41,9 +41,8 @@ class PadPosition {
   // stands. An autopilot goes on for 5 to 8 s without it, and drifts.
   bool is_known(Time now) const;
 
-  int messages() const { return messages_; }
-
  private:
+  void BeginWith(Time now);
   void WantParameters();
   std::string WhyUnused(Time now) const;
   HeadingSource HeadingOfEstimator() const;
@@ -60,7 +59,8 @@ class PadPosition {
   PadPlace place_;
   PadMotionWatch motion_;
   std::optional<Time> first_;   // when the first place was sent
-  std::optional<Time> newest_;  // the newest sight that was sent
+  std::optional<Time> newest_;  // the newest sight that was taken
+  std::optional<Time> known_;   // the newest one of a pad that stands
   std::optional<Time> heard_;   // when the autopilot was first here
   bool requested_parameters_ = false;
   bool is_origin_settled_ = false;
@@ -70,7 +70,7 @@ class PadPosition {
   bool is_turned_ = false;  // its heading has left the pad's
   std::uint8_t watched_resets_ = 0;
   int reported_resets_ = 0;
-  int messages_ = 0;
+  int restarts_ = 0;  // of the autopilot, so far
 };
 
 }  // namespace kestrel

@@ -189,8 +189,9 @@ class EurocSink : public RecordingSink {
   }
 
   void AddZoom(const std::vector<ZoomSample>& reports) override {
-    if (!zoom_ || reports.empty()) return;
-    const double span_s = ToSeconds(reports.back().time - reports.front().time);
+    if (!zoom_) return;
+    const double span_s =
+        reports.empty() ? 0 : ToSeconds(reports.back().time - reports.front().time);
     writer_.WriteZoomSensor(*zoom_,
                             span_s > 0 ? static_cast<double>(reports.size() - 1) / span_s : 0);
     for (const ZoomSample& report : reports) writer_.AddZoom(report);

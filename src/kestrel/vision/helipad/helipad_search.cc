@@ -54,7 +54,8 @@ void HelipadSearch::Follow(const RigidTransform& expected) {
 
 void HelipadSearch::Begin(const cv::Rect& part) {
   helipad_.finder.Begin(image_, part, &candidates_);
-  may_be_in_glare_ = part.size() != image_.size() || candidates_.borders.ShowsGlare();
+  const bool is_predicted = hint_.center_in_camera && part.size() != image_.size();
+  may_be_in_glare_ = is_predicted || candidates_.borders.ShowsGlare();
 }
 
 bool HelipadSearch::MayHaveSize(int pass, double distance_m, double error) const {

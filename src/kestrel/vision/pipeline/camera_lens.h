@@ -25,7 +25,7 @@ class CameraLens {
   // Takes the next image, CV_8UC1 of the camera's size, and its time on the images' clock. Returns
   // the reported view of its lens (rad); nothing while the lens moves, where no report holds, and
   // from an image whose background is another size than in the one before, as after a switch of the
-  // sensor, to the first report after it. Does not throw or allocate.
+  // sensor, until two reports after it agree. Does not throw or allocate.
   std::optional<double> ViewAt(const cv::Mat& image, Time image_time);
 
   // Returns the lens with a reported view; nothing where the calibration does not reach that far.

@@ -135,7 +135,7 @@ class LandingPipeline::Impl {
     bool is_track_trusted = true;  // the last detection was where the track predicted it
     std::optional<Sighting> last;
     int next_step = 0;  // step at which the search of the last frame ran out of time
-    int misses = 0;     // frames since the pad was found
+    int misses = 0;     // whole searches since the pad was found
     InputContradictions contradictions;
     CalibrationMonitor calibration;
   };
@@ -334,7 +334,12 @@ void LandingPipeline::Impl::Detect(const cv::Mat& image, Eye* eye,
   observation->detect_time = std::chrono::steady_clock::now() - start;
   eye->next_step = observation->report.diagnostics.next_step;
   auto& detection = observation->report.detection;
-  eye->misses = detection ? 0 : eye->misses + 1;
+  // A search that ran out of time goes on in the same part.
+  if (detection) {
+    eye->misses = 0;
+  } else if (eye->next_step == 0) {
+    ++eye->misses;
+  }
   if (!detection) return;
   if (IsJudged(observation->camera)) eye->contradictions.Add(given, *detection);
   if (IsUsed(observation->camera)) eye->calibration.Add(*detection);

@@ -26,7 +26,7 @@ Place PlaceOf(const CameraModel& camera, const Horizon& horizon, int x, int y) {
                                                                          : Place::kGround;
 }
 
-// Whether a corner of the image shows the sky.
+// Whether a corner of the image, the middle of an edge or the middle shows the sky.
 bool HasSky(const CameraModel& camera, const Horizon& horizon, const cv::Rect& whole) {
   for (const int x : {0, whole.width / 2, whole.width - 1}) {
     for (const int y : {0, whole.height / 2, whole.height - 1}) {
@@ -40,6 +40,7 @@ bool HasSky(const CameraModel& camera, const Horizon& horizon, const cv::Rect& w
 
 std::optional<cv::Rect> PartBelowHorizon(const CameraModel& camera,
                                          const Eigen::Vector3d& up_in_camera, double margin_rad) {
+  if (margin_rad >= M_PI / 2) return std::nullopt;  // nothing is known to be sky
   const Horizon horizon{up_in_camera, margin_rad};
   const cv::Rect whole(0, 0, camera.width_px(), camera.height_px());
   if (!HasSky(camera, horizon, whole)) return std::nullopt;
