@@ -354,8 +354,6 @@ InkComparison::Darkness InkComparison::MeasureDarkness(const Grays& gray,
 void InkComparison::HideInHighlights(const Grays& gray, const Levels& levels,
                                      Darkness* darkness) const {
   constexpr float kUnknown = std::numeric_limits<float>::infinity();
-  // A sharp edge is blurred over so many rows: three pixels of the coarsest view of a print.
-  constexpr int kBlurredRows = 4;
   const auto known = [&](std::size_t place) { return gray[place] < 0 ? kUnknown : gray[place]; };
   float hub = kUnknown;
   for (const Range& arm : arm_) hub = std::min(hub, known(arm.begin));
@@ -370,15 +368,12 @@ void InkComparison::HideInHighlights(const Grays& gray, const Levels& levels,
       ink.front() = hub;
       ink.back() = known(BeyondArm(k));
       for (int row = 0; row < kAlongArm; ++row) ink[row + 1] = known(place(row));
-      const auto darkest = [&](int from, int to) {
-        return *std::min_element(ink.begin() + from, ink.begin() + to);
-      };
       for (int row = 0; row < kAlongArm; ++row) {
         if (!is_bright(row)) continue;
         const int first = row;
         while (row + 1 < kAlongArm && is_bright(row + 1)) ++row;
-        const float before = darkest(std::max(0, first + 1 - kBlurredRows), first + 1);
-        const float behind = darkest(row + 2, std::min(row + 2 + kBlurredRows, kAlongArm + 2));
+        const float before = std::min(ink[first], ink[std::max(0, first - 1)]);
+        const float behind = std::min(ink[row + 2], ink[std::min(row + 3, kAlongArm + 1)]);
         if (std::min(before, behind) < levels.veiled) continue;
         for (int hidden = first; hidden <= row; ++hidden) darkness->is_seen[place(hidden)] = false;
       }
