@@ -140,7 +140,8 @@ TEST(CalibrationMount, RefusesBadTablesOfZoom) {
   EXPECT_THAT(error_of("[[60, 560, 560, 320, 240]]"), HasSubstr("expected [hfov_deg, fu, fv"));
   EXPECT_THAT(error_of("[[x, 560, 560, 320, 240, 0, 0, 0, 0]]"), HasSubstr("list of 9 numbers"));
   EXPECT_THAT(error_of("[[60, -560, 560, 320, 240, 0, 0, 0, 0]]"), HasSubstr("a row whose"));
-  EXPECT_THAT(error_of("[[-60, 560, 560, 320, 240, 0, 0, 0, 0]]"), HasSubstr("no angle"));
+  EXPECT_THAT(error_of("[[-60, 560, 560, 320, 240, 0, 0, 0, 0]]"),
+              HasSubstr("hfov_deg is -60, expected more than 0"));
   EXPECT_THAT(error_of("[[60, 560, 560, 320, 240, 0, 0, 0, 0], "
                        "[60, 570, 560, 320, 240, 0, 0, 0, 0]]"),
               HasSubstr("two rows"));
