@@ -205,7 +205,7 @@ TEST(VehicleWorldTest, ReportsUnknownScenarios) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
-                 "there is no scenario 'sim:figure9', expected standing, straight, circle, "
+                 "there is no scenario 'sim:figure9', expected standing, straight, circle, follow, "
                  "figure8, road, lanes, motorway, ship, stops");
   }
 }
