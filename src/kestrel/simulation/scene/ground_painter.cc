@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
 #include "kestrel/core/geometry/angles.h"
