@@ -366,10 +366,10 @@ TEST(GuidanceOptionsTest, LimitsSearchAndApproachToSightRange) {
   const GuidanceOptions near = options.WithinSight(1.6);
   EXPECT_EQ(near.search_altitude_m, options.limits.floor_m);
   EXPECT_NEAR(near.follow_height_m, 0.8 * 1.6 - options.leg_m, 1e-12);
-  EXPECT_THAT(ViolationsOf(options.WithinSight(1e-3)), IsEmpty());
+  EXPECT_THAT(ViolationsOf(options.WithinSight(1e-3)), testing::IsEmpty());
   GuidanceOptions without_floor;
   without_floor.limits.floor_m = 0;
-  EXPECT_THAT(ViolationsOf(without_floor.WithinSight(1e-3)), IsEmpty());
+  EXPECT_THAT(ViolationsOf(without_floor.WithinSight(1e-3)), testing::IsEmpty());
 }
 
 TEST(GuidanceOptionsTest, ReportsFaultyOptions) {
