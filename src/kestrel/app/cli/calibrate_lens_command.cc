@@ -107,7 +107,7 @@ void WritePlots(const LensCalibration& lens, const OutputFolder& folder) {
   }
 }
 
-// Where to start from at a setting of the zoom: as the views have it, beside the file's own lens.
+// Returns the lens to start from at a setting of the zoom: the file's own, scaled to this view.
 CameraIntrinsics StartAt(const CameraCalibration& camera, double view_rad) {
   const CameraIntrinsics& own = camera.intrinsics;
   const auto lens = LensAt(ZoomLens{{{ViewOf(own), own}}, {}}, view_rad);

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 // A thing is visible when at least this part of it is, and hidden when less than that.
 constexpr double kVisibleShare = 0.5, kHiddenShare = 0.1;
 
-// What a row says, against the truth.
+// The truth about a row.
 enum class FollowVerdict {
   kNotSeen,    // coasting or lost
   kOn,         // the middle of the box is in the true one, and something of it is visible

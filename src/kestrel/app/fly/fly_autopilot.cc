@@ -27,17 +27,17 @@ void PrepareGuidance(std::string_view name, SimulatedAutopilotOptions* options) 
   if (name == kSimulatedPx4 && parameters.empty()) parameters = "LNDMC_XY_VEL_MAX=12";
 }
 
-// The pilot keeps the UAV where its camera sees the thing to follow, unless the user set a place.
+// The pilot keeps the UAV where its camera sees the thing to follow, unless the user set the place,
+// or a part of it.
 void PrepareFollow(PilotOptions* pilot) {
   const PilotOptions usual;
-  if (pilot->offset_east_m != usual.offset_east_m ||
-      pilot->offset_north_m != usual.offset_north_m) {
-    return;
-  }
-  pilot->offset_east_m = 0;
-  pilot->offset_north_m = -12;
-  pilot->heading_deg = 0;
-  pilot->start_altitude_m = 8;
+  const auto replace = [&](double PilotOptions::*value, double by) {
+    if (pilot->*value == usual.*value) pilot->*value = by;
+  };
+  replace(&PilotOptions::offset_east_m, 0);
+  replace(&PilotOptions::offset_north_m, -12);
+  replace(&PilotOptions::heading_deg, 0);
+  replace(&PilotOptions::start_altitude_m, 8);
 }
 
 }  // namespace

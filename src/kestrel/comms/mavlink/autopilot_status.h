@@ -16,6 +16,10 @@ namespace kestrel {
 
 enum class LandedState { kUnknown, kOnGround, kInAir, kTakingOff, kLanding };
 const char* ToString(LandedState state);  // "unknown", "on ground", "in air", ...
+// False during the take-off, which belongs to the autopilot.
+constexpr bool IsInFlight(LandedState state) {
+  return state == LandedState::kInAir || state == LandedState::kLanding;
+}
 
 struct AutopilotVersion {
   int major = 0;

@@ -7,6 +7,7 @@
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/camera/calibration.h"
+#include "kestrel/core/geometry/angles.h"
 
 namespace kestrel {
 namespace {
@@ -60,7 +61,7 @@ double ViewOf(const CameraIntrinsics& lens) {
 std::optional<CameraIntrinsics> LensAt(const ZoomLens& zoom, double view_rad) {
   const auto& settings = zoom.settings;
   const DistortionModel model = settings.front().lens.distortion_model;
-  if (!(view_rad > 0) || (model != DistortionModel::kEquidistant && view_rad >= M_PI)) {
+  if (!(view_rad > 0) || (model != DistortionModel::kEquidistant && view_rad >= kPi)) {
     return std::nullopt;
   }
   const double focal = FocalOf(model, view_rad);

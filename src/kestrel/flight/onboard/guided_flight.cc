@@ -117,9 +117,7 @@ void GuidedFlight::WatchMode(const GuidanceInput& input, Time now) {
   if (was_armed_ && !input.is_armed) guidance_->Rearm();
   was_armed_ = input.is_armed;
   if (!is_begun_ && now >= permission_due_) CheckPermission(input, now);
-  const LandedState landed = autopilot_.landed_state();
-  const bool is_flying =
-      input.is_armed && (landed == LandedState::kInAir || landed == LandedState::kLanding);
+  const bool is_flying = input.is_armed && IsInFlight(autopilot_.landed_state());
   if (!is_given_ || is_begun_ || !is_flying) return;
   CheckPermission(input, now);
   is_begun_ = may_begin_;

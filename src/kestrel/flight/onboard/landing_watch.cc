@@ -51,8 +51,7 @@ void LandingWatch::Observe(const LandingWatchInput& input) {
 }
 
 void LandingWatch::Fly(const LandingWatchInput& input) {
-  has_flown_ =
-      has_flown_ || input.state == LandedState::kInAir || input.state == LandedState::kLanding;
+  has_flown_ = has_flown_ || IsInFlight(input.state);
   if (input.sight) sight_ = input.sight;
   has_body_ = input.body.has_value();
   Remember(input.has_contact || input.state == LandedState::kOnGround, input.now, &on_ground_);

@@ -105,9 +105,7 @@ bool PadPosition::is_known(Time now) const { return known_ && ToSeconds(now - *k
 
 // A pad that moves would take the world along. On the ground the UAV is pushed and turned by hand.
 void PadPosition::WatchPad(const ExternalPose& pose) {
-  const LandedState landed = autopilot_.landed_state();
-  const bool is_flying =
-      autopilot_.is_armed() && (landed == LandedState::kInAir || landed == LandedState::kLanding);
+  const bool is_flying = autopilot_.is_armed() && IsInFlight(autopilot_.landed_state());
   if (!is_flying) is_moving_ = false;
   if (!is_flying || pose.resets != std::exchange(watched_resets_, pose.resets)) motion_.Reset();
   if (!motion_.Update(pose.time, pose.frame_from_body.translation)) return;

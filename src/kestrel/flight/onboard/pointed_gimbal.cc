@@ -101,9 +101,7 @@ void PointedGimbal::WatchFlight(int mark) {
 }
 
 bool PointedGimbal::IsFlying() const {
-  const LandedState landed = autopilot_.landed_state();
-  return autopilot_.is_here() && autopilot_.is_armed() &&
-         (landed == LandedState::kInAir || landed == LandedState::kLanding);
+  return autopilot_.is_here() && autopilot_.is_armed() && IsInFlight(autopilot_.landed_state());
 }
 
 void PointedGimbal::ReportControl(Time now) {

@@ -59,7 +59,7 @@ mavlink::AttitudeQuaternion AttitudeQuaternionOf(const PoseSample& pose, std::ui
 mavlink::LocalPositionNed LocalPositionOf(const PoseSample& pose, std::uint32_t boot_ms);
 mavlink::GlobalPositionInt GlobalPositionOf(const PoseSample& pose, const GlobalOrigin& origin,
                                             std::uint32_t boot_ms);
-// What an accelerometer measures (FLU, m/s^2).
+// Messages of an acceleration that the accelerometer measures (FLU, m/s^2).
 mavlink::RawImu RawImuOf(const Eigen::Vector3d& acceleration, std::int64_t boot_us);
 mavlink::HighresImu HighresImuOf(const Eigen::Vector3d& acceleration, std::int64_t boot_us);
 mavlink::SimState SimStateOf(const PoseSample& pose, const GlobalOrigin& origin);

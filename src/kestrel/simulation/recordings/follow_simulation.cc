@@ -81,9 +81,7 @@ std::vector<std::string> FollowSimulationOptions::Validate() const {
   if (thing.cover != "none" && (motion.path == "standing" || motion.speed_mps <= 0)) {
     violations.emplace_back("thing.cover: expected a thing that moves");
   }
-  if (recording.zoom.is_there()) {
-    violations.emplace_back("zoom.rate_hz is more than 0, expected 0: `follow` takes a fixed lens");
-  }
+  RequireFixedLens(recording.zoom, &violations);
   return violations;
 }
 

@@ -74,7 +74,7 @@ class RegionSeen {
     return {low.x(), low.y(), high.x() - low.x() + 1, high.y() - low.y() + 1};
   }
 
-  // By points on the surfaces that face the camera, each with the angle that it takes.
+  // Counts points on the surfaces that face the camera, each by the solid angle of its part.
   double VisiblePart(double time_s) const {
     constexpr int kSteps = 5;
     const Vector3d eye = camera_->WorldFromCamera(time_s).translation;

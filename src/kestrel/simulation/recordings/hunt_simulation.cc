@@ -139,6 +139,7 @@ std::vector<std::string> HuntSimulationOptions::Validate() const {
   if (flight.path == "descend" && count == 0) {
     violations.emplace_back("flight.path is descend, expected at least one object");
   }
+  RequireFixedLens(recording.zoom, &violations);
   return violations;
 }
 

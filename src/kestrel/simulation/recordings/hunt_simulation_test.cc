@@ -166,6 +166,8 @@ TEST(HuntSimulationTest, RefusesUnflyableOptions) {
                                 "objects.yellow=0", "objects.orange=0", "objects.orange_bars=0"});
             }),
             "flight.path is descend, expected at least one object");
+  EXPECT_EQ(InputErrorOf([] { Small("sweep", {"zoom.rate_hz=10"}); }),
+            "zoom.rate_hz is more than 0, expected 0: here the lens is fixed");
   EXPECT_EQ(InputErrorOf([] { Small("sweep", {"objects.size_m=-0.2"}); }),
             "objects.size_m is -0.2, expected 0.02 to 2");
 }

@@ -73,6 +73,11 @@ std::function<double(double)> GainControl(const SensorOptions& options, std::uin
 
 }  // namespace
 
+void RequireFixedLens(const ZoomOptions& zoom, std::vector<std::string>* violations) {
+  if (!zoom.is_there()) return;
+  violations->emplace_back("zoom.rate_hz is more than 0, expected 0: here the lens is fixed");
+}
+
 SimulatedFlight::SimulatedFlight(const FlightRecordingOptions& options,
                                  const CameraCalibration& camera, const Drawing& airframe,
                                  World world, Motion world_from_body, const Path& target,

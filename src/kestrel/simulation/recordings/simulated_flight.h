@@ -46,6 +46,9 @@ struct FlightRecordingOptions {
   double duration_s() const { return frames / rate_hz; }
 };
 
+// For Validate() of flights whose task takes no camera that zooms: adds a violation.
+void RequireFixedLens(const ZoomOptions& zoom, std::vector<std::string>* violations);
+
 // A flight through a world, with a camera and all errors of its navigation. Thread-safe.
 class SimulatedFlight {
  public:

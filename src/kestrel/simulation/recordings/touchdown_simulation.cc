@@ -69,9 +69,7 @@ std::vector<std::string> TouchdownSimulationOptions::Validate() const {
     violations.emplace_back(
         "gimbal.rate_hz is more than 0, expected 0: the camera of a touchdown is fixed");
   }
-  if (recording.zoom.is_there()) {
-    violations.emplace_back("zoom.rate_hz is more than 0, expected 0: the lens is fixed, too");
-  }
+  RequireFixedLens(recording.zoom, &violations);
   return violations;
 }
 

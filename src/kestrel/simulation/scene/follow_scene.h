@@ -41,7 +41,7 @@ struct FollowedThingOptions {
   bool is_there() const { return kind != "none"; }
 };
 
-// What of a scene does not depend on the thing.
+// The parts of a scene that do not depend on the thing.
 struct FollowSurroundings {
   GroundOptions ground;
   LightOptions light;

@@ -113,8 +113,8 @@ struct LandingObservation {
   std::optional<TargetEstimate> target;
   Duration detect_time{};  // time of TargetDetector::Detect alone
   std::size_t camera = 0;  // index of the camera among the pipeline's
-  // Of a camera that zooms: its lens; null where that moved or is not known, so that the frame was
-  // not searched.
+  // The lens of a camera that zooms, in this frame; null where it moved or is not known, so that
+  // the frame was not searched.
   std::shared_ptr<const CameraModel> zoomed_lens = nullptr;
   bool is_zooming = false;  // it was not searched therefore
 };

@@ -342,7 +342,7 @@ RegionReport RegionTracker::Impl::Track(const cv::Mat& image, Time now,
     const Eigen::Vector2d before = center + shift;
     const Look look = Follow(image, expected);
     const double share = look.peak.value / usual.value;
-    // What jumps from where the region moves in the world is something else.
+    // A region that jumps away from its path in the world is something else.
     const bool is_there = !hint || (look.center_px - hint->center_px).norm() < ReachOf(*hint);
     if (share > kLeastToSee && is_there) {
       const double agreement = Accept(image, look);

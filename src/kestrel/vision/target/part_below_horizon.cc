@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kestrel/core/geometry/angles.h"
+
 namespace kestrel {
 namespace {
 
@@ -40,7 +42,7 @@ bool HasSky(const CameraModel& camera, const Horizon& horizon, const cv::Rect& w
 
 std::optional<cv::Rect> PartBelowHorizon(const CameraModel& camera,
                                          const Eigen::Vector3d& up_in_camera, double margin_rad) {
-  if (margin_rad >= M_PI / 2) return std::nullopt;  // nothing is known to be sky
+  if (margin_rad >= kPi / 2) return std::nullopt;  // nothing is known to be sky
   const Horizon horizon{up_in_camera, margin_rad};
   const cv::Rect whole(0, 0, camera.width_px(), camera.height_px());
   if (!HasSky(camera, horizon, whole)) return std::nullopt;

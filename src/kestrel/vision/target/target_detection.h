@@ -61,7 +61,8 @@ struct TargetHint {
   // Unit vector away from the ground, in the camera frame. Resolves the mirror pose of a circle and
   // steadies the tilt of a far one.
   std::optional<Eigen::Vector3d> up_in_camera;
-  // What is so far (rad) above the horizon of 'up_in_camera' need not be searched; nothing: all is.
+  // Angle (rad) above the horizon of 'up_in_camera' from which on nothing is searched; nothing: the
+  // whole image is.
   std::optional<double> sky_above_rad;
   // Step at which the search begins: SearchDiagnostics::next_step of the frame before.
   int first_step = 0;

@@ -38,9 +38,9 @@ std::string SettingsText(const ZoomLens& zoom) {
   return text;
 }
 
-std::string GimbalCameraText(const GimbalMount& gimbal, GimbalPlace place) {
+std::string GimbalCameraText(const GimbalMount& gimbal, SensorPlace place) {
   const std::string text = "T_GS:\n" + EurocTransformText(gimbal.platform_from_camera);
-  if (place == GimbalPlace::kFolder) return text + "gimbal: gimbal0\n";
+  if (place == SensorPlace::kFolder) return text + "gimbal: gimbal0\n";
   return text + "gimbal:\n" + Indented(PivotText(gimbal));
 }
 
@@ -66,7 +66,7 @@ std::string EurocTransformText(const RigidTransform& transform) {
 }
 
 std::string EurocCameraText(const CameraCalibration& calibration, double rate_hz,
-                            GimbalPlace gimbal) {
+                            SensorPlace place) {
   const CameraIntrinsics& camera = calibration.intrinsics;
   std::string text = fmt::format(
       "sensor_type: camera\n"
@@ -79,18 +79,18 @@ std::string EurocCameraText(const CameraCalibration& calibration, double rate_hz
       rate_hz, camera.width_px, camera.height_px, camera.fx_px, camera.fy_px, camera.cx_px,
       camera.cy_px, DistortionName(camera.distortion_model), fmt::join(camera.distortion, ", "));
   if (calibration.gimbal) {
-    text += GimbalCameraText(*calibration.gimbal, gimbal);
+    text += GimbalCameraText(*calibration.gimbal, place);
   } else if (calibration.body_from_camera) {
     text += "T_BS:\n" + EurocTransformText(*calibration.body_from_camera);
   }
   if (!calibration.zoom) return text;
-  if (gimbal == GimbalPlace::kFolder) return text + "zoom: zoom0\n";
+  if (place == SensorPlace::kFolder) return text + "zoom: zoom0\n";
   return text + "zoom:\n" + Indented(SettingsText(*calibration.zoom));
 }
 
 std::string EurocCalibrationText(const CameraCalibration& calibration, double rate_hz,
-                                 GimbalPlace gimbal) {
-  std::string text = EurocCameraText(calibration, rate_hz, gimbal);
+                                 SensorPlace place) {
+  std::string text = EurocCameraText(calibration, rate_hz, place);
   if (calibration.clock_offset) {
     text += fmt::format("timeshift_cam_imu: {}\n", ToSeconds(*calibration.clock_offset));
   }

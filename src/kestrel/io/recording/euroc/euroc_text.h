@@ -16,17 +16,17 @@ const char* DistortionName(DistortionModel model);
 
 // The place of the descriptions of a gimbal and a zoom: folders of the recording, gimbal0 and
 // zoom0, or the camera's file.
-enum class GimbalPlace { kFolder, kCameraFile };
+enum class SensorPlace { kFolder, kCameraFile };
 
 // Returns the text of cam0/sensor.yaml in the EuRoC layout: lens, size, rate and, if the
 // calibration has one, the mount: T_BS, or T_GS on a gimbal. ReadCalibration reads it back exactly,
 // to the last bit.
 std::string EurocCameraText(const CameraCalibration& calibration, double rate_hz,
-                            GimbalPlace gimbal = GimbalPlace::kFolder);
+                            SensorPlace place = SensorPlace::kFolder);
 
 // The same with the clock offset, if the calibration has one: a file of its own.
 std::string EurocCalibrationText(const CameraCalibration& calibration, double rate_hz,
-                                 GimbalPlace gimbal = GimbalPlace::kCameraFile);
+                                 SensorPlace place = SensorPlace::kCameraFile);
 
 // Returns the text of gimbal0/sensor.yaml.
 std::string EurocGimbalSensorText(const GimbalMount& gimbal, YawFrame yaw_frame, double rate_hz);

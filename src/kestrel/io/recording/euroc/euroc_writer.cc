@@ -104,7 +104,7 @@ EurocWriter::~EurocWriter() { Commit(); }
 void EurocWriter::WriteCamera(const CameraCalibration& calibration, double rate_hz,
                               std::size_t camera) const {
   WriteFile(folder_ / OfCamera(euroc::kCamera, camera),
-            EurocCalibrationText(calibration, rate_hz, GimbalPlace::kFolder));
+            EurocCalibrationText(calibration, rate_hz, SensorPlace::kFolder));
 }
 
 void EurocWriter::WritePoseSensor(double rate_hz) const {
