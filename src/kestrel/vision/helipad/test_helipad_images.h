@@ -45,7 +45,7 @@ struct PadShadow {
     if (shape == Shape::kHalfPlane) return local.x();
     const Eigen::Vector2d away = local.cwiseAbs();
     if (shape == Shape::kBar) return away.x() - size_m;
-    constexpr double kArmLength = 3, kArmWidth = 0.2;  // of the body's radius
+    constexpr double kArmLength = 3, kArmWidth = 0.2;  // as shares of the body's radius
     const double arms =
         std::max(away.minCoeff() - kArmWidth * size_m, away.maxCoeff() - kArmLength * size_m);
     return std::min(local.norm() - size_m, arms);
@@ -93,7 +93,7 @@ struct PadImageOptions {
   double blur_px = 0.6;  // sigma of the lens
   double motion_px = 0;  // length of the blur by motion, along the rows
   double noise = 3;      // sigma, gray values
-  double contrast = 1;   // of all that is seen
+  double contrast = 1;   // for all that is seen
   PadShadow shadow = {};
   PadGlare glare = {};
 };

@@ -33,7 +33,7 @@ struct TagImageOptions {
   double blur_px = 0.5;  // sigma of the lens
   double motion_px = 0;  // length of the blur by motion, along the rows
   double noise = 3;      // sigma, gray values
-  double contrast = 1;   // of the print
+  double contrast = 1;   // between the print's black and white
   bool shadow = false;   // the edge of a shadow runs through the board's middle
 };
 

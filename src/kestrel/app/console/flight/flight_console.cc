@@ -159,7 +159,7 @@ class FlightConsole::Page : public SinkWriter {
 
   FlightConsole& console_;
   ConsoleFeed& feed_;
-  std::vector<TaskView> views_;  // of each camera
+  std::vector<TaskView> views_;  // one for each camera
   std::size_t shown_camera_ = 0;
   Time shown_at_{}, shown_target_at_{};  // its newest frame, and the newest with the target
   ConsoleFrame frame_;
