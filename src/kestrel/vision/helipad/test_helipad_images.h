@@ -166,7 +166,7 @@ class PadRenderer {
                        const PadImageOptions& options, std::uint64_t seed) {
     constexpr double kSky = 200, kWhite = 205, kBlack = 35, kMiddle = 0.5 * (kWhite + kBlack);
     if (!place) return kSky;
-    double gray = Ground(*place, seed);
+    double gray = 0;
     if (ReachOnBoard(print, *place) < 0.5 * print.board_size_m) {
       double ink = print.board_gray;
       for (const PrintShape& shape : print.shapes) {
@@ -175,6 +175,8 @@ class PadRenderer {
         }
       }
       gray = kBlack + ink * (kWhite - kBlack);
+    } else {
+      gray = Ground(*place, seed);
     }
     gray = kMiddle + options.contrast * (gray - kMiddle);
     return gray * options.shadow.LightAt(*place) + options.glare.At(*place);
