@@ -38,7 +38,7 @@ RecordingPlan PlanTwoCameras(std::vector<std::string> settings, std::uint64_t se
   settings.insert(settings.begin(),
                   {"frames=40", "rate_hz=8", "second.rate_hz=8", "shutter.rays_per_pixel=2",
                    "navigation.mount_error_deg=0.2", "flight.start_altitude_m=14",
-                   "flight.end_altitude_m=2", "ground.shadows=false"});
+                   "flight.end_altitude_m=2", "ground.shadows=false", "ground.map_px=512"});
   return PlanLandingScenario("calm", settings, PaperCalibration(), seed);
 }
 

@@ -54,7 +54,7 @@ std::vector<Seen> Fly(int frames, Settings settings) {
   settings.insert(
       settings.begin(),
       {fmt::format("frames={}", frames), "rate_hz=10", "shutter.rays_per_pixel=2",
-       "navigation.mount_error_deg=0", "flight.start_altitude_m=12",
+       "ground.map_px=512", "navigation.mount_error_deg=0", "flight.start_altitude_m=12",
        fmt::format("flight.end_altitude_m={}", 12 - 0.12 * frames), "flight.offset_m=0.5"});
   const RecordingPlan plan = PlanLandingScenario("calm", settings, PaperCalibration(), 5);
   const TestFolder folder;
