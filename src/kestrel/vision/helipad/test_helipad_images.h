@@ -115,11 +115,12 @@ class PadRenderer {
 
   cv::Mat Render(const TargetPrint& print, const RigidTransform& camera_from_pad,
                  const PadImageOptions& options, std::uint64_t seed) const {
-    const RigidTransform pad_from_camera = camera_from_pad.Inverse();
+    const Plane plane{camera_from_pad.rotation.conjugate().toRotationMatrix(),
+                      camera_from_pad.Inverse().translation};
     cv::Mat image(camera_.height_px(), camera_.width_px(), CV_32FC1);
     for (int v = 0; v < image.rows; ++v) {
       for (int u = 0; u < image.cols; ++u) {
-        const std::optional<Eigen::Vector2d> place = OnPlane(pad_from_camera, u, v);
+        const std::optional<Eigen::Vector2d> place = OnPlane(plane, u, v);
         const bool near = place && ReachOnBoard(print, *place) < 0.6 * print.board_size_m;
         const int samples = near ? 4 : 1;
         double sum = 0;
@@ -127,7 +128,7 @@ class PadRenderer {
           const int row = k / samples;
           const double du = (k % samples + 0.5) / samples - 0.5;
           const double dv = (row + 0.5) / samples - 0.5;
-          sum += GrayAt(print, OnPlane(pad_from_camera, u + du, v + dv), options, seed);
+          sum += GrayAt(print, OnPlane(plane, u + du, v + dv), options, seed);
         }
         image.at<float>(v, u) = static_cast<float>(sum / (samples * samples));
       }
@@ -136,11 +137,15 @@ class PadRenderer {
   }
 
  private:
-  std::optional<Eigen::Vector2d> OnPlane(const RigidTransform& pad_from_camera, double u,
-                                         double v) const {
+  struct Plane {
+    Eigen::Matrix3d from_camera;
+    Eigen::Vector3d eye;
+  };
+
+  std::optional<Eigen::Vector2d> OnPlane(const Plane& plane, double u, double v) const {
     const Eigen::Vector3f seen = rays_.Ray(static_cast<float>(u), static_cast<float>(v));
-    const Eigen::Vector3d ray = pad_from_camera.rotation * seen.cast<double>();
-    const Eigen::Vector3d& eye = pad_from_camera.translation;
+    const Eigen::Vector3d ray = plane.from_camera * seen.cast<double>();
+    const Eigen::Vector3d& eye = plane.eye;
     if (!(ray.z() < -1e-3)) return std::nullopt;
     return Eigen::Vector2d((eye - eye.z() / ray.z() * ray).head<2>());
   }

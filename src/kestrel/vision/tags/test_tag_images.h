@@ -44,7 +44,8 @@ class TagRenderer {
 
   cv::Mat Render(const std::vector<PrintedTag>& tags, const RigidTransform& camera_from_board,
                  const TagImageOptions& options, std::uint64_t seed) const {
-    const RigidTransform board_from_camera = camera_from_board.Inverse();
+    const Plane plane{camera_from_board.rotation.conjugate().toRotationMatrix(),
+                      camera_from_board.Inverse().translation};
     double plate = 0;  // half of the white plate's side
     std::vector<PlacedTag> placed;
     for (const PrintedTag& tag : tags) {
@@ -55,7 +56,7 @@ class TagRenderer {
     cv::Mat image(camera_.height_px(), camera_.width_px(), CV_32FC1);
     for (int v = 0; v < image.rows; ++v) {
       for (int u = 0; u < image.cols; ++u) {
-        const std::optional<Eigen::Vector2d> place = OnPlane(board_from_camera, u, v);
+        const std::optional<Eigen::Vector2d> place = OnPlane(plane, u, v);
         const bool near = place && place->lpNorm<Eigen::Infinity>() < 1.2 * plate + 0.05;
         const int samples = near ? 5 : 1;
         double sum = 0;
@@ -63,7 +64,7 @@ class TagRenderer {
           for (int column = 0; column < samples; ++column) {
             const double du = (column + 0.5) / samples - 0.5;
             const double dv = (row + 0.5) / samples - 0.5;
-            sum += GrayAt(placed, plate, OnPlane(board_from_camera, u + du, v + dv), options, seed);
+            sum += GrayAt(placed, plate, OnPlane(plane, u + du, v + dv), options, seed);
           }
         }
         image.at<float>(v, u) = static_cast<float>(sum / (samples * samples));
@@ -73,16 +74,20 @@ class TagRenderer {
   }
 
  private:
-  struct PlacedTag {
-    const PrintedTag* tag;
-    double cosine, sine;  // of its heading
+  struct Plane {
+    Eigen::Matrix3d from_camera;
+    Eigen::Vector3d eye;
   };
 
-  std::optional<Eigen::Vector2d> OnPlane(const RigidTransform& board_from_camera, double u,
-                                         double v) const {
+  struct PlacedTag {
+    const PrintedTag* tag;
+    double cosine, sine;  // where it heads
+  };
+
+  std::optional<Eigen::Vector2d> OnPlane(const Plane& plane, double u, double v) const {
     const Eigen::Vector3f seen = rays_.Ray(static_cast<float>(u), static_cast<float>(v));
-    const Eigen::Vector3d ray = board_from_camera.rotation * seen.cast<double>();
-    const Eigen::Vector3d& eye = board_from_camera.translation;
+    const Eigen::Vector3d ray = plane.from_camera * seen.cast<double>();
+    const Eigen::Vector3d& eye = plane.eye;
     if (!(ray.z() < -1e-3)) return std::nullopt;
     return (eye - eye.z() / ray.z() * ray).head<2>();
   }
