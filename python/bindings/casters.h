@@ -37,7 +37,7 @@ struct type_caster<kestrel::Duration> {
   PYBIND11_TYPE_CASTER(kestrel::Duration, const_name("float"));
 
   bool load(handle source, bool convert) {
-    constexpr double kLongest_s = 9e9;  // of 64 bits of nanoseconds
+    constexpr double kLongest_s = 9e9;  // what 64 bits of nanoseconds hold
     make_caster<double> seconds;
     if (!seconds.load(source, convert)) return false;
     if (!(std::abs(cast_op<double>(seconds)) < kLongest_s)) return false;

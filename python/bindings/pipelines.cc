@@ -89,7 +89,7 @@ class GuardedLanding : public Guarded<LandingPipeline> {
     throw InputError(fmt::format("camera is {}, expected less than {}", camera, views_.size()));
   }
 
-  PadViews views_;  // of each camera
+  PadViews views_;  // one for each camera
 };
 
 class GuardedHunt : public Guarded<HuntPipeline> {

@@ -46,7 +46,7 @@ struct SeenFrame {
 
 // Pad and objects of a session, for drawing its results.
 struct Views {
-  std::vector<std::shared_ptr<PadView>> pads;  // of each camera
+  std::vector<std::shared_ptr<PadView>> pads;  // one for each camera
   std::shared_ptr<ObjectModel> model;
 
   SeenFrame Seen(const Observation& observation) const {
@@ -315,7 +315,7 @@ class Session {
   Choices choices_;
   TaskOptions options_;
   std::shared_ptr<const Task> task_;
-  KestrelOptions flight_;  // of live sessions
+  KestrelOptions flight_;  // for live sessions
   std::atomic<bool> is_stopped_{false};
 };
 

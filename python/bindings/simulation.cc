@@ -74,13 +74,24 @@ struct Simulation : Recording {
   std::shared_ptr<const RecordingPlan> plan;
 };
 
+// Flights over the landing pattern, or over coloured objects.
+struct FlightKind {
+  decltype(&PlanLandingScenario) plan;
+  CameraCalibration (*calibration)();
+  decltype(&LandingScenarios) scenarios;
+};
+
+FlightKind KindOf(bool is_hunt) {
+  if (is_hunt) return {&PlanHuntScenario, &HuntCalibration, &HuntScenarios};
+  return {&PlanLandingScenario, &PaperCalibration, &LandingScenarios};
+}
+
 Simulation Simulate(const std::string& scenario, bool is_hunt,
                     const std::optional<CameraCalibration>& camera, std::uint64_t seed,
                     const py::kwargs& settings) {
-  const auto make_plan = is_hunt ? &PlanHuntScenario : &PlanLandingScenario;
-  const CameraCalibration own = is_hunt ? HuntCalibration() : PaperCalibration();
+  const FlightKind kind = KindOf(is_hunt);
   auto plan = std::make_shared<const RecordingPlan>(
-      make_plan(scenario, Settings(settings), camera.value_or(own), seed));
+      kind.plan(scenario, Settings(settings), camera.value_or(kind.calibration()), seed));
   const CameraCalibration calibration =
       ParseCalibration(TextOf(*plan, "cam0/sensor.yaml"), "cam0/sensor.yaml");
   const std::vector<PoseSample> poses = ParsePoseRows(TextOf(*plan, euroc::kPoses), euroc::kPoses);
@@ -149,7 +160,7 @@ void BindFlight(py::module_& module) {
       "scenarios",
       [](bool is_hunt) {
         py::dict meanings;
-        for (const Scenario& scenario : is_hunt ? HuntScenarios() : LandingScenarios()) {
+        for (const Scenario& scenario : KindOf(is_hunt).scenarios()) {
           meanings[scenario.name] = scenario.meaning;
         }
         return meanings;

@@ -54,8 +54,8 @@ struct LensArguments {
 // The images of the sources, and the data of their files that are not about the lens.
 struct LensSources {
   std::vector<LensImage> images;
-  CameraMount mount;   // of the first source
-  double rate_hz = 0;  // of the first source
+  CameraMount mount;   // as the first source has it
+  double rate_hz = 0;  // as the first source has it
 };
 
 LensSources ReadSources(const std::vector<std::string>& arguments, const BagArguments& bag) {

@@ -28,7 +28,7 @@
 namespace kestrel {
 namespace {
 
-constexpr std::size_t kFramesPerReport = 20;  // of the progress, on the page
+constexpr std::size_t kFramesPerReport = 20;  // between two lines of progress on the page
 
 void RunConsole(const ConsoleArguments& arguments) {
   CatchInterrupts();  // the page can be asked, and ended, before the first run begins

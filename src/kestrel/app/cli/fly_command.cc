@@ -365,15 +365,15 @@ class Flight {
   std::shared_ptr<const Task> task_;
   FlySource source_;
   std::unique_ptr<ObservationSinks> own_sinks_ = std::make_unique<ObservationSinks>();
-  ObservationSinks& sinks_ = *own_sinks_;  // of the session, once there is one
-  FlightLog* log_ = nullptr;               // of the sinks
-  FlightConsole* console_ = nullptr;       // of the sinks; null: none
+  ObservationSinks& sinks_ = *own_sinks_;  // the session's, once there is one
+  FlightLog* log_ = nullptr;               // one of the sinks
+  FlightConsole* console_ = nullptr;       // one of the sinks; null: none
   std::unique_ptr<VideoServer> video_;     // null: none
   std::vector<std::string> video_urls_;    // for other devices last
   std::unique_ptr<TeamLink> team_;         // until 'sharing_' has it; null: none
   FlyAutopilot autopilot_;
   std::unique_ptr<LiveSession> session_;
-  LiveTeamSharing* sharing_ = nullptr;  // of the sinks; null: no team
+  LiveTeamSharing* sharing_ = nullptr;  // one of the sinks; null: no team
   std::optional<FlightKeeper> keeper_;
 };
 

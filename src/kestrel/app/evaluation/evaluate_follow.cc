@@ -35,7 +35,7 @@ struct ComparedFollow {
   FollowRow row;
   TrueRegion truth;
   FollowVerdict verdict = FollowVerdict::kNotSeen;
-  double overlap = 0;                         // of the boxes: intersection by union
+  double overlap = 0;                         // intersection of the boxes by their union
   std::optional<double> place_error_m, nees;  // with 2 degrees of freedom
 };
 

@@ -153,7 +153,7 @@ struct PointsAnnotation {
 struct TextAnnotation {
   static constexpr std::string_view kType = "foxglove.TextAnnotation";
   Time timestamp;
-  Point2 position;  // of its lower left corner
+  Point2 position;  // where its lower left corner is
   std::string text;
   double font_size = 0;  // px
   Color text_color;
@@ -346,7 +346,7 @@ struct Target {
   Vector3 velocity;                // m/s
   double heading = 0;              // rad, from x (east) towards y (north)
   double turn_rate = 0;            // rad/s
-  std::vector<double> covariance;  // of position and velocity: 6 x 6, row by row
+  std::vector<double> covariance;  // position and velocity: 6 x 6, row by row
 
   static void Fields(auto& self, auto& visit) {
     visit(1, "position", self.position);
@@ -360,7 +360,7 @@ struct Target {
 // The result of a frame, with its durations.
 struct FrameResult {
   static constexpr std::string_view kType = "kestrel.FrameResult";
-  Time timestamp;                                                // of the frame
+  Time timestamp;                                                // when the frame was taken
   std::string frame;                                             // its name; empty in flight
   double detect_ms = 0;                                          // the detection alone
   double latency_ms = std::numeric_limits<double>::quiet_NaN();  // from capture to this, in flight

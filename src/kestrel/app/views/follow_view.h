@@ -15,7 +15,7 @@ namespace kestrel {
 struct FollowView {
   using Seen = FollowObservation;
 
-  TurnNoise noise;  // of the track's motion
+  TurnNoise noise;  // how fast the track may turn
 };
 
 // Returns the series of FollowSample: probability, distance, speed, time of the tracker.

@@ -28,10 +28,13 @@ ViewFrame ViewFrameOf(const FollowView& /*view*/, const FollowObservation& obser
           FollowMap(observation), FollowShapes(observation), FollowFacts(observation)};
 }
 
+// Null where something else is looked for.
+const HuntView* HuntIn(const TaskView& view) { return std::get_if<HuntView>(&view); }
+
 }  // namespace
 
 ViewParts PartsOf(const TaskView& view) {
-  if (const auto* hunt = std::get_if<HuntView>(&view)) {
+  if (const HuntView* const hunt = HuntIn(view)) {
     return {HuntSeries(), HuntLayers(), HuntImageViews(*hunt)};
   }
   if (std::holds_alternative<FollowView>(view)) return {FollowSeries(), FollowLayers(), {}};
@@ -52,12 +55,12 @@ TaskView ViewOf(const Task& task, const CameraCalibration& calibration) {
 }
 
 const ObjectModel* ModelOf(const TaskView& view) {
-  const auto* hunt = std::get_if<HuntView>(&view);
+  const HuntView* const hunt = HuntIn(view);
   return hunt == nullptr ? nullptr : &hunt->model;
 }
 
 std::optional<ViewedTeam> TeamOf(const TaskView& view, const TeamReport& report) {
-  const auto* hunt = std::get_if<HuntView>(&view);
+  const HuntView* const hunt = HuntIn(view);
   if (hunt == nullptr) return std::nullopt;
   return HuntTeam(*hunt, report);
 }

@@ -17,7 +17,7 @@ inline constexpr std::string_view kViewerPath = "/foxglove";
 struct RequestHead {
   std::string_view target = {};                     // path and query
   std::string_view host = {};                       // as "localhost:8080"
-  std::optional<std::string_view> origin = {};      // of the page, if sent
+  std::optional<std::string_view> origin = {};      // where the page is from, if sent
   std::optional<std::string_view> fetch_site = {};  // Sec-Fetch-Site
   std::optional<std::string_view> fetch_mode = {};  // Sec-Fetch-Mode
   std::string_view cookies = {};

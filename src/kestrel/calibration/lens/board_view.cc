@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <opencv2/calib3d.hpp>
@@ -287,8 +288,8 @@ std::optional<RigidTransform> PoseOf(const LensView& view, const CameraModel& le
     for (int i = 0; i < 3; ++i) rows.middleCols<3>(3 * i) = point(i) * cross;
     squares += rows.transpose() * rows;
   }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(squares, Eigen::ComputeFullV);
-  const Eigen::Vector<double, 9> least = svd.matrixV().col(8);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver(squares);
+  const Eigen::Vector<double, 9> least = solver.eigenvectors().col(0);
   Eigen::Matrix3d homography = Eigen::Map<const Eigen::Matrix3d>(least.data());
   const double scale = 0.5 * (homography.col(0).norm() + homography.col(1).norm());
   if (!(scale > 1e-9)) return std::nullopt;

@@ -157,7 +157,7 @@ void Autopilot::HandleHeartbeat(const mavlink::Packet& packet, const mavlink::He
     return;
   }
   const mavlink::Heartbeat before = std::exchange(heartbeat_, heartbeat);
-  heard_ = modereported_ = received;
+  heard_ = mode_reported_ = received;
   if (is_here_) return ReportChange(before);
   is_here_ = true;
   const bool is_first = kind_ == AutopilotKind::kUnknown;
@@ -208,7 +208,7 @@ void Autopilot::HandleFromAutopilot(const mavlink::Packet& packet, Time received
   if (const auto mode = packet.As<mavlink::CurrentMode>()) {
     const mavlink::Heartbeat before = heartbeat_;
     heartbeat_.custom_mode = mode->custom_mode;
-    modereported_ = received;
+    mode_reported_ = received;
     ReportChange(before);
   } else if (const auto timesync = packet.As<mavlink::Timesync>()) {
     HandleTimesync(*timesync, received);

@@ -133,8 +133,8 @@ class Autopilot {
 
   // True when a heartbeat was heard recently.
   bool is_here() const { return is_here_; }
-  Time modereported() const { return modereported_; }  // newest heartbeat, or PX4's CURRENT_MODE
-  Time received() const { return received_; }          // time of the newest message
+  Time mode_reported() const { return mode_reported_; }  // newest heartbeat, or PX4's CURRENT_MODE
+  Time received() const { return received_; }            // time of the newest message
   AutopilotKind kind() const { return kind_; }
   std::uint8_t system() const { return system_; }
   std::uint8_t component() const { return component_; }
@@ -240,7 +240,7 @@ class Autopilot {
   mavlink::Heartbeat heartbeat_;
   Time heard_{};
   Time received_{};
-  Time modereported_{};
+  Time mode_reported_{};
   std::optional<std::uint8_t> sequence_;
 
   ClockExchange clock_;

@@ -111,9 +111,6 @@ void AutopilotStatus::HandleSystem(const mavlink::SysStatus& message) {
   if (message.current_battery >= 0) battery.current_a = 1e-2 * message.current_battery;
   if (message.battery_remaining >= 0) battery.remaining = 1e-2 * message.battery_remaining;
   battery_ = battery;
-  sensors_ = AutopilotSensors{message.onboard_control_sensors_present,
-                              message.onboard_control_sensors_enabled,
-                              message.onboard_control_sensors_health};
 }
 
 void AutopilotStatus::HandleGnss(const mavlink::GpsRawInt& message) {

@@ -46,15 +46,6 @@ struct AutopilotGnss {
   std::optional<int> satellites;
 };
 
-// Bits of MAV_SYS_STATUS_SENSOR.
-struct AutopilotSensors {
-  std::uint32_t present = 0;
-  std::uint32_t enabled = 0;
-  std::uint32_t healthy = 0;
-
-  std::uint32_t failed() const { return present & enabled & ~healthy; }
-};
-
 // The autopilot's judgement of its own estimate.
 struct EstimatorHealth {
   Time received;
@@ -78,7 +69,6 @@ class AutopilotStatus {
   const std::optional<GlobalPosition>& home() const { return home_; }
   const std::optional<AutopilotBattery>& battery() const { return battery_; }
   const std::optional<AutopilotGnss>& gnss() const { return gnss_; }
-  const std::optional<AutopilotSensors>& sensors() const { return sensors_; }
   const std::optional<EstimatorHealth>& estimator() const { return estimator_; }
 
  private:
@@ -93,7 +83,6 @@ class AutopilotStatus {
   std::optional<GlobalPosition> home_;
   std::optional<AutopilotBattery> battery_;
   std::optional<AutopilotGnss> gnss_;
-  std::optional<AutopilotSensors> sensors_;
   std::optional<EstimatorHealth> estimator_;
 };
 

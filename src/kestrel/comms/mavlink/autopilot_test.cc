@@ -463,7 +463,7 @@ TEST_F(AutopilotTest, KnowsModeOfPx4BeforeNextHeartbeat) {
   changed.custom_mode = Px4CustomMode(3, 0);
   SendMessage(changed);
   EXPECT_FALSE(autopilot_->is_guided_mode());
-  EXPECT_EQ(autopilot_->modereported(), now_);
+  EXPECT_EQ(autopilot_->mode_reported(), now_);
   EXPECT_EQ(EventsOf(AutopilotEventKind::kModeChanged), 1);
 }
 

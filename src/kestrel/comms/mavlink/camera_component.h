@@ -87,7 +87,7 @@ class CameraComponent {
 
   CameraDescription camera_;
   CameraListener listener_;
-  Time now_{};  // of the newest call
+  Time now_{};  // when it was last called
   CameraTracking tracking_;
   std::array<Station, 4> stations_{};  // the last ones that sent commands
   std::array<Time, kCameraReports.size()> due_{};

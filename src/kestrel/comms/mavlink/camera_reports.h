@@ -26,7 +26,7 @@ struct CameraDescription {
   double horizontal_fov_deg = std::numeric_limits<double>::quiet_NaN();
   double vertical_fov_deg = std::numeric_limits<double>::quiet_NaN();
   std::uint8_t gimbal_device_id = 0;  // as GIMBAL_DEVICE_ATTITUDE_STATUS has it; 0: no gimbal
-  std::string stream_uri;             // of its video, H.264 by RTSP; empty: there is none
+  std::string stream_uri;             // where its video is, H.264 by RTSP; empty: there is none
   double stream_rate_hz = 0;
 
   bool has_stream() const { return !stream_uri.empty(); }

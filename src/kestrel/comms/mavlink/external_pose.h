@@ -15,9 +15,9 @@ namespace kestrel {
 // A pose of the UAV that something other than the autopilot's own sensors has measured: the
 // autopilot's external navigation.
 struct ExternalPose {
-  Time time;                       // of the measurement, on the local clock
+  Time time;                       // when it was measured, on the local clock
   RigidTransform frame_from_body;  // body FLU; the frame is level, its z axis points up
-  Eigen::Matrix3d covariance;      // of the position, m^2, in the frame
+  Eigen::Matrix3d covariance;      // how uncertain the position is, m^2, in the frame
   double tilt_sigma = 0;           // roll and pitch, rad
   double heading_sigma = 0;        // rad
   std::uint8_t resets = 0;         // number of jumps of the frame so far, modulo 256

@@ -33,7 +33,6 @@ inline constexpr std::uint8_t kAutopilotPx4 = 12;
 // MAV_COMPONENT
 inline constexpr std::uint8_t kComponentAutopilot = 1;
 inline constexpr std::uint8_t kComponentCamera = 100;
-inline constexpr std::uint8_t kComponentOnboardComputer = 191;
 
 // GIMBAL_DEVICE_FLAGS and GIMBAL_MANAGER_FLAGS
 inline constexpr std::uint16_t kGimbalRollLock = 4;
@@ -107,7 +106,6 @@ inline constexpr float kArmByForce = 21196;
 inline constexpr std::uint16_t kIgnorePosition = 0x007;
 inline constexpr std::uint16_t kIgnoreVelocity = 0x038;
 inline constexpr std::uint16_t kIgnoreAcceleration = 0x1c0;
-inline constexpr std::uint16_t kForceNotAcceleration = 0x200;
 inline constexpr std::uint16_t kIgnoreYaw = 0x400;
 inline constexpr std::uint16_t kIgnoreYawRate = 0x800;
 
@@ -140,9 +138,7 @@ inline constexpr std::uint8_t kFrameLocalFrd = 20;
 inline constexpr std::uint8_t kEstimatorTypeVision = 2;
 
 // TARGET_OBS_FRAME of TARGET_RELATIVE
-inline constexpr std::uint8_t kTargetFrameLocalNed = 0;
 inline constexpr std::uint8_t kTargetFrameBodyFrd = 1;
-inline constexpr std::uint8_t kTargetFrameLocalOffsetNed = 2;
 inline constexpr std::uint8_t kTargetFrameOther = 3;
 
 // LANDING_TARGET_TYPE
@@ -150,7 +146,6 @@ inline constexpr std::uint8_t kTargetTypeVisionFiducial = 2;
 inline constexpr std::uint8_t kTargetTypeVisionOther = 3;
 
 // MAV_LANDED_STATE
-inline constexpr std::uint8_t kLandedUndefined = 0;
 inline constexpr std::uint8_t kLandedOnGround = 1;
 inline constexpr std::uint8_t kLandedInAir = 2;
 inline constexpr std::uint8_t kLandedTakeoff = 3;
@@ -160,7 +155,6 @@ inline constexpr std::uint8_t kLandedLanding = 4;
 inline constexpr std::uint8_t kSeverityCritical = 2;
 inline constexpr std::uint8_t kSeverityError = 3;
 inline constexpr std::uint8_t kSeverityWarning = 4;
-inline constexpr std::uint8_t kSeverityNotice = 5;
 inline constexpr std::uint8_t kSeverityInfo = 6;
 
 // MAV_PARAM_TYPE
@@ -169,13 +163,11 @@ inline constexpr std::uint8_t kParamInt32 = 6;
 inline constexpr std::uint8_t kParamReal32 = 9;
 
 // MAV_DISTANCE_SENSOR, MAV_SENSOR_ORIENTATION
-inline constexpr std::uint8_t kDistanceLaser = 0;
 inline constexpr std::uint8_t kDistanceUnknown = 4;
 inline constexpr std::uint8_t kOrientationDown = 25;  // pitched by 270 degrees
 
 // MAV_DATA_STREAM
 inline constexpr std::uint8_t kStreamPosition = 6;
 inline constexpr std::uint8_t kStreamExtra1 = 10;  // attitude
-inline constexpr std::uint8_t kStreamExtra3 = 12;  // range, system time
 
 }  // namespace kestrel::mavlink

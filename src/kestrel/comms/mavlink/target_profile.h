@@ -39,7 +39,7 @@ struct TargetState {
   Eigen::Vector3d position_in_world{0, 0, 0};
   Eigen::Vector3d normal_in_world{0, 0, 1};  // normal of the board, upwards
   Eigen::Vector3d velocity_in_world{0, 0, 0};
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of the position from the UAV, m^2
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // uncertainty from the UAV, m^2
   std::optional<double> yaw = std::nullopt;  // heading in the world, rad from east to north
   double yaw_sigma = 0;                      // rad
   double size_m = 0;                         // diameter of the pattern; 0: not known

@@ -89,7 +89,7 @@ class Examination {
   int gimbal_reports_ = 0;
   int zoom_reports_ = 0;
   std::optional<double> view_rad_;        // the newest of these
-  std::optional<GimbalManager> manager_;  // of the camera's gimbal; it takes no control
+  std::optional<GimbalManager> manager_;  // reads the camera's gimbal; it takes no control
   std::vector<GimbalObservation> gimbal_;
   std::optional<Eigen::Quaterniond> world_from_body_;  // by the newest pose
   int positions_ = 0;

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/core/geometry/angles.h"
+#include "kestrel/core/geometry/rotation_between.h"
 #include "kestrel/core/poses/gimbal_history.h"
 
 namespace kestrel {
@@ -68,7 +69,7 @@ double Swing(const std::vector<GimbalObservation>& reports, const RotationOf& ro
 
 // The attitude against the horizon alone: the shortest rotation that levels it.
 Quaterniond TiltOf(const Quaterniond& rotation) {
-  return Quaterniond::FromTwoVectors(Vector3d::UnitZ(), rotation.conjugate() * Vector3d::UnitZ());
+  return RotationBetween(Vector3d::UnitZ(), rotation.conjugate() * Vector3d::UnitZ());
 }
 
 Quaterniond BodyFromPlatform(const GimbalObservation& report) {

@@ -56,18 +56,30 @@ double MedianTilt(const std::vector<const PatternSample*>& patterns,
 // Returns the root mean square distance of the pattern from one place, or from a straight way, m.
 double Wandering(const std::vector<const PatternSample*>& patterns,
                  const RigidTransform& body_from_camera, bool target_moves) {
-  const auto rows = static_cast<Eigen::Index>(patterns.size());
-  Eigen::MatrixXd places(rows, 3);
-  Eigen::MatrixXd motion = Eigen::MatrixXd::Ones(rows, target_moves ? 2 : 1);
-  for (Eigen::Index i = 0; i < rows; ++i) {
-    const PatternSample& pattern = *patterns[static_cast<std::size_t>(i)];
-    places.row(i) =
-        (*pattern.world_from_body * (body_from_camera * pattern.camera_from_target.translation))
-            .transpose();
-    if (target_moves) motion(i, 1) = ToSeconds(pattern.time - patterns.front()->time);
+  const auto count = static_cast<double>(patterns.size());
+  std::vector<Vector3d> places;
+  std::vector<double> times_s;
+  Vector3d middle = Vector3d::Zero();
+  double middle_s = 0;
+  for (const PatternSample* pattern : patterns) {
+    places.push_back(*pattern->world_from_body *
+                     (body_from_camera * pattern->camera_from_target.translation));
+    times_s.push_back(ToSeconds(pattern->time - patterns.front()->time));
+    middle += places.back() / count;
+    middle_s += times_s.back() / count;
   }
-  const Eigen::MatrixXd way = motion.colPivHouseholderQr().solve(places);
-  return std::sqrt((places - motion * way).rowwise().squaredNorm().mean());
+  Vector3d velocity = Vector3d::Zero();  // by least squares
+  double spread = 0;
+  for (std::size_t i = 0; target_moves && i < places.size(); ++i) {
+    velocity += (times_s[i] - middle_s) * (places[i] - middle);
+    spread += (times_s[i] - middle_s) * (times_s[i] - middle_s);
+  }
+  if (spread > 0) velocity /= spread;
+  double sum = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    sum += (places[i] - middle - (times_s[i] - middle_s) * velocity).squaredNorm();
+  }
+  return std::sqrt(sum / count);
 }
 
 // All 24 rotations by quarter turns; the first is the identity.

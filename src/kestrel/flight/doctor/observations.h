@@ -59,7 +59,7 @@ struct CameraObservations {
   std::vector<ImageQuality> qualities;  // quality of each examined frame
   CaptureCounters counters;
   bool comes_late = false;             // over a network
-  std::optional<ClockEstimate> delay;  // of a camera that comes late, by the turns of its images
+  std::optional<ClockEstimate> delay;  // how late the images come, by their turns
 };
 
 // The pattern in one frame, found without mount and attitude.

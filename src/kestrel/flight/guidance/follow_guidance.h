@@ -48,7 +48,7 @@ class FollowGuidance : public Guidance {
   int mark_ = 0;                         // the mark that the UAV may fly to; 0: none
   std::optional<Time> lost_;             // since when that is lost
   std::optional<Eigen::Vector3d> stay_;  // where it stands still; nothing: it still brakes
-  double yaw_ = 0;                       // of the nose, commanded, rad
+  double yaw_ = 0;                       // where the nose is to point, rad
   double yaw_rate_ = 0;                  // rad/s
 };
 

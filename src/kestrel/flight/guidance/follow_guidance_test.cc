@@ -282,7 +282,7 @@ TEST(FollowGuidanceTest, NewMarkNeedsConfirmation) {
   const auto other = [](GuidanceInput& input) { input.mark = 2; };
   flight.Fly(1, other);
   EXPECT_EQ(flight.output.phase, Phase::kLook);
-  flight.Confirm();  // of the first one: it came too late
+  flight.Confirm();  // for the first one: it came too late
   flight.Fly(1, other);
   EXPECT_EQ(flight.output.phase, Phase::kLook);
   EXPECT_THAT(flight.output.reason, HasSubstr("something else is marked"));

@@ -156,7 +156,7 @@ class FlightProgram {
   LatestValue<PoseSample> source_pose_;
   PoseHistory poses_;  // from the link
   LatencyStatistics latency_;
-  std::atomic<Duration> arrival_{Duration::zero()};  // of the newest frame, after its capture
+  std::atomic<Duration> arrival_{Duration::zero()};  // how late the newest frame came
   ServiceManager service_manager_;
   SignOfLife capture_life_, vision_life_, link_life_;
   std::once_flag ended_;
@@ -172,7 +172,7 @@ class FlightProgram {
   std::optional<PointedGimbal> gimbal_;
   std::atomic<bool> resumes_pointing_{false};  // set by any thread
   std::optional<TrackingCamera> camera_;       // its marks are applied by the vision's thread
-  TurnNoise noise_;                            // of the predicted track
+  TurnNoise noise_;                            // how the predicted track may turn
   std::optional<GuardWatch> guard_;
   LandingWatch landing_;
   Time landing_due_{};   // when the landing is looked at next

@@ -158,18 +158,18 @@ class FlightRecorder {
   Notify notify_;
   std::optional<JpegEncoder> jpeg_encoder_;  // for images that are not PNG
   Duration utc_offset_;                      // UTC minus Now()
-  std::optional<GimbalMount> gimbal_;        // of the calibration
-  std::optional<ZoomLens> zoom_;             // of the calibration
+  std::optional<GimbalMount> gimbal_;        // as the calibration has it
+  std::optional<ZoomLens> zoom_;             // as the calibration has it
   EurocWriter writer_;
   BoundedQueue<RecordedImage> images_;
   BoundedQueue<Record> records_;
 
   // Used by the writer's thread only.
   std::array<std::optional<Time>, kKindCount> last_times_;
-  std::vector<std::optional<Time>> last_images_;  // of each camera
-  std::optional<YawFrame> yaw_frame_;             // of the recorded reports
+  std::vector<std::optional<Time>> last_images_;  // one for each camera
+  std::optional<YawFrame> yaw_frame_;             // in which the recorded reports are
   std::string encoded_;
-  Time next_attempt_;  // of writing, after a failure
+  Time next_attempt_;  // when writing is tried again after a failure
 
   std::atomic<bool> are_images_stopped_{false};
   std::atomic<std::uint64_t> image_count_{0};

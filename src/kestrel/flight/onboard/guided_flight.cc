@@ -161,7 +161,7 @@ GuidanceInput GuidedFlight::Input(Time now, const TrackSnapshot& track,
   input.is_landed = autopilot_.landed_state() == LandedState::kOnGround;
   input.is_link_up = ToSeconds(now - autopilot_.received()) < kLinkAge_s;
   input.is_camera_up = ToSeconds(now - track.captured) < kMaxFrameAge_s;
-  input.mode_age_s = ToSeconds(now - autopilot_.modereported());
+  input.mode_age_s = ToSeconds(now - autopilot_.mode_reported());
   input.link_delay_s = ToSeconds(LinkDelay(options_, autopilot_));
   return input;
 }

@@ -134,7 +134,7 @@ class GuidedFlightTest : public testing::Test {
   std::unique_ptr<GuidedFlight> guided_;
   std::string reported_;
   int set_points_ = 0;
-  std::set<std::uint32_t> requested_modes_;  // of PX4
+  std::set<std::uint32_t> requested_modes_;  // as PX4 numbers them
 };
 
 TEST_F(GuidedFlightTest, FliesWhilePilotSelectsMode) {

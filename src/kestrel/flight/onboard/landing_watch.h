@@ -17,7 +17,7 @@ struct LandingWatchInput {
   Time now;
   bool is_armed = false;
   LandedState state = LandedState::kUnknown;
-  int reboots = 0;  // of the autopilot, since the program began
+  int reboots = 0;  // how often the autopilot has rebooted since the program began
   Time stamped;     // when the newest message with the autopilot's time since boot came
 
   struct Body {

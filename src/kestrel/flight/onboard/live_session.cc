@@ -135,7 +135,7 @@ class Flight : public LiveSession {
   std::unique_ptr<ExposureActuator> actuator_;
   std::optional<ExposureDrive> exposure_;
   std::optional<AsynchronousSink> tables_;
-  GuardLink* guard_ = nullptr;  // of the connection; null: none
+  GuardLink* guard_ = nullptr;  // one end of the connection; null: none
   std::optional<Connection> connection_;
   std::optional<Autopilot> autopilot_;
   std::optional<FlightProgram> program_;

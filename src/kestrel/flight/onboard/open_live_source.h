@@ -25,7 +25,7 @@ struct OpenedLiveSource {
   CameraCalibration calibration = {};
   // Those of the further cameras: of frames with the indices 1, 2, ... All have their names then.
   std::vector<CameraCalibration> further = {};
-  double rate_hz = kNominalRateHz;       // of the images, nominal
+  double rate_hz = kNominalRateHz;       // nominal
   bool has_poses = false;                // the source has poses of its own
   ExposureActuator* actuator = nullptr;  // view of 'source'; null: its exposure cannot be set
 

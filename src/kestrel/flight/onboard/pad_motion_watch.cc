@@ -28,7 +28,7 @@ void Forget(Time oldest, Samples* samples) {
 }  // namespace
 
 PadMotionWatch::PadMotionWatch() {
-  constexpr std::size_t kMost = 1024;  // of fast streams
+  constexpr std::size_t kMost = 1024;  // enough for fast streams
   accelerations_.reserve(kMost);
   places_.reserve(kMost);
 }

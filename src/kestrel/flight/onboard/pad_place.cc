@@ -11,7 +11,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kTiltSigma = Radians(1);  // of an autopilot that knows no velocity
+constexpr double kTiltSigma = Radians(1);  // for an autopilot that knows no velocity
 
 // Covariance of a vector turned by a rotation that is uncertain about each axis.
 Matrix3d OfTurn(const Vector3d& vector, const Vector3d& sigma) {

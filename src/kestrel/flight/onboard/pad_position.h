@@ -70,7 +70,7 @@ class PadPosition {
   bool is_turned_ = false;  // its heading has left the pad's
   std::uint8_t watched_resets_ = 0;
   int reported_resets_ = 0;
-  int restarts_ = 0;  // of the autopilot, so far
+  int restarts_ = 0;  // how often the autopilot has begun anew
 };
 
 }  // namespace kestrel

@@ -41,7 +41,7 @@ class TargetSender {
   void set_may_stand(bool may_stand) { reporter_.set_may_stand(may_stand); }
 
   TargetPhase phase() const { return reporter_.phase(); }
-  double height_m() const { return reporter_.height_m(); }  // of the UAV above the target
+  double height_m() const { return reporter_.height_m(); }  // how far the UAV is above the target
   int messages() const { return messages_; }                // number of targets sent
 
  private:

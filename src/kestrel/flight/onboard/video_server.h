@@ -15,7 +15,7 @@ struct VideoServerOptions {
   std::string address = "127.0.0.1";
   int port = 8554;  // 0: any free one
   std::string path = "kestrel";
-  std::string password = {};  // of the user "kestrel"; empty: everybody who reaches the address
+  std::string password = {};  // for the user "kestrel"; empty: everybody who reaches the address
 };
 
 // Serves images as H.264 by RTSP (GStreamer's server), encoded by the hardware where it can. It

@@ -28,7 +28,7 @@ const char* ToString(TargetPhase phase);  // "searching", "found", "lost", "cont
 struct LimitsInUse {
   double lean_share = 0;
   double speed_share = 0;
-  double climb_share = 0;     // of climb or descent
+  double climb_share = 0;     // share of the climb or descent that is done
   std::string cannot_follow;  // why the target cannot be followed; empty: it can
 };
 
@@ -74,7 +74,7 @@ struct FlightReport {
 
 // The knowledge of the UAV's team, in this UAV's world.
 struct TeamReport {
-  Time time;  // of the newest frame that has contributed
+  Time time;  // when the newest frame that has contributed was taken
   std::vector<TeamObject> objects;
 };
 

@@ -90,14 +90,14 @@ class LandingVision : public Vision {
   std::string LensWarning() const;
 
   LandingPipeline pipeline_;
-  Duration clock_offset_;  // of the first camera
+  Duration clock_offset_;  // the first camera's
   Duration pose_lead_;
   std::optional<double> altitude_m_;
   bool has_world_, is_lens_unknown_, is_live_;
   std::vector<double> predict_s_;
   std::vector<Camera> cameras_;
   std::optional<Time> begin_;        // time of the first frame
-  std::vector<std::string> faults_;  // of the cameras, in words
+  std::vector<std::string> faults_;  // what is wrong with each camera, in words
   TrackSnapshot snapshot_;
   std::map<PoseLookup, std::size_t> poses_;
   std::size_t zooming_ = 0;  // frames that were not searched therefore

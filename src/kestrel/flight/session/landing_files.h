@@ -49,7 +49,7 @@ class LandingFiles : public ObservationSink {
   ResultFiles& ResultsOf(std::size_t camera) {
     return *results_[std::min(camera, results_.size() - 1)];
   }
-  std::vector<std::unique_ptr<ResultFiles>> results_;  // of each camera, or one for all
+  std::vector<std::unique_ptr<ResultFiles>> results_;  // one for each camera, or one for all
   std::optional<TrackFiles> track_;
 };
 

@@ -14,7 +14,7 @@ namespace kestrel {
 struct CaptureCounters {
   std::uint64_t captured = 0;  // given out
   std::uint64_t missed = 0;    // taken by the camera, but lost on the way to us or too late
-  std::uint64_t refused = 0;   // of the missed: came to us, but could not be used
+  std::uint64_t refused = 0;   // part of the missed: came to us, but could not be used
   std::uint64_t untimed = 0;   // given out with the time of their arrival, because they have no
                                // other
   std::uint64_t reopened = 0;  // number of times that the source came back

@@ -20,7 +20,7 @@ struct OutputOptions {
   bool force = false;                         // replace existing files
   std::string annotate = {};                  // "video", "images" or empty
   double rate_hz = 0;                         // frame rate of the video
-  std::vector<double> further_rates_hz = {};  // of the further cameras' videos
+  std::vector<double> further_rates_hz = {};  // for the videos of further cameras
   // The lens is not known: distances and positions are left out.
   bool only_in_image = false;
   std::ostream* stream = nullptr;  // null: stdout

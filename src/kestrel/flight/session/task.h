@@ -92,8 +92,8 @@ struct TaskChoice {
 
 // A kind of task. The first one is what a flight does without a flag.
 struct TaskKind {
-  std::string_view name;  // of its subcommand, and of its flag of others, as --hunt
-  const char* meaning;    // of the subcommand
+  std::string_view name;  // names its subcommand, and a flag of others, as --hunt
+  const char* meaning;    // printed by the subcommand's --help
   const char* instead;    // meaning of the flag
   std::unique_ptr<Task> (*make)(const TaskOptions& options, const TaskChoice& choice);
 };

@@ -19,7 +19,7 @@ namespace kestrel {
 struct MapCopy {
   std::vector<MappedObject> objects;
   Time captured;                            // capture time of that frame
-  std::optional<Eigen::Vector3d> position;  // of the camera then, in the world, if it is known
+  std::optional<Eigen::Vector3d> position;  // the camera then, in the world, if it is known
 };
 
 // Copies the map every 'period' for another thread, as it changes with the next frame.

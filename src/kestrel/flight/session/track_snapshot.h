@@ -28,7 +28,7 @@ struct TrackSnapshot {
   struct Sight {
     Time time;
     RigidTransform target_from_body;
-    Eigen::Matrix3d covariance;  // of the target's centre in the body, m^2
+    Eigen::Matrix3d covariance;  // uncertainty of the target's centre in the body, m^2
     double heading_sigma = 0;    // about the target's normal, rad
     int heading_symmetry = 1;    // turns after which the target looks the same; 0: any
   };

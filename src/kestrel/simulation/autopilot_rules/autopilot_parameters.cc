@@ -121,7 +121,7 @@ std::vector<AutopilotParameter> Px4Defaults() {
 AutopilotParameters::AutopilotParameters(AutopilotFirmware firmware)
     : parameters_(firmware == AutopilotFirmware::kPx4 ? Px4Defaults() : ArduPilotDefaults()) {
   if (firmware == AutopilotFirmware::kPx4) return;
-  constexpr int kChannels = 16;  // of the transmitter
+  constexpr int kChannels = 16;  // as many as the transmitter has
   for (int i = 1; i <= kChannels; ++i) {
     parameters_.push_back({fmt::format("RC{}_OPTION", i), 0, true});
   }

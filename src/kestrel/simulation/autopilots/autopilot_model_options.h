@@ -59,7 +59,7 @@ struct AutopilotModelOptions {
   bool has_gimbal = false;  // set where the camera is on one
   SimulatedMountOptions gimbal;
   ZoomOptions zoom;              // set where the camera zooms
-  CameraIntrinsics zoomed_lens;  // of that camera before it does
+  CameraIntrinsics zoomed_lens;  // as that camera has it before it does
 
   static void Visit(auto& self, auto&& visit) {
     visit("system_id", self.system_id, Range{1, 255}, "MAVLink system of the autopilot");

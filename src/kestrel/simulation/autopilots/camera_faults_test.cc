@@ -17,7 +17,7 @@ constexpr int kFlights = 5;
 // A vehicle, and the index of the camera that is wrong.
 class TwoCameraFlightTest : public testing::TestWithParam<std::tuple<const char*, std::size_t>> {
  protected:
-  static constexpr double kLongest_s = 120;  // of a flight
+  static constexpr double kLongest_s = 120;  // for a flight
 
   static std::size_t wrong() { return std::get<1>(GetParam()); }
   static std::size_t right() { return 1 - wrong(); }

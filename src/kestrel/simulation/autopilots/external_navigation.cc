@@ -17,7 +17,7 @@ constexpr std::int64_t kKept_us = 1'000'000;
 constexpr std::int64_t kArduPilotHolds_us = 7'000'000;
 constexpr std::int64_t kPx4Holds_us = 5'000'000;  // EKF2_NOAID_TOUT
 constexpr std::int64_t kLate_us = 200'000;        // PX4 begins with steady messages only
-constexpr double kDrift_mps = 0.1;                // of dead reckoning
+constexpr double kDrift_mps = 0.1;                // how fast dead reckoning drifts
 
 }  // namespace
 
@@ -35,7 +35,7 @@ void ExternalNavigation::Handle(const mavlink::Odometry& message) {
   if (!error.allFinite()) return;
   const bool jumps = !has_position() || message.reset_counter != resets_;
   resets_ = message.reset_counter;
-  constexpr double kShare = 0.2;  // of a message in the estimate
+  constexpr double kShare = 0.2;  // how much of the estimate a message is
   const Vector3d change = (jumps ? 1 : kShare) * (error - error_);
   if (jumps) jump_ += change;
   error_ += change;

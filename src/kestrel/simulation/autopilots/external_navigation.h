@@ -45,7 +45,7 @@ class ExternalNavigation {
 
   AutopilotFirmware firmware_;
   const AutopilotParameters& parameters_;
-  std::deque<Place> places_;  // of the last second
+  std::deque<Place> places_;  // where it was in the last second
   std::optional<std::int64_t> used_us_;
   std::uint8_t resets_ = 0;
   Eigen::Vector3d error_{0, 0, 0};

@@ -60,7 +60,7 @@ class SimulatedSource {
   TargetOptions target_;
   std::uint64_t seed_;
   std::unique_ptr<VehicleWorld> world_;
-  std::vector<SimulatedCamera*> cameras_;  // of the source; empty: none was opened
+  std::vector<SimulatedCamera*> cameras_;  // those that the source has; empty: none was opened
   bool has_true_poses_ = false;
 };
 

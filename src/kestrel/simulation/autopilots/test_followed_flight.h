@@ -70,8 +70,8 @@ class FollowedFlight : public LinkedFlight {
   }
 
   struct Result {
-    double share = 0;       // of the time in which the distance is within a tenth
-    double seen_share = 0;  // of the images that show the vehicle
+    double share = 0;       // share of the time in which the distance is within a tenth
+    double seen_share = 0;  // share of the images that show the vehicle
     double worst_m = 0;     // error of the distance
     double lowest_m = 1e9;  // height above the ground
   };

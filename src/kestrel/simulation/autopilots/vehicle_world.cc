@@ -20,6 +20,7 @@ constexpr double kWaiting = std::numeric_limits<double>::infinity();
 // Duration of the track that is painted on the ground and kept free of things.
 constexpr double kTrackDuration_s = 60;
 
+// The vehicles of `sim:SCENARIO`.
 std::vector<VehicleScenario> MakeSitlScenarios() {
   std::vector<VehicleScenario> scenarios = {
       {"standing", "a vehicle that stands at the origin", {"vehicle.path=standing"}},
@@ -41,14 +42,14 @@ std::vector<VehicleScenario> MakeSitlScenarios() {
   return scenarios;
 }
 
-const std::vector<VehicleScenario>& AllSitlScenarios() {
+const std::vector<VehicleScenario>& SitlScenarios() {
   static const std::vector<VehicleScenario> scenarios = MakeSitlScenarios();
   return scenarios;
 }
 
 const VehicleScenario& FindSitlScenario(const std::string& name) {
   std::vector<const char*> names;
-  for (const VehicleScenario& scenario : AllSitlScenarios()) {
+  for (const VehicleScenario& scenario : SitlScenarios()) {
     if (name == scenario.name) return scenario;
     names.push_back(scenario.name);
   }
@@ -91,8 +92,6 @@ VehicleWorldOptions::VehicleWorldOptions() {
   surroundings.lookalikes = 1;
   surroundings.banners = 1;
 }
-
-std::span<const VehicleScenario> SitlScenarios() { return AllSitlScenarios(); }
 
 VehicleWorldOptions ReadVehicleWorld(const std::string& scenario,
                                      const std::vector<std::string>& settings,

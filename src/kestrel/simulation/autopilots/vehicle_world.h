@@ -7,7 +7,6 @@
 #include <map>
 #include <mutex>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -48,9 +47,6 @@ struct VehicleWorldOptions : LandingSceneOptions {
     LandingSceneOptions::Visit(self, visit);
   }
 };
-
-// The vehicles of `sim:SCENARIO`.
-std::span<const VehicleScenario> SitlScenarios();
 
 // Returns the options of a scenario (standing, straight, circle, figure8, ...) with the pad
 // 'target', changed by the settings "key=value". Throws InputError when the scenario does not

@@ -57,7 +57,7 @@ class RegionSeen {
   }
 
   // Around all corners, as far as they are in the image.
-  cv::Rect2d BoxAt(double time_s) const {
+  cv::Rect2d BoxAt(double time_s) {
     Eigen::Array2d low(1e9, 1e9), high(-1e9, -1e9);
     for (const Surface& surface : own_.surfaces) {
       for (int corner = 0; corner < 4; ++corner) {
@@ -68,6 +68,10 @@ class RegionSeen {
       }
     }
     const CameraModel& model = camera_->lens().camera();
+    constexpr double kMargin_px = 8;  // no lens bends an edge so far past its ends
+    is_whole_in_image_ = low.minCoeff() > kMargin_px &&
+                         high.x() < model.width_px() - 1 - kMargin_px &&
+                         high.y() < model.height_px() - 1 - kMargin_px;
     low = low.max(0);
     high = high.min(Eigen::Array2d(model.width_px() - 1, model.height_px() - 1));
     if ((high < low).any()) return {};
@@ -90,9 +94,8 @@ class RegionSeen {
         const double weight = area.dot(way) / std::pow(way.norm(), 3);
         if (weight <= 0 || IsHidden(own_, time_s, eye, point)) continue;
         all += weight;
-        if (IsInImage(PixelOf(surface, x, y, time_s)) && !IsHidden(others_, time_s, eye, point)) {
-          visible += weight;
-        }
+        const bool is_in_image = is_whole_in_image_ || IsInImage(PixelOf(surface, x, y, time_s));
+        if (is_in_image && !IsHidden(others_, time_s, eye, point)) visible += weight;
       }
     }
     return all > 0 ? visible / all : 0;
@@ -108,6 +111,7 @@ class RegionSeen {
   const SimulatedFlight& flight_;
   std::shared_ptr<const FlightCamera> camera_;  // with its lens at the time that is looked at
   World own_, others_;
+  bool is_whole_in_image_ = false;  // with a margin
 };
 
 }  // namespace

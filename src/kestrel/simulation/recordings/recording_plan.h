@@ -32,7 +32,7 @@ struct RecordingPlan {
   };
   std::vector<Camera> further = {};
 
-  std::size_t image_count() const;  // of all cameras
+  std::size_t image_count() const;  // counts those of all cameras
 };
 
 // The camera of the paper on a UAV: it looks down, and the top of its image is forward.

@@ -15,7 +15,7 @@
 namespace kestrel {
 namespace {
 
-constexpr double kPhase = 0.4;  // of its period after the first camera
+constexpr double kPhase = 0.4;  // how much of its period it comes after the first camera
 constexpr double kLate_s = 0.3;
 constexpr double kTurned_deg = 5;
 

@@ -68,7 +68,7 @@ class SecondCamera {
   CameraCalibration nominal_;
   NavigationErrors errors_;
   FlightCamera camera_;
-  std::vector<double> times_s_;  // of the flight, by the stamps
+  std::vector<double> times_s_;  // since the flight began, by the stamps
   std::vector<Time> times_;
 };
 

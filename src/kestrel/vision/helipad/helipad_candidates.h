@@ -19,7 +19,7 @@ namespace kestrel {
 struct HelipadCandidate {
   Eigen::Matrix3d camera_from_plane;  // its columns: the plane's axes and that ray
   FigureMoments moments;
-  const FigureMoments* printed;  // of the pad's figure that it may be
+  const FigureMoments* printed;  // the pad's figure that it may be
 };
 
 // Memory of one thread's search for candidates.

@@ -209,7 +209,7 @@ TEST_F(HelipadDetectorTest, RefusesImageOfAnotherCamera) {
 }
 
 TEST_F(HelipadDetectorTest, RejectsLookalikes) {
-  constexpr int kBoards = 4;  // of nine each
+  constexpr int kBoards = 4;  // with nine signs each
   for (const bool white : {true, false}) {
     HelipadDetectorOptions options;
     options.white = white;
@@ -227,7 +227,7 @@ TEST_F(HelipadDetectorTest, RejectsLookalikes) {
 
 // A frame around the H is evidence; what has none is nearer to the scratches of a ground.
 TEST_F(HelipadDetectorTest, RejectsTexturesForHWithoutFrame) {
-  constexpr int kImages = 8;  // of each kind
+  constexpr int kImages = 8;  // for each kind
   for (const bool white : {true, false}) {
     HelipadDetectorOptions options;
     options.frame = "none";

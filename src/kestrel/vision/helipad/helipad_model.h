@@ -16,11 +16,11 @@ struct HelipadModel {
   explicit HelipadModel(const Helipad& helipad);
 
   std::vector<PadPart> parts;  // the H, and the frame where there is one
-  double radius_m = 0;         // of the circle around the H
+  double radius_m = 0;         // circle around the H
   InkSamples samples;
   double sample_area = 0;        // on the H, for each of its samples, squares of a stroke
-  FigureMoments letter_moments;  // of the H
-  FigureMoments frame_moments;   // of all within the frame's outer edge; no area without one
+  FigureMoments letter_moments;  // the H alone
+  FigureMoments frame_moments;   // all within the frame's outer edge; no area without one
 };
 
 }  // namespace kestrel

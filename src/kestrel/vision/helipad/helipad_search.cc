@@ -21,8 +21,8 @@ constexpr double kSearchPrior = 36;
 // The same near the expected place: some 400 poses (6), and a pad is likely to be there.
 constexpr double kFollowedPrior = 24;
 constexpr double kLeastStrokePx = 1.3;
-constexpr double kLeastRight = 0.8;      // of the samples of a part
-constexpr double kLeastExplained = 0.7;  // of the edges of the H
+constexpr double kLeastRight = 0.8;      // as a share of a part's samples
+constexpr double kLeastExplained = 0.7;  // as a share of the edges of the H
 constexpr int kTurns = 24;               // that are tried, in half a circle
 
 // Half a turn, under which the H looks the same.
@@ -60,7 +60,7 @@ void HelipadSearch::Begin(const cv::Rect& part) {
 
 bool HelipadSearch::MayHaveSize(int pass, double distance_m, double error) const {
   const double size_px = 2 * models_.camera.intrinsics().fx_px * models_.radius_m / distance_m;
-  constexpr double kSlant = 0.6;  // of the extent of a pad that is seen from aside
+  constexpr double kSlant = 0.6;  // share of its extent that a pad keeps when it is seen from aside
   return helipad_.finder.Covers(pass, kSlant * size_px / (1 + error), size_px / (1 - error));
 }
 

@@ -45,7 +45,7 @@ struct PadShadow {
     if (shape == Shape::kHalfPlane) return local.x();
     const Eigen::Vector2d away = local.cwiseAbs();
     if (shape == Shape::kBar) return away.x() - size_m;
-    constexpr double kArmLength = 3, kArmWidth = 0.2;  // of the body's radius
+    constexpr double kArmLength = 3, kArmWidth = 0.2;  // as shares of the body's radius
     const double arms =
         std::max(away.minCoeff() - kArmWidth * size_m, away.maxCoeff() - kArmLength * size_m);
     return std::min(local.norm() - size_m, arms);
@@ -93,7 +93,7 @@ struct PadImageOptions {
   double blur_px = 0.6;  // sigma of the lens
   double motion_px = 0;  // length of the blur by motion, along the rows
   double noise = 3;      // sigma, gray values
-  double contrast = 1;   // of all that is seen
+  double contrast = 1;   // for all that is seen
   PadShadow shadow = {};
   PadGlare glare = {};
 };
@@ -115,11 +115,12 @@ class PadRenderer {
 
   cv::Mat Render(const TargetPrint& print, const RigidTransform& camera_from_pad,
                  const PadImageOptions& options, std::uint64_t seed) const {
-    const RigidTransform pad_from_camera = camera_from_pad.Inverse();
+    const Plane plane{camera_from_pad.rotation.conjugate().toRotationMatrix(),
+                      camera_from_pad.Inverse().translation};
     cv::Mat image(camera_.height_px(), camera_.width_px(), CV_32FC1);
     for (int v = 0; v < image.rows; ++v) {
       for (int u = 0; u < image.cols; ++u) {
-        const std::optional<Eigen::Vector2d> place = OnPlane(pad_from_camera, u, v);
+        const std::optional<Eigen::Vector2d> place = OnPlane(plane, u, v);
         const bool near = place && ReachOnBoard(print, *place) < 0.6 * print.board_size_m;
         const int samples = near ? 4 : 1;
         double sum = 0;
@@ -127,7 +128,7 @@ class PadRenderer {
           const int row = k / samples;
           const double du = (k % samples + 0.5) / samples - 0.5;
           const double dv = (row + 0.5) / samples - 0.5;
-          sum += GrayAt(print, OnPlane(pad_from_camera, u + du, v + dv), options, seed);
+          sum += GrayAt(print, OnPlane(plane, u + du, v + dv), options, seed);
         }
         image.at<float>(v, u) = static_cast<float>(sum / (samples * samples));
       }
@@ -136,11 +137,15 @@ class PadRenderer {
   }
 
  private:
-  std::optional<Eigen::Vector2d> OnPlane(const RigidTransform& pad_from_camera, double u,
-                                         double v) const {
+  struct Plane {
+    Eigen::Matrix3d from_camera;
+    Eigen::Vector3d eye;
+  };
+
+  std::optional<Eigen::Vector2d> OnPlane(const Plane& plane, double u, double v) const {
     const Eigen::Vector3f seen = rays_.Ray(static_cast<float>(u), static_cast<float>(v));
-    const Eigen::Vector3d ray = pad_from_camera.rotation * seen.cast<double>();
-    const Eigen::Vector3d& eye = pad_from_camera.translation;
+    const Eigen::Vector3d ray = plane.from_camera * seen.cast<double>();
+    const Eigen::Vector3d& eye = plane.eye;
     if (!(ray.z() < -1e-3)) return std::nullopt;
     return Eigen::Vector2d((eye - eye.z() / ray.z() * ray).head<2>());
   }
@@ -166,7 +171,7 @@ class PadRenderer {
                        const PadImageOptions& options, std::uint64_t seed) {
     constexpr double kSky = 200, kWhite = 205, kBlack = 35, kMiddle = 0.5 * (kWhite + kBlack);
     if (!place) return kSky;
-    double gray = Ground(*place, seed);
+    double gray = 0;
     if (ReachOnBoard(print, *place) < 0.5 * print.board_size_m) {
       double ink = print.board_gray;
       for (const PrintShape& shape : print.shapes) {
@@ -175,6 +180,8 @@ class PadRenderer {
         }
       }
       gray = kBlack + ink * (kWhite - kBlack);
+    } else {
+      gray = Ground(*place, seed);
     }
     gray = kMiddle + options.contrast * (gray - kMiddle);
     return gray * options.shadow.LightAt(*place) + options.glare.At(*place);

@@ -29,9 +29,10 @@ inline CameraModel TestPrintCamera() {
 
 // True on one of 'count' half arms from the centre, at equal angles, the first along x.
 inline bool IsSpoke(double x, double y, int count, double half_width, double length) {
+  const double radius = std::hypot(x, y);
+  if (radius > length + half_width) return false;
   const double step = 2 * std::numbers::pi / count;
   const double turn = std::remainder(std::atan2(y, x), step);
-  const double radius = std::hypot(x, y);
   const double along = radius * std::cos(turn);
   return along > 0 && along < length && std::abs(radius * std::sin(turn)) < half_width;
 }
@@ -74,9 +75,14 @@ inline cv::Mat DrawPrint(const CameraModel& camera, const LandingPattern& patter
   const RigidTransform pattern_from_camera = camera_from_target.Inverse();
   const Eigen::Matrix3d rotation = pattern_from_camera.rotation.toRotationMatrix();
   const Eigen::Vector3d& origin = pattern_from_camera.translation;
+  const CameraIntrinsics& lens = camera.intrinsics();
+  const bool is_distorted = lens.distortion_model != DistortionModel::kNone;
   const auto gray_at = [&](double u, double v) {
-    Eigen::Vector3d ray = Eigen::Vector3d::UnitZ();
-    camera.Unproject({u, v}, &ray);
+    Eigen::Vector3d ray((u - lens.cx_px) / lens.fx_px, (v - lens.cy_px) / lens.fy_px, 1);
+    if (is_distorted) {
+      ray = Eigen::Vector3d::UnitZ();
+      camera.Unproject({u, v}, &ray);
+    }
     ray = rotation * ray;
     const double across = ray.x() / ray.z(), down = ray.y() / ray.z();
     double x = origin.x() - origin.z() * across;
@@ -109,14 +115,16 @@ inline cv::Mat DrawPrint(const CameraModel& camera, const LandingPattern& patter
   cv::Mat image(camera.height_px(), camera.width_px(), CV_8UC1);
   for (int v = 0; v < image.rows; ++v) {
     for (int u = 0; u < image.cols; ++u) {
-      const int rays = is_even(u, v) ? 1 : kRays;
+      std::uint8_t& pixel = image.at<std::uint8_t>(v, u);
+      pixel = lattice.at<std::uint8_t>(2 * v + 1, 2 * u + 1);
+      if (is_even(u, v)) continue;
       double sum = 0;
-      for (int i = 0; i < rays * rays; ++i) {
-        const int column = i % rays;
-        const int row = i / rays;
-        sum += gray_at(u + (column + 0.5) / rays - 0.5, v + (row + 0.5) / rays - 0.5);
+      for (int i = 0; i < kRays * kRays; ++i) {
+        const int column = i % kRays;
+        const int row = i / kRays;
+        sum += gray_at(u + (column + 0.5) / kRays - 0.5, v + (row + 0.5) / kRays - 0.5);
       }
-      image.at<std::uint8_t>(v, u) = static_cast<std::uint8_t>(std::lround(sum / (rays * rays)));
+      pixel = static_cast<std::uint8_t>(std::lround(sum / (kRays * kRays)));
     }
   }
   return image;

@@ -117,12 +117,12 @@ class FollowPipeline::Impl {
   CameraPoses poses_;
   RegionTracker region_;
   bool is_marked_ = false;
-  PoseUncertainty pose_uncertainty_;  // of the present frame, where it has a pose
+  PoseUncertainty pose_uncertainty_;  // for the present frame, where it has a pose
   TargetTracker tracker_;
   std::optional<TargetEstimate> last_;  // the newest one, also when the track is lost
   Time last_time_;
   Eigen::Vector2d foot_px_ = Eigen::Vector2d::Zero();  // from the middle of the box, last seen
-  double size_px_ = 0;                                 // of the box, last seen
+  double size_px_ = 0;                                 // side of the box when it was last seen
 };
 
 FollowObservation FollowPipeline::Impl::Begin(Time time) {

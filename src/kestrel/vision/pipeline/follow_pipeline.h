@@ -33,7 +33,7 @@ struct FollowPipelineOptions {
     visit.Gone({"max_speed_mps"});
   }
 
-  TargetTrackerOptions Tracker() const;  // of the motion in the world
+  TargetTrackerOptions Tracker() const;  // for the motion in the world
 };
 
 // A place on the ground, in the world (ENU, m).
@@ -44,8 +44,8 @@ struct PlaceOnGround {
 
 // The result of one frame.
 struct FollowObservation {
-  Time time;                                        // of the frame, on the images' clock
-  std::optional<RegionReport> region;               // nothing before something was marked
+  Time time;                           // when the frame was taken, on the images' clock
+  std::optional<RegionReport> region;  // nothing before something was marked
   std::optional<RigidTransform> world_from_camera;  // when there is a pose for this time
   std::optional<RigidTransform> camera_from_body;   // as well
   // With a pose, while the region is seen: the direction to it in the world (ENU), of length 1.

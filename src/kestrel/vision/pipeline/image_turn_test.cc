@@ -57,7 +57,7 @@ Eigen::Matrix3d TurnedBy(const Eigen::Vector3d& turn) {
 }
 
 TEST(ImageTurnTest, RotationIsThatOfCamera) {
-  constexpr double kLargest = Radians(2);  // of each axis: 60 deg/s, 30 images/s
+  constexpr double kLargest = Radians(2);  // about each axis: 60 deg/s, 30 images/s
   Random random(1);
   ImageTurn turns(TurningCamera());
   Eigen::Matrix3d attitude = Eigen::Matrix3d::Identity();

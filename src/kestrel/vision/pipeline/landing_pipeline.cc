@@ -126,10 +126,10 @@ class LandingPipeline::Impl {
     std::optional<Others> others;  // nothing once the target was found
     CameraPoses poses;
     Duration ahead;  // the first camera's clock minus that of this camera's images
-    CameraLag lag;   // of the stamps, beside 'ahead'; none of the first camera, which is the clock
+    CameraLag lag;   // late stamps, beside 'ahead'; none of the first camera, which is the clock
     StampLag stamp_lag;  // what its sightings alone say about the stamps; of several cameras
     std::optional<CameraLens> zoom;                  // nothing: the lens is fixed
-    double view_rad = 0;                             // of the detector's lens, where it zooms
+    double view_rad = 0;                             // what the detector sees, where it zooms
     std::shared_ptr<const CameraModel> zoomed_lens;  // that lens; null until it is known
     std::optional<RigidTransform> fixed_mount;       // camera from body
     bool is_track_trusted = true;  // the last detection was where the track predicted it
@@ -170,7 +170,7 @@ class LandingPipeline::Impl {
   LandingPipelineOptions options_;
   bool are_detectors_own_;  // they do not come from the options
   std::vector<Eye> eyes_;
-  CameraWatch watch_;  // of several cameras
+  CameraWatch watch_;  // watches several cameras
   double pose_time_sigma_s_ = 0;
   std::optional<double> altitude_m_;
   TargetTracker tracker_;
@@ -229,7 +229,7 @@ void LandingPipeline::Impl::SetDetector(const CameraModel& camera,
 
 // Gives the detector the lens of this image; false where that moves or is not known.
 bool LandingPipeline::Impl::FollowZoom(const cv::Mat& image, Time time, Eye* eye) const {
-  constexpr double kSame = 0.005;  // of the view
+  constexpr double kSame = 0.005;  // as a share of the view
   const auto view_rad = eye->zoom->ViewAt(image, time);
   if (!view_rad) return false;
   if (std::abs(*view_rad - eye->view_rad) <= kSame * *view_rad) return true;

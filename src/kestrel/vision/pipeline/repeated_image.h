@@ -21,7 +21,7 @@ class RepeatedImage {
   int in_a_row() const { return in_a_row_; }  // number of repetitions up to the newest image
 
  private:
-  std::optional<std::uint64_t> hash_;  // of the newest image
+  std::optional<std::uint64_t> hash_;  // what the newest image hashes to
   int in_a_row_ = 0;
 };
 

@@ -24,7 +24,7 @@ struct Flight {
   double swing = Radians(4);    // amplitude of roll and pitch
   double target_speed_mps = 0;  // on a circle
   double target_radius_m = 12;
-  double late_s = 0;  // of the stamps
+  double late_s = 0;  // how late the stamps are
   std::uint64_t seed = 1;
 
   Vector3d Target(double t) const {

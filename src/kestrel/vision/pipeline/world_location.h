@@ -23,9 +23,9 @@ std::optional<Eigen::Vector3d> LocateByAltitude(const Eigen::Vector3d& ray_in_ca
 
 // Standard deviations of the errors of a line of sight to the ground.
 struct SightErrors {
-  double direction_rad = 0;  // of the line, per axis
-  double position_m = 0;     // of the camera, per axis
-  double ground_m = 0;       // of the ground's height
+  double direction_rad = 0;  // how the line may be turned, per axis
+  double position_m = 0;     // where the camera may be, per axis
+  double ground_m = 0;       // how high the ground may be
 };
 
 // Returns the covariance (m^2) of a place on level ground that is seen along 'sight', the vector

@@ -31,7 +31,7 @@ class AppearanceFeatures {
   void AddMeans(const SampledWindow& window, FeatureGrid* features) const;
 
   int cells_, cell_px_, side_;
-  std::vector<float> gray_;        // of a window in colour
+  std::vector<float> gray_;        // gray values where the window is in colour
   std::vector<float> histograms_;  // by cell, 18 directions
   std::vector<float> row_;         // histograms of a row of pixels
   std::vector<float> energy_, magnitude_, bin_;

@@ -21,11 +21,11 @@
 namespace kestrel {
 namespace {
 
-constexpr double kLabelSigma = 0.045;      // of the target's size
+constexpr double kLabelSigma = 0.045;      // as a share of the target's size
 constexpr double kTargetWeight = 0.1;      // against the filter where the target is
 constexpr double kBackgroundWeight = 1e6;  // and where it is not
 constexpr int kIterations = 3;
-constexpr float kFirstPenalty = 100, kPenaltyGrowth = 10;  // of ADMM
+constexpr float kFirstPenalty = 100, kPenaltyGrowth = 10;  // weights for ADMM
 
 }  // namespace
 }  // namespace kestrel
@@ -92,7 +92,7 @@ namespace {
 
 // Sums over the responses at all displacements.
 struct ResponseRange {
-  int x = 0, y = 0;  // of the highest
+  int x = 0, y = 0;  // where the highest is
   float most = -1e9f, least = 1e9f;
 };
 

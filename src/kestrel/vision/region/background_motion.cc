@@ -52,7 +52,7 @@ void BackgroundMotion::Shrink(const cv::Mat& image) {
 }
 
 Eigen::Vector2d BackgroundMotion::Update(const cv::Mat& image) {
-  constexpr double kLeastPeak = 0.08;  // of a shift without any change
+  constexpr double kLeastPeak = 0.08;  // where 1 is a shift without any change
   const bool is_first = image.size() != size_;
   size_ = image.size();
   Shrink(image);

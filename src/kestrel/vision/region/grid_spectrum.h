@@ -53,7 +53,7 @@ class GridTransform {
   void TransformComplex(FeatureGrid* grid, float sign) const;
 
   int side_, channels_;
-  std::vector<float> cosines_, sines_;  // of i / side of a turn
+  std::vector<float> cosines_, sines_;  // for the angles i / side of a turn
   std::vector<int> reversed_;           // i with its bits in reverse order
 };
 

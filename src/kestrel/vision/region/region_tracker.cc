@@ -30,7 +30,7 @@ constexpr double kTemporal = 3000;       // weight of what was learnt before
 constexpr double kSlowTemporal = 20000;  // the same for the slow filter
 constexpr int kSlowPeriod = 5;           // images from one step of the slow filter to the next
 constexpr double kVelocityTime_s = 0.3;
-constexpr double kPredictedShare = 0.5;  // of the velocity, which is uncertain
+constexpr double kPredictedShare = 0.5;  // how much of the velocity counts: it is uncertain
 
 // Agreement is 1 where a region looks as it usually did.
 constexpr double kLeastToSee = 0.35;
@@ -155,11 +155,11 @@ struct RegionTracker::Impl {
   BackgroundMotion background;
   std::array<float, kCells> taper;
 
-  int type = -1;  // of the images
+  int type = -1;  // as the images have it
   cv::Size image_size;
   Time time, seen;
   RegionState state = RegionState::kLost;
-  Eigen::Vector2d center, size;  // of the region, px
+  Eigen::Vector2d center, size;  // the region's, px
   double window_px = 0;          // side
   Eigen::Vector2d velocity;      // against the background, px/s
   double usual_speed = 0, still_s = 0;

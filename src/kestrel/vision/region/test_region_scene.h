@@ -83,7 +83,7 @@ class RegionScene {
 
   RegionThing target;
   std::optional<RegionThing> other, cover;
-  Eigen::Vector2d camera_px = {280, 240};  // of the image's corner on the ground
+  Eigen::Vector2d camera_px = {280, 240};  // where the image's corner is on the ground
   Time time{};
 
  private:

@@ -19,10 +19,10 @@ struct TagModel : PadPart {
   double size_m = 0;
   int most_wrong = 0;  // bits that may be misread: with more it may be something else
   PrintedTag printed;
-  bool dark_inside = true;  // of the edge of the square that the size refers to
+  bool dark_inside = true;  // whether the square that the size refers to is dark inside its edge
   RigidTransform board_from_tag;
   std::vector<Eigen::Vector2d> cell_centers;  // on the board, of all cells of the grid
-  std::vector<bool> is_data;                  // of all cells: what tells tags from each other
+  std::vector<bool> is_data;                  // one for each cell: what distinguishes tags
 
   const TagGrid& grid() const { return printed.grid; }
   std::size_t cell_count() const { return printed.grid.cells.size(); }
@@ -34,8 +34,8 @@ struct BoardModel {
   explicit BoardModel(const TagBoard& board);
 
   std::vector<TagModel> tags;  // in the order of the board
-  std::size_t most_cells = 0;  // of a tag
-  double radius_m = 0;         // of the circle about the board's origin around all tags
+  std::size_t most_cells = 0;  // in the largest tag
+  double radius_m = 0;         // circle about the board's origin around all tags
 };
 
 }  // namespace kestrel

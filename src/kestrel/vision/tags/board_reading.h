@@ -46,7 +46,7 @@ class OtherTags {
               PadSamples* samples) const;
 
  private:
-  std::vector<std::vector<TagGrid>> grids_;  // of the other tags, for each tag of the board
+  std::vector<std::vector<TagGrid>> grids_;  // what the other tags have, for each tag of the board
 };
 
 }  // namespace kestrel

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kNeighbors = 2;              // cells around a cell that it is held against
 constexpr double kLeastCellContrast = 5;   // gray values, between white and black cells
-constexpr double kLeastDimContrast = 0.4;  // of logarithms: a shaded white cell to black ones
+constexpr double kLeastDimContrast = 0.4;  // as logarithms: a shaded white cell to black ones
 
 // Sums over the cells of one colour.
 struct ColorSum {
@@ -31,7 +31,7 @@ double PlaceBetween(double value, double black, double white, bool is_white) {
 // logarithms the better one counts.
 double CellAgreement(const TagGrid& grid, std::span<const float> gray, std::span<const float> log,
                      int column, int row, DimSample dim) {
-  ColorSum sums[2];  // of black and of white cells
+  ColorSum sums[2];  // black and white cells
   for (int y = std::max(0, row - kNeighbors); y <= std::min(grid.width - 1, row + kNeighbors);
        ++y) {
     for (int x = std::max(0, column - kNeighbors);
@@ -73,7 +73,7 @@ double CellEvidence(double agreement, double information) {
 struct VertexCount {
   int data = 0;     // cells
   int all = 0;      // vertices where four known cells meet, data among them
-  int corners = 0;  // of them, those that no straight line runs through
+  int corners = 0;  // those among them that no straight line runs through
 };
 
 VertexCount CountVertices(const TagGrid& grid, const std::vector<bool>& is_data) {
@@ -116,9 +116,9 @@ double CellInformation(const TagGrid& grid, const std::vector<bool>& is_data) {
 
 TagAgreement CompareCells(const TagGrid& grid, const std::vector<bool>& is_data, double cell_px,
                           std::span<const float> gray, DimSample dim) {
-  constexpr double kBorderWeight = 0.1;     // of a mismatch: what surrounds a tag may be anything
+  constexpr double kBorderWeight = 0.1;     // for a mismatch: what surrounds a tag may be anything
   constexpr double kCorrelationPx = 1.5;    // nearer samples are alike by lens and pixels
-  constexpr std::size_t kMostCells = 1296;  // of a fractal marker, 32 bits a side
+  constexpr std::size_t kMostCells = 1296;  // a fractal marker has 32 bits a side
   constexpr float kFloor = 4;               // gray values: what darkness and noise leave
   std::array<float, kMostCells> log;
   for (std::size_t i = 0; i < std::min(gray.size(), kMostCells); ++i) {

@@ -13,7 +13,7 @@ namespace kestrel {
 struct TagAgreement {
   double evidence = 0;  // natural logarithm of how much likelier the tag is than other bits
   int seen = 0;         // number of data cells in view
-  int wrong = 0;        // of them, those that look like the other colour
+  int wrong = 0;        // those among them that look like the other colour
 };
 
 // Returns how much a data cell of a tag tells (nats): the length of the shortest description of its

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kMostMarkers = 8;
 constexpr int kLeastSide = 3, kMostSide = 32;  // bits
-constexpr double kSquareTolerance = 1e-3;      // of a square's side
+constexpr double kSquareTolerance = 1e-3;      // as a share of a square's side
 
 enum FractalUnit { kPixels = 0, kMetres = 1, kHalfSides = 2 };
 

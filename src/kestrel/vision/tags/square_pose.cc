@@ -57,7 +57,7 @@ Vector6 StepOf(const SquareCorners& corners, SquareFit* fit) {
 
 SquareFit Fitted(const SquareCorners& corners, const RigidTransform& start) {
   constexpr int kSteps = 5;
-  constexpr double kMostSquareTurn = 0.5;  // of a step, rad
+  constexpr double kMostSquareTurn = 0.5;  // in a step, rad
   SquareFit fit{start};
   for (int i = 0; i < kSteps; ++i) {
     Vector6 step = StepOf(corners, &fit);

@@ -35,7 +35,7 @@ struct PrintedTag {
   TagGrid grid;       // inverted where the tag is; kNone where another tag is printed over it
   double cell_m = 0;  // side of a cell
   Eigen::Vector2d center = Eigen::Vector2d::Zero();
-  double heading = 0;  // of the tag's x axis, rad from the board's x to its y
+  double heading = 0;  // where the tag's x axis points, rad from the board's x to its y
 
   // Returns the place on the board of a point of the grid: columns and rows from the upper left
   // corner of the drawing, so that a cell's centre is at (column + 0.5, row + 0.5).

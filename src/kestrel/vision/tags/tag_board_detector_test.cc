@@ -35,7 +35,7 @@ BoardTag OneTag(const std::string& family, int id, double size_m) {
 
 // Errors of a detection against the true pose.
 struct PoseError {
-  double place;    // of the true distance
+  double place;    // as a share of the true distance
   double angle;    // rad
   double squared;  // by the covariance: chi-squared with six degrees of freedom
 };

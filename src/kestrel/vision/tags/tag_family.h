@@ -76,10 +76,10 @@ class TagFamily {
   std::string name_;
   int width_ = 0;
   int border_width_ = 0;
-  bool white_inside_ = false;  // of the edge of the square, black outside
+  bool white_inside_ = false;  // whether the square is white inside its edge, black outside
   int min_distance_ = 0;
   std::vector<BitPlace> bits_;        // place of each bit in the grid
-  std::vector<std::uint64_t> codes_;  // of each id; the first bit is the highest of bits_.size()
+  std::vector<std::uint64_t> codes_;  // by id; the first bit is the highest of bits_.size()
 };
 
 }  // namespace kestrel

@@ -14,7 +14,7 @@ namespace kestrel {
 namespace {
 
 constexpr double kLeastTagContrast = 6;  // gray values between white and black cells
-constexpr double kMostWrongShare = 0.2;  // of the data cells, before the corners are refined
+constexpr double kMostWrongShare = 0.2;  // among data cells, before the corners are refined
 
 // Gray values of a tag's cells under one of the four turns, against its bits.
 struct TurnedMatch {

@@ -36,7 +36,7 @@ constexpr PlaneBorders::Passes kQuadPasses{{
      .at_rim = true},
 }};
 
-constexpr std::size_t kMostQuads = 160;  // of a pass
+constexpr std::size_t kMostQuads = 160;  // in a pass
 
 using PlanePoints = std::vector<Eigen::Vector2d>;
 
@@ -114,7 +114,7 @@ bool FitSide(const PlanePoints& border, int from, int to, double allowed, PlaneL
     was_near = is_near;
     last = here;
   }
-  constexpr double kLeastCovered = 0.6;  // of the length without its ends
+  constexpr double kLeastCovered = 0.6;  // as a share of the length without its ends
   if (count < 3 || !(covered >= kLeastCovered * (length - 2 * trim))) return false;
   const Eigen::Vector2d mean = sum / count;
   const Eigen::Matrix2d spread = squares / count - mean * mean.transpose();
@@ -142,7 +142,7 @@ bool MayBeQuad(const Border& border) {
   const int height = border.max.y - border.min.y;
   // A convex border: 2 (width + height); that of a tag may go around the cells inside, too.
   constexpr double kLongest = 6;
-  constexpr double kLeastArea = 0.3;  // of the bounding box
+  constexpr double kLeastArea = 0.3;  // as a share of the bounding box
   return static_cast<double>(border.count) <= kLongest * (width + height) &&
          std::abs(border.signed_area) >= kLeastArea * width * height;
 }
@@ -185,7 +185,7 @@ bool TagQuadFinder::FitQuad(const Border& border, const cv::Rect& part, int pass
   const double allowed = 0.6 * (1 << level) / focal_px_;
   for (int k = 0; k < 4; ++k) {
     const int next = rough[(k + 1) % 4];
-    constexpr double kBend = 0.02;  // of the length
+    constexpr double kBend = 0.02;  // as a share of the length
     constexpr double kNear = 2.5;   // the corners are only rough
     const double length = (on_plane[next] - on_plane[rough[k]]).norm();
     const double bend = std::max(allowed, kBend * length);

@@ -24,7 +24,7 @@ struct TagQuad {
 // Memory of one thread's search for quads.
 struct TagQuadBuffers {
   BorderBuffers borders;
-  std::vector<TagQuad> quads;  // of all passes since Begin
+  std::vector<TagQuad> quads;  // found by all passes since Begin
   std::size_t examined = 0;    // number of borders of the last pass
 };
 

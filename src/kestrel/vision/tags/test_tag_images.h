@@ -33,7 +33,7 @@ struct TagImageOptions {
   double blur_px = 0.5;  // sigma of the lens
   double motion_px = 0;  // length of the blur by motion, along the rows
   double noise = 3;      // sigma, gray values
-  double contrast = 1;   // of the print
+  double contrast = 1;   // between the print's black and white
   bool shadow = false;   // the edge of a shadow runs through the board's middle
 };
 
@@ -44,16 +44,19 @@ class TagRenderer {
 
   cv::Mat Render(const std::vector<PrintedTag>& tags, const RigidTransform& camera_from_board,
                  const TagImageOptions& options, std::uint64_t seed) const {
-    const RigidTransform board_from_camera = camera_from_board.Inverse();
+    const Plane plane{camera_from_board.rotation.conjugate().toRotationMatrix(),
+                      camera_from_board.Inverse().translation};
     double plate = 0;  // half of the white plate's side
+    std::vector<PlacedTag> placed;
     for (const PrintedTag& tag : tags) {
       plate = std::max(
           plate, tag.center.lpNorm<Eigen::Infinity>() + M_SQRT1_2 * tag.grid.width * tag.cell_m);
+      placed.push_back({&tag, std::cos(tag.heading), std::sin(tag.heading)});
     }
     cv::Mat image(camera_.height_px(), camera_.width_px(), CV_32FC1);
     for (int v = 0; v < image.rows; ++v) {
       for (int u = 0; u < image.cols; ++u) {
-        const std::optional<Eigen::Vector2d> place = OnPlane(board_from_camera, u, v);
+        const std::optional<Eigen::Vector2d> place = OnPlane(plane, u, v);
         const bool near = place && place->lpNorm<Eigen::Infinity>() < 1.2 * plate + 0.05;
         const int samples = near ? 5 : 1;
         double sum = 0;
@@ -61,7 +64,7 @@ class TagRenderer {
           for (int column = 0; column < samples; ++column) {
             const double du = (column + 0.5) / samples - 0.5;
             const double dv = (row + 0.5) / samples - 0.5;
-            sum += GrayAt(tags, plate, OnPlane(board_from_camera, u + du, v + dv), options, seed);
+            sum += GrayAt(placed, plate, OnPlane(plane, u + du, v + dv), options, seed);
           }
         }
         image.at<float>(v, u) = static_cast<float>(sum / (samples * samples));
@@ -71,26 +74,34 @@ class TagRenderer {
   }
 
  private:
-  std::optional<Eigen::Vector2d> OnPlane(const RigidTransform& board_from_camera, double u,
-                                         double v) const {
+  struct Plane {
+    Eigen::Matrix3d from_camera;
+    Eigen::Vector3d eye;
+  };
+
+  struct PlacedTag {
+    const PrintedTag* tag;
+    double cosine, sine;  // where it heads
+  };
+
+  std::optional<Eigen::Vector2d> OnPlane(const Plane& plane, double u, double v) const {
     const Eigen::Vector3f seen = rays_.Ray(static_cast<float>(u), static_cast<float>(v));
-    const Eigen::Vector3d ray = board_from_camera.rotation * seen.cast<double>();
-    const Eigen::Vector3d& eye = board_from_camera.translation;
+    const Eigen::Vector3d ray = plane.from_camera * seen.cast<double>();
+    const Eigen::Vector3d& eye = plane.eye;
     if (!(ray.z() < -1e-3)) return std::nullopt;
     return (eye - eye.z() / ray.z() * ray).head<2>();
   }
 
-  static double GrayAt(const std::vector<PrintedTag>& tags, double plate,
+  static double GrayAt(const std::vector<PlacedTag>& tags, double plate,
                        const std::optional<Eigen::Vector2d>& place, const TagImageOptions& options,
                        std::uint64_t seed) {
     constexpr double kSky = 200, kWhite = 215, kBlack = 30, kMiddle = 0.5 * (kWhite + kBlack);
     if (!place) return kSky;
-    double gray = Ground(*place, seed);
-    if (place->lpNorm<Eigen::Infinity>() < plate) gray = kWhite;
-    for (const PrintedTag& tag : tags) {
-      const Eigen::Vector2d d = place->eval() - tag.center;
-      const double cosine = std::cos(tag.heading);
-      const double sine = std::sin(tag.heading);
+    const bool is_on_plate = place->lpNorm<Eigen::Infinity>() < plate;
+    double gray = is_on_plate ? kWhite : Ground(*place, seed);
+    for (const auto& [printed, cosine, sine] : tags) {
+      const PrintedTag& tag = *printed;
+      const Eigen::Vector2d d = *place - tag.center;
       const double column = (cosine * d.x() + sine * d.y()) / tag.cell_m + 0.5 * tag.grid.width;
       const double row = 0.5 * tag.grid.width - (cosine * d.y() - sine * d.x()) / tag.cell_m;
       if (column < 0 || row < 0 || column >= tag.grid.width || row >= tag.grid.width) continue;

@@ -59,7 +59,7 @@ class TaglessDrawing {
   }
   // A box with round corners; a disc where 'radius' is half of its sides.
   void RoundBox(double left, double top, double right, double bottom, double radius, double gray) {
-    constexpr int kPoints = 10;  // of a quarter
+    constexpr int kPoints = 10;  // along a quarter
     const double x[] = {right - radius, left + radius, left + radius, right - radius};
     const double y[] = {bottom - radius, bottom - radius, top + radius, top + radius};
     std::vector<cv::Point2d> outline;
@@ -83,7 +83,7 @@ class TaglessDrawing {
   // Returns the drawing as a camera takes it.
   cv::Mat Taken() {
     const auto moved = [this](double x, double y) {
-      constexpr double kMost = 0.12;  // of the image
+      constexpr double kMost = 0.12;  // as a share of the image
       return cv::Point2f(static_cast<float>((x + random_.Uniform(-kMost, kMost)) * image_.cols),
                          static_cast<float>((y + random_.Uniform(-kMost, kMost)) * image_.rows));
     };

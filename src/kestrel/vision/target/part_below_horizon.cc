@@ -10,7 +10,7 @@ namespace kestrel {
 namespace {
 
 constexpr int kTile_px = 32;       // the coarsest thresholds look at whole tiles
-constexpr double kLeastSky = 0.2;  // of the image
+constexpr double kLeastSky = 0.2;  // as a share of the image
 
 enum class Place { kGround, kSky, kOutside };
 

@@ -24,7 +24,7 @@ enum class DetectionMethod {
   kTags,      // decoded tags
   kLetter,    // the letter of a helipad
   kFollowed,  // its appearance, at the place where it was expected
-  kOther,     // of a pad of one's own
+  kOther,     // a pad of one's own
 };
 inline constexpr std::array kDetectionMethods = {
     DetectionMethod::kRing,   DetectionMethod::kPartial,  DetectionMethod::kTags,

@@ -25,7 +25,7 @@ struct TargetTag {
 // or tell its size. Frame P of the pad: origin in the middle of what is detected, z up out of the
 // printed face; what x is, its detector says.
 struct TargetShape {
-  double diameter_m = 0;    // of the circle around all that is detected
+  double diameter_m = 0;    // circle around all that is detected
   double board_size_m = 0;  // side of the square board with its margin
   // Largest size of a pixel on the board with which nearly all images of a search without a track
   // show the pad (bench/sight_range).

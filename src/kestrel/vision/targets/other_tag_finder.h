@@ -35,8 +35,8 @@ class OtherTagFinder {
   CameraModel camera_;
   std::string_view family_;
   int id_;
-  std::vector<int> own_ids_;         // of the family, on the board
-  std::optional<TagReader> reader_;  // of the family, where there is one
+  std::vector<int> own_ids_;         // those of the family on the board
+  std::optional<TagReader> reader_;  // reads the family, where there is one
 };
 
 }  // namespace kestrel

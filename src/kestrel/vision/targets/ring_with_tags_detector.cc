@@ -91,7 +91,7 @@ std::optional<Heading> RingWithTagsDetector::Impl::ReadHeading(const cv::Mat& im
                                                                PadSamples* samples) const {
   Heading best;
   double most = 0;
-  double sum = std::exp(kExpectedOdds);  // of the likelihoods, that of no tag included
+  double sum = std::exp(kExpectedOdds);  // sum of the likelihoods, that of no tag included
   for (int quarters = 0; quarters < kHeadings; ++quarters) {
     const BoardReading reading =
         ReadBoard(image, ring.camera(), board, Turned(ring_pose, quarters), samples);

@@ -92,11 +92,14 @@ class FlightConsole::Page : public SinkWriter {
   }
 
  private:
+  // Null where something else is looked for.
+  static const LandingObservation* LandingIn(const Observation& observation) {
+    return std::get_if<LandingObservation>(&observation.seen);
+  }
+
   void Examine(const Observation& observation) {
     if (observation.frame.camera > 0) return;
-    if (const auto* const landing = std::get_if<LandingObservation>(&observation.seen)) {
-      examination_.Look(*landing);
-    }
+    if (const auto* const landing = LandingIn(observation)) examination_.Look(*landing);
     examination_.Look(observation.frame.image, Now());
   }
 
@@ -104,7 +107,7 @@ class FlightConsole::Page : public SinkWriter {
   // has not for a while itself, or is gone.
   bool IsShown(const Observation& observation, Time now) {
     constexpr Duration kStay = std::chrono::seconds(1);
-    const auto* const landing = std::get_if<LandingObservation>(&observation.seen);
+    const auto* const landing = LandingIn(observation);
     const bool has_target = landing != nullptr && landing->report.detection;
     const std::size_t camera = observation.frame.camera;
     const bool is_gone = now - shown_at_ > kStay;
@@ -159,7 +162,7 @@ class FlightConsole::Page : public SinkWriter {
 
   FlightConsole& console_;
   ConsoleFeed& feed_;
-  std::vector<TaskView> views_;  // of each camera
+  std::vector<TaskView> views_;  // one for each camera
   std::size_t shown_camera_ = 0;
   Time shown_at_{}, shown_target_at_{};  // its newest frame, and the newest with the target
   ConsoleFrame frame_;

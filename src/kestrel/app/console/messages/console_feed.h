@@ -190,7 +190,6 @@ class ConsoleFeed {
   // Returns the newest frame, valid until the next call; its sequence is 0 before the first frame.
   const ConsoleFrame& NewestFrame() { return frame_.Get(); }
   std::optional<ConsoleUpdate> TakeUpdate() { return updates_.TryPop(); }
-  std::size_t dropped_updates() const { return updates_.dropped(); }
   void Command(const ConsoleCommand& command) { commands_.Push(command); }
   // When the queue is full the oldest request is dropped and never answered.
   void Export(PendingExport pending);

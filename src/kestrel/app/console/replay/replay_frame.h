@@ -15,7 +15,7 @@ namespace kestrel {
 // A frame as the page shows it, of any task.
 struct ReplayFrame : ViewFrame {
   FrameMark mark = FrameMark::kNothing;
-  std::optional<double> error_px = {};  // of the detected centre, where the truth is known
+  std::optional<double> error_px = {};  // from the true centre, where it is known
 };
 
 // Makes a frame without using the truth. Its mark is kFound when the pattern, or any object, was

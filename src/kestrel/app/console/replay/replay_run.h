@@ -67,7 +67,7 @@ struct ReplayRun {
             std::move(view), session->vision(), table, std::move(complete)))) {}
 
   std::unique_ptr<Session> session;
-  ReplayFrames* frames;  // of the session's sinks
+  ReplayFrames* frames;  // one of the session's sinks
 };
 
 // The results of an earlier run, in place of a pipeline. 'Result': LandResult or HuntResult.

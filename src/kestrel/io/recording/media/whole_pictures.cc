@@ -15,7 +15,7 @@ namespace {
 
 // The state of a stream; both probes are called by its one thread.
 struct Stream {
-  std::optional<std::uint16_t> number;  // of the newest packet
+  std::optional<std::uint16_t> number;  // which the newest packet has
   GstClockTime packet_pts = GST_CLOCK_TIME_NONE;
   bool waits_for_key = true;
   GstClockTime damaged_until = 0;  // the pictures of the packets around a gap

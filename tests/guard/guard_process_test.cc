@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -20,7 +19,6 @@
 #include "kestrel/comms/guard/guard_link.h"
 #include "kestrel/comms/mavlink/autopilot_kind.h"
 #include "kestrel/comms/mavlink/socket_address.h"
-#include "kestrel/core/base/error.h"
 #include "kestrel/core/base/test_eventually.h"
 #include "kestrel/core/base/test_folder.h"
 #include "kestrel/simulation/autopilots/simulated_autopilot.h"
@@ -33,7 +31,7 @@ class Program {
  public:
   Program(const std::string& url, const std::string& key) : process_(fork()) {
     if (process_ != 0) return;
-    execl(KESTREL_TEST_FLYER, "test_flyer", url.c_str(), key.c_str(), nullptr);
+    execl(KESTREL_FLYER, "guard_flyer", url.c_str(), key.c_str(), nullptr);
     _exit(127);
   }
   ~Program() {
@@ -256,34 +254,6 @@ TEST_P(GuardProcessTest, NextFlightWaitsForWorkingGuard) {
     return next.state() == GuardState::kWatches;
   }));
   EXPECT_TRUE(IsIn(FlightMode::kHold));
-}
-
-TEST(GuardLife, RejectsMalformedLifeMessage) {
-  GuardLife life;
-  life.task = GuardTask::kLand;
-  std::array<std::uint8_t, sizeof(life)> bytes{};
-  std::memcpy(bytes.data(), &life, sizeof(life));
-  EXPECT_EQ(ReadLife(bytes)->task, GuardTask::kLand);
-  EXPECT_FALSE(ReadLife(std::span(bytes).first(bytes.size() - 1)));
-  bytes[0] = 77;
-  EXPECT_FALSE(ReadLife(bytes));
-}
-
-TEST(GuardLink, ReportsFaults) {
-  const auto error_of = [](const std::string& url, const std::string& program) {
-    try {
-      const GuardLink link(url, {.program = program}, "");
-      return std::string();
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-  };
-  EXPECT_NE(error_of("serial:///dev/no_such_line:57600", KESTREL_GUARD).find("no_such_line"),
-            std::string::npos);
-  EXPECT_NE(error_of("udpin://127.0.0.1:14999", "/no/guard").find("--no-guard"), std::string::npos);
-  const std::string url = fmt::format("udpin://127.0.0.1:{}", FreeLoopbackPort());
-  const GuardLink holder(url, {.program = KESTREL_GUARD}, "");
-  EXPECT_NE(error_of(url, KESTREL_GUARD).find("in use by another program"), std::string::npos);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A program that flies through a guard, for its tests: fast, down and straight ahead as soon as the
-// pilot gives it the mode, until it is killed. `test_flyer URL KEY_FILE`; SIGUSR1: it crashes;
+// pilot gives it the mode, until it is killed. `guard_flyer URL KEY_FILE`; SIGUSR1: it crashes;
 // SIGINT: it ends in order once the mode was left.
 #include <atomic>
 #include <chrono>
