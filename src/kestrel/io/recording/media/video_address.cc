@@ -32,7 +32,8 @@ void HideValues(std::string_view name, std::string* text) {
     const bool is_quoted = i < text->size() && ((*text)[i] == '"' || (*text)[i] == '\'');
     const std::string_view ends = is_quoted ? "\"'" : "& \"'\n";
     if (is_quoted) ++i;
-    const std::size_t end = std::min(text->find_first_of(ends, i), text->size());
+    std::size_t end = std::min(text->find_first_of(ends, i), text->size());
+    if (end > i && (*text)[end - 1] == ':') --end;  // "ADDRESS: what is wrong"
     if (end > i) text->replace(i, end - i, "***");
   }
 }

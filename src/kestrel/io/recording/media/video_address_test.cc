@@ -26,6 +26,7 @@ TEST(VideoAddressTest, PasswordsAreNotShown) {
         {"rtspsrc location=rtsp://host/x user-id=me user-pw=secret ! decodebin",
          "rtspsrc location=rtsp://host/x user-id=me user-pw=*** ! decodebin"},
         {"rtspsrc user-pw=\"sec ret\" ! decodebin", "rtspsrc user-pw=\"***\" ! decodebin"},
+        {"rtsp://host/x?password=secret: refused", "rtsp://host/x?password=***: refused"},
         {"/dev/video0", "/dev/video0"}}) {
     EXPECT_EQ(WithoutPassword(text), shown);
   }
