@@ -179,7 +179,7 @@ INSTANTIATE_TEST_SUITE_P(Both, TwoCamerasLandingTest,
                          testing::Values(AutopilotFirmware::kArduPilot, AutopilotFirmware::kPx4));
 
 TEST_P(TwoCamerasLandingTest, LandsOnCarAsWithOneCamera) {
-  constexpr int kLandings = 20;
+  constexpr int kLandings = 5;
   constexpr double kMargin_m = 0.03;
   Landings one = Land({{}}, kLandings);
   const TestEye wide{.sight_range_m = 15}, narrow{.sight_range_m = 60, .half_view_deg = 15};
