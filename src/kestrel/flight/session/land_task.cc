@@ -81,6 +81,7 @@ class LandingVision : public Vision {
   };
 
   void Watch(const LandingObservation& observation);
+  void WatchGimbal(std::size_t frames, PoseLookup pose);
   std::string OfCamera(std::size_t camera, const std::string& text) const;
   std::string WarningOf(std::size_t camera) const;
   void LimitSearch(const Frame& frame);
@@ -125,7 +126,7 @@ Observation LandingVision::Process(const Frame& frame) {
   if (is_live_) LimitSearch(frame);
   LandingObservation seen = pipeline_.Process(frame.image, frame.time, frame.camera);
   if (cameras_.size() > 1) Watch(seen);
-  ++poses_[seen.pose];
+  WatchGimbal(++poses_[seen.pose], seen.pose);
   zooming_ += seen.is_zooming;
   ++snapshot_.frames;
   snapshot_.detections += seen.report.detection.has_value();
@@ -288,6 +289,15 @@ void LandingVision::Watch(const LandingObservation& observation) {
     faults_.push_back(fmt::format("at {:.2f} s {} {}", ToSeconds(state.since - *begin_),
                                   cameras_[i].name, InWords(state)));
   }
+}
+
+// Notes once in flight that the gimbal is silent. 'frames': so far with this 'pose'.
+void LandingVision::WatchGimbal(std::size_t frames, PoseLookup pose) {
+  constexpr std::size_t kMany = 40;
+  if (!is_live_ || pose != PoseLookup::kNoGimbal || frames != kMany) return;
+  faults_.push_back(
+      "no report of the gimbal, so that no frame has a place: is gimbal.device_id in the camera's "
+      "file right? (kestrel doctor)");
 }
 
 std::string LandingVision::OfCamera(std::size_t camera, const std::string& text) const {

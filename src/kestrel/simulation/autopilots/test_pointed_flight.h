@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -24,14 +25,16 @@ namespace kestrel {
 constexpr double kTestHalfView_deg = 20;
 constexpr double kTestSightRange_m = 30;
 
-// A camera that looks down, or one on a gimbal that looks along the platform's x axis.
-inline CameraCalibration TestCamera(bool has_gimbal, double half_view_deg) {
+// A camera that looks down, by 'tilt_deg' ahead, or one on a gimbal that looks along the platform's
+// x axis.
+inline CameraCalibration TestCamera(bool has_gimbal, double half_view_deg, double tilt_deg = 0) {
   CameraCalibration camera;
   const double f_px = 240 / std::tan(Radians(half_view_deg));
   camera.intrinsics = {640, 480, f_px, f_px, 319.5, 239.5, DistortionModel::kNone, {}};
   Eigen::Matrix3d axes;
   axes << 0, -1, 0, -1, 0, 0, 0, 0, -1;
-  camera.body_from_camera.emplace().rotation = Eigen::Quaterniond(axes);
+  camera.body_from_camera.emplace().rotation =
+      RotationBy({0, -Radians(tilt_deg), 0}) * Eigen::Quaterniond(axes);
   if (!has_gimbal) return camera;
   axes << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   camera.gimbal.emplace().platform_from_camera.rotation = Eigen::Quaterniond(axes);
@@ -78,8 +81,15 @@ class TrueDetector : public TargetDetector {
 // What a camera sees, and what is wrong with it.
 struct TestEye {
   double sight_range_m = kTestSightRange_m;
-  double late_s = 0;      // of the stamps
-  double turned_deg = 0;  // of the mount, about the body's x axis
+  double half_view_deg = 0;  // 0: that of the flight
+  double tilt_deg = 0;       // where it looks: 0 down, 90 ahead
+  // What is wrong while the UAV is lower above the pad than 'wrong_below_m'.
+  double wrong_below_m = std::numeric_limits<double>::infinity();
+  double late_s = 0;         // of the stamps
+  double turned_deg = 0;     // of the mount, about a horizontal axis of the body
+  double turn_axis_deg = 0;  // of that axis, from the body's x axis to the left
+  bool is_frozen = false;    // repeats its image
+  bool is_stopped = false;   // sends no images
 };
 
 // Statistics of the angle between the camera's axis and the target, deg.
@@ -107,9 +117,8 @@ class PointedFlight : public LinkedFlight {
                 const VehicleWorldOptions& vehicle, const Choice& choice)
       : LinkedFlight(firmware, options, vehicle, choice.seed,
                      TestCamera(choice.has_gimbal, choice.half_view_deg)),
-        half_view_(Radians(choice.half_view_deg)),
-        eyes_(EyesOf(choice.cameras)),
-        pipeline_(std::vector(choice.cameras.size(), camera_), Detectors(), PipelineOptions()) {
+        eyes_(EyesOf(choice)),
+        pipeline_(Calibrations(), Detectors(), PipelineOptions()) {
     const PadInSight pad{1.2, kTestSightRange_m, TargetTrackerOptions()};
     if (choice.has_gimbal) Point(pad, pad.tracker);
     if (choice.sends_pad_position) SendPadPosition();
@@ -152,7 +161,12 @@ class PointedFlight : public LinkedFlight {
   const CameraState& StateOf(std::size_t camera) const { return pipeline_.camera_state(camera); }
   // Time for which a camera has been left out because it contradicts the other, s.
   double LeftOutFor(std::size_t camera) const { return eyes_[camera].left_out_s; }
+  // It has been left out, for whatever reason.
+  bool HasBeenLeftOut(std::size_t camera) const { return eyes_[camera].has_been_left_out; }
   bool has_track() const { return track_.state == TrackState::kTracking; }
+
+  // Changes what is wrong with a camera.
+  void Change(std::size_t camera, const TestEye& eye) { eyes_[camera].own = eye; }
 
   bool is_blind = false;  // no image shows the pad any more
 
@@ -165,26 +179,39 @@ class PointedFlight : public LinkedFlight {
     std::optional<RigidTransform> camera_from_target;  // where the pad is in view
   };
   struct Eye {
+    bool is_wrong(double height_m) const { return height_m < own.wrong_below_m; }
+
     TestEye own;
+    CameraCalibration camera;
+    double half_view;  // rad
     Time capture_due;
-    std::deque<Image> images;
-    std::optional<RigidTransform> seen;  // of the image that the vision has
+    std::deque<Image> images = {};
+    std::optional<RigidTransform> seen = {};  // of the image that the vision has
     double left_out_s = 0;
+    bool has_been_left_out = false;
+    cv::Mat picture{8, 8, CV_8UC1};
   };
 
   // Their images come one after the other.
-  static std::vector<Eye> EyesOf(const std::vector<TestEye>& cameras) {
+  static std::vector<Eye> EyesOf(const Choice& choice) {
     std::vector<Eye> eyes;
-    for (const TestEye& each : cameras) {
-      eyes.push_back({each, kTestStart + eyes.size() * std::chrono::milliseconds(20), {}, {}, 0});
+    for (const TestEye& each : choice.cameras) {
+      const double view_deg = each.half_view_deg > 0 ? each.half_view_deg : choice.half_view_deg;
+      eyes.push_back({each, TestCamera(choice.has_gimbal, view_deg, each.tilt_deg),
+                      Radians(view_deg), kTestStart + eyes.size() * std::chrono::milliseconds(20)});
     }
     return eyes;
+  }
+  std::vector<CameraCalibration> Calibrations() const {
+    std::vector<CameraCalibration> cameras;
+    for (const Eye& eye : eyes_) cameras.push_back(eye.camera);
+    return cameras;
   }
   std::vector<std::unique_ptr<const TargetDetector>> Detectors() const {
     std::vector<std::unique_ptr<const TargetDetector>> detectors;
     for (const Eye& eye : eyes_) {
       detectors.push_back(
-          std::make_unique<TrueDetector>(CameraModel(camera_.intrinsics), &eye.seen));
+          std::make_unique<TrueDetector>(CameraModel(eye.camera.intrinsics), &eye.seen));
     }
     return detectors;
   }
@@ -196,10 +223,16 @@ class PointedFlight : public LinkedFlight {
   void TakePose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
   void TakeGimbal(const GimbalSample& report) override { pipeline_.AddGimbal(report); }
 
+  double Height() const {
+    return model.truth().world_from_body.translation.z() - world.PatternAt(now).translation.z();
+  }
   RigidTransform WorldFromCamera(const Eye& eye) const {
-    const RigidTransform& body = model.truth().world_from_body;
-    const RigidTransform turn{RotationBy({Radians(eye.own.turned_deg), 0, 0}), {0, 0, 0}};
-    return body * turn * body.Inverse() * LinkedFlight::WorldFromCamera();
+    if (eye.camera.gimbal) return LinkedFlight::WorldFromCamera();
+    const double turned = eye.is_wrong(Height()) ? Radians(eye.own.turned_deg) : 0;
+    const double axis = Radians(eye.own.turn_axis_deg);
+    const RigidTransform turn{RotationBy({turned * std::cos(axis), turned * std::sin(axis), 0}),
+                              {0, 0, 0}};
+    return model.truth().world_from_body * turn * *eye.camera.body_from_camera;
   }
   static double AngleOff(const RigidTransform& camera_from_target) {
     const Eigen::Vector3d& center = camera_from_target.translation;
@@ -211,6 +244,7 @@ class PointedFlight : public LinkedFlight {
       Capture(&eyes_[i]);
       Process(i);
       if (StateOf(i).health == CameraHealth::kContradicts) eyes_[i].left_out_s += kStep_s;
+      if (!StateOf(i).is_used()) eyes_[i].has_been_left_out = true;
     }
   }
   void Capture(Eye* eye) {
@@ -218,11 +252,14 @@ class PointedFlight : public LinkedFlight {
     constexpr double kNearest_m = 0.45;
     if (now < eye->capture_due) return;
     eye->capture_due = now + kPeriod;
+    const bool is_wrong = eye->is_wrong(Height());
+    if (is_wrong && eye->own.is_stopped) return;
     const RigidTransform camera_from_target =
         WorldFromCamera(*eye).Inverse() * world.PatternAt(now);
     const double distance_m = camera_from_target.translation.norm();
-    Image image{now + DurationFromSeconds(eye->own.late_s), std::nullopt};
-    if (AngleOff(camera_from_target) < half_view_ && distance_m < eye->own.sight_range_m &&
+    const double late_s = is_wrong ? eye->own.late_s : 0;
+    Image image{now + DurationFromSeconds(late_s), std::nullopt};
+    if (AngleOff(camera_from_target) < eye->half_view && distance_m < eye->own.sight_range_m &&
         distance_m > kNearest_m) {
       image.camera_from_target = camera_from_target;
     }
@@ -235,10 +272,12 @@ class PointedFlight : public LinkedFlight {
     if (eye.images.empty() || now < eye.images.front().captured + kLatency) return;
     const Image image = eye.images.front();
     eye.images.pop_front();
-    eye.seen = image.camera_from_target;
+    if (!eye.own.is_frozen || !eye.is_wrong(Height())) {
+      eye.seen = image.camera_from_target;
+      eye.picture.setTo(++pictures_ % 256);  // differs from the one before
+    }
     if (is_blind) eye.seen.reset();
-    picture_.setTo(++pictures_ % 256);
-    const LandingObservation seen = pipeline_.Process(picture_, image.captured, camera);
+    const LandingObservation seen = pipeline_.Process(eye.picture, image.captured, camera);
     if (!StateOf(camera).is_used()) return;
     track_.captured = image.captured;
     track_.state = seen.track_state;
@@ -257,10 +296,8 @@ class PointedFlight : public LinkedFlight {
     sighting.normal_in_world = Eigen::Vector3d::UnitZ();
   }
 
-  double half_view_;
   std::vector<Eye> eyes_;  // their places do not change
   LandingPipeline pipeline_;
-  cv::Mat picture_{8, 8, CV_8UC1};  // differs from one to the next
   int pictures_ = 0;
 };
 

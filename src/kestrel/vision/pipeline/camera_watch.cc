@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "kestrel/core/base/robust_statistics.h"
 
@@ -13,6 +14,16 @@ constexpr Duration kSilence = std::chrono::seconds(1);
 constexpr Duration kBlindness = std::chrono::seconds(3);  // after which the track is lost, too
 constexpr int kFrozenImages = 5;
 constexpr int kConfirmations = 5;
+// By how much the mounts of two cameras may be turned, and their places wrong, against each other.
+constexpr double kTurned_rad = 0.028, kDisplaced_m = 0.03;
+
+// Returns what any error of the lag, the largest of which turns the view by 'by_lag', leaves of a
+// turn.
+Eigen::Vector3d WithoutLag(const Eigen::Vector3d& turn, const Eigen::Vector3d& by_lag) {
+  const double square = by_lag.squaredNorm();
+  if (!(square > 0)) return turn;
+  return turn - std::clamp(turn.dot(by_lag) / square, -1.0, 1.0) * by_lag;
+}
 
 }  // namespace
 
@@ -69,44 +80,61 @@ bool CameraWatch::IsSeenByOthers(std::size_t camera, Time time, Duration age) co
   });
 }
 
-bool CameraWatch::AddSighting(std::size_t camera, Time time, SightingPlace place, double offset_m,
+bool CameraWatch::AddSighting(std::size_t camera, const CameraSighting& sighting,
                               const Refutes& refutes) {
   Watched& own = cameras_[camera];
-  if (own.state.health == CameraHealth::kContradicts) {
-    return Reconsider(camera, time, place, offset_m, refutes);
+  const Time time = sighting.time;
+  if (sighting.place == SightingPlace::kStart) {
+    for (Watched& each : cameras_) each.sightings = 0;
+  } else {
+    own.latest[own.sightings++ % own.latest.size()] = sighting;
   }
+  if (own.state.health == CameraHealth::kContradicts) return Reconsider(camera, sighting, refutes);
   own.seen = time;
-  if (place == SightingPlace::kStart) {
+  if (sighting.place == SightingPlace::kStart) {
     const bool are_all_used = std::none_of(
         cameras_.begin(), cameras_.end(),
         [](const Watched& each) { return each.state.health == CameraHealth::kContradicts; });
     moved_by_ = own.outside > 0 && are_all_used ? std::optional(camera) : std::nullopt;
     own.outside = 0;
     confirmed_ = camera;
+    return false;
   }
-  if (place == SightingPlace::kInside) Confirm(camera);
-  if (place != SightingPlace::kOutside || !CountOutside(&own, offset_m)) return false;
-  LeaveOut(Contradicting(camera, refutes), MedianInPlace(own.offsets_m), time);
+  if (const auto turn = TurnAgainstOthers(camera, time)) {
+    LeaveOut(Contradicting(turn->farther, turn->nearer, refutes), turn->offset_m, time);
+    return true;
+  }
+  if (sighting.place == SightingPlace::kInside) Confirm(camera);
+  if (sighting.place != SightingPlace::kOutside || !CountOutside(&own)) return false;
+  LeaveOut(Contradicting(camera, confirmed_, refutes), MedianOffset(own), time);
   return true;
 }
 
+double CameraWatch::MedianOffset(const Watched& camera) {
+  std::array<double, kSightings> offsets_m;
+  for (std::size_t i = 0; i < offsets_m.size(); ++i) {
+    offsets_m[i] = camera.latest[(camera.sightings - 1 - i) % camera.latest.size()].offset_m;
+  }
+  return MedianInPlace(offsets_m);
+}
+
 // True when the camera has contradicted the others for long enough.
-bool CameraWatch::CountOutside(Watched* camera, double offset_m) {
-  if (camera->outside == 0) camera->confirmed_by_others = 0;
-  camera->offsets_m[static_cast<std::size_t>(camera->outside++ % kSightings)] = offset_m;
+bool CameraWatch::CountOutside(Watched* camera) {
+  if (camera->outside++ == 0) camera->confirmed_by_others = 0;
   return camera->outside >= kSightings && camera->confirmed_by_others >= kConfirmations;
 }
 
 // A camera that comes and goes must agree for longer each time.
-bool CameraWatch::Reconsider(std::size_t camera, Time time, SightingPlace place, double offset_m,
+bool CameraWatch::Reconsider(std::size_t camera, const CameraSighting& sighting,
                              const Refutes& refutes) {
   Watched& own = cameras_[camera];
-  if (place != SightingPlace::kInside) {
+  const Time time = sighting.time;
+  if (sighting.place != SightingPlace::kInside || TurnAgainstOthers(camera, time)) {
     own.agreements = 0;
-    if (!CountOutside(&own, offset_m)) return false;
+    if (!CountOutside(&own)) return false;
     own.outside = 0;
     if (!refutes(confirmed_, camera)) return false;
-    LeaveOut(confirmed_, MedianInPlace(own.offsets_m), time);
+    LeaveOut(confirmed_, MedianOffset(own), time);
     own.state = {CameraHealth::kGood, time};
     return true;
   }
@@ -123,6 +151,49 @@ bool CameraWatch::Reconsider(std::size_t camera, Time time, SightingPlace place,
   return false;
 }
 
+// Returns the mean of the latest sightings; nothing where there are too few.
+std::optional<CameraSighting> CameraWatch::LatestMean(const Watched& camera, Time time) {
+  constexpr Duration kRecent = std::chrono::milliseconds(1600);
+  constexpr int kLeast = 8;
+  CameraSighting mean;
+  int count = 0;
+  for (std::size_t i = 0; i < std::min(camera.sightings, camera.latest.size()); ++i) {
+    const CameraSighting& each = camera.latest[i];
+    if (time - each.time > kRecent) continue;
+    ++count;
+    mean.distance_m += each.distance_m;
+    mean.turn += each.turn;
+    mean.turn_variance += each.turn_variance;
+    mean.turn_by_lag += each.turn_by_lag;
+  }
+  if (count < kLeast) return std::nullopt;
+  mean.distance_m /= count;
+  mean.turn /= count;
+  mean.turn_variance /= count * count;
+  mean.turn_by_lag /= count;
+  return mean;
+}
+
+// What shifts the track shifts the means of both cameras, and not their difference.
+std::optional<CameraWatch::Turn> CameraWatch::TurnAgainstOthers(std::size_t camera,
+                                                                Time time) const {
+  const auto own = LatestMean(cameras_[camera], time);
+  if (!own) return std::nullopt;
+  for (std::size_t i = 0; i < cameras_.size(); ++i) {
+    if (i == camera || !cameras_[i].state.is_used()) continue;
+    const auto other = LatestMean(cameras_[i], time);
+    if (!other) continue;
+    const double sigma = std::sqrt(own->turn_variance + other->turn_variance);
+    const double most = kTurned_rad + kDisplaced_m / own->distance_m + kSigmas * sigma;
+    const double turn = WithoutLag(own->turn - other->turn, own->turn_by_lag).norm();
+    if (turn <= most) continue;
+    const double offset_m = turn * own->distance_m;
+    const bool is_farther = own->turn.norm() > other->turn.norm();
+    return is_farther ? Turn{camera, i, offset_m} : Turn{i, camera, offset_m};
+  }
+  return std::nullopt;
+}
+
 void CameraWatch::Confirm(std::size_t camera) {
   for (Watched& each : cameras_) ++each.confirmed_by_others;
   cameras_[camera].outside = 0;
@@ -130,16 +201,21 @@ void CameraWatch::Confirm(std::size_t camera) {
   confirmed_ = camera;
 }
 
-std::size_t CameraWatch::Contradicting(std::size_t camera, const Refutes& refutes) const {
-  if (refutes(confirmed_, camera)) return confirmed_;
-  if (refutes(camera, confirmed_)) return camera;
-  return moved_by_ == confirmed_ ? confirmed_ : camera;
+// Of two cameras, the one to leave out; 'camera' where nothing else decides.
+std::size_t CameraWatch::Contradicting(std::size_t camera, std::size_t other,
+                                       const Refutes& refutes) const {
+  if (refutes(other, camera)) return other;
+  if (refutes(camera, other)) return camera;
+  return moved_by_ == other ? other : camera;
 }
 
 void CameraWatch::LeaveOut(std::size_t camera, double offset_m, Time time) {
   cameras_[camera].state = {CameraHealth::kContradicts, time, offset_m};
   cameras_[camera].agreements = 0;
-  for (Watched& each : cameras_) each.outside = 0;
+  for (Watched& each : cameras_) {
+    each.outside = 0;
+    each.sightings = 0;
+  }
   moved_by_.reset();
 }
 

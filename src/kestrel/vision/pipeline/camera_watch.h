@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 #include "kestrel/core/base/time.h"
@@ -23,8 +24,25 @@ enum class SightingPlace {
   kOutside,  // elsewhere
 };
 
+// Where a frame showed the target, by the track.
+struct CameraSighting {
+  Time time{};
+  SightingPlace place = SightingPlace::kStart;
+  double offset_m = 0;    // from the track
+  double sigma_m = 0;     // standard deviation of the offset of a camera that is right
+  double distance_m = 0;  // from the camera
+  // Rotation of the camera that explains the offset, across the line of sight, in the body's axes
+  // (rad), with its variance per axis (rad^2); and its part by the largest error of the lag between
+  // the cameras' clocks.
+  Eigen::Vector3d turn = Eigen::Vector3d::Zero();
+  double turn_variance = 0;
+  Eigen::Vector3d turn_by_lag = Eigen::Vector3d::Zero();
+};
+
 // Decides which of several cameras with one track can be used. A camera contradicts when several of
-// its sightings in a row are outside of the track while those of another camera are inside. Of the
+// its sightings in a row are outside of the track while those of another camera are inside, or when
+// the mean of its latest sightings is turned against that of another camera: the mean shows a mount
+// that is too little wrong for one sighting, and also where the track lies between the two. Of the
 // two, the one is left out whose own views refute it, or that has moved the track before, or else
 // the one that is outside; as long as they contradict each other, what refutes the one that is used
 // exchanges them. A camera that is left out is used again when it has agreed for a while, and as
@@ -34,15 +52,17 @@ class CameraWatch {
   // Whether the own views of 'camera' show that it is the one of the two that is wrong.
   using Refutes = std::function<bool(std::size_t camera, std::size_t other)>;
 
+  // How much a mount may be wrong, and how much of its noise a sighting may have.
+  static constexpr double kTolerated_rad = 0.035, kSigmas = 3;
+
   explicit CameraWatch(std::size_t cameras) : cameras_(cameras) {}
 
   // Takes a frame; all times are on one clock. Does not allocate.
   void AddFrame(std::size_t camera, const cv::Mat& image, Time time);
 
-  // Takes the place where the newest frame of 'camera' showed the target. 'offset_m': distance from
-  // the track. True when a camera is left out for it.
-  bool AddSighting(std::size_t camera, Time time, SightingPlace place, double offset_m,
-                   const Refutes& refutes);
+  // Takes the place where the newest frame of 'camera' showed the target. True when a camera is
+  // left out for it.
+  bool AddSighting(std::size_t camera, const CameraSighting& sighting, const Refutes& refutes);
 
   // True when the newest frame of the camera can be used.
   bool IsUsed(std::size_t camera) const;
@@ -62,22 +82,32 @@ class CameraWatch {
     std::optional<Time> newest;
     std::optional<Time> seen;  // newest sighting while it was used
     RepeatedImage repeated;
-    int outside = 0;              // sightings in a row outside
-    int confirmed_by_others = 0;  // sightings of others inside since the first of those
-    std::array<double, kSightings> offsets_m{};
+    int outside = 0;                          // sightings in a row outside
+    int confirmed_by_others = 0;              // sightings of others inside since the first of those
+    std::array<CameraSighting, 32> latest{};  // ring
+    std::size_t sightings = 0;                // since a track began or one was left out
     // While it contradicts: sightings in a row inside, and when they began.
     int agreements = 0;
     Time agrees_since;
     Duration probation = kProbation;  // so long they must go on; doubled each time
   };
 
+  // Two cameras that are turned against each other.
+  struct Turn {
+    std::size_t farther;  // from the track
+    std::size_t nearer;
+    double offset_m;  // by which the two see the target apart
+  };
+
   static void Set(Watched* camera, CameraHealth health, Time time);
   void UseThoseThatAreAlone(Time time);
-  static bool CountOutside(Watched* camera, double offset_m);
-  bool Reconsider(std::size_t camera, Time time, SightingPlace place, double offset_m,
-                  const Refutes& refutes);
+  static bool CountOutside(Watched* camera);
+  static double MedianOffset(const Watched& camera);  // of the latest kSightings
+  bool Reconsider(std::size_t camera, const CameraSighting& sighting, const Refutes& refutes);
   void Confirm(std::size_t camera);
-  std::size_t Contradicting(std::size_t camera, const Refutes& refutes) const;
+  static std::optional<CameraSighting> LatestMean(const Watched& camera, Time time);
+  std::optional<Turn> TurnAgainstOthers(std::size_t camera, Time time) const;
+  std::size_t Contradicting(std::size_t camera, std::size_t other, const Refutes& refutes) const;
   void LeaveOut(std::size_t camera, double offset_m, Time time);
 
   std::vector<Watched> cameras_;

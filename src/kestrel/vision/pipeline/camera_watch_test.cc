@@ -16,13 +16,27 @@ using ::testing::HasSubstr;
 class CameraWatchTest : public ::testing::Test {
  protected:
   static constexpr std::size_t kFirst = 0, kSecond = 1;
+  static constexpr double kDistance_m = 10;
 
   // A frame that differs from the ones before, and where it shows the target.
-  void See(std::size_t camera, SightingPlace place, double offset_m = 0) {
+  void See(std::size_t camera, CameraSighting sighting) {
     watch_.AddFrame(camera, cv::Mat(8, 8, CV_8UC1, cv::Scalar(++frames_ % 256)), time_);
     if (!watch_.IsJudged(camera)) return;
-    watch_.AddSighting(camera, time_, place, offset_m,
+    sighting.time = time_;
+    sighting.distance_m = kDistance_m;
+    sighting.turn_variance = 1e-5;
+    watch_.AddSighting(camera, sighting,
                        [this](std::size_t each, std::size_t) { return each == refuted_; });
+  }
+  void See(std::size_t camera, SightingPlace place, double offset_m = 0) {
+    See(camera, {.place = place, .offset_m = offset_m});
+  }
+  // A sighting inside, by a camera that is turned against the track.
+  void SeeTurned(std::size_t camera, double turned,
+                 const Eigen::Vector3d& turn_by_lag = {0, 0, 0}) {
+    See(camera, {.place = SightingPlace::kInside,
+                 .turn = turned * Eigen::Vector3d::UnitX(),
+                 .turn_by_lag = turn_by_lag});
   }
   // The second camera sees the target elsewhere than the first one, until it is left out.
   void Contradict() {
@@ -194,6 +208,43 @@ TEST_F(CameraWatchTest, CameraThatWasExchangedHasNotMovedTheTrack) {
   }
   EXPECT_EQ(HealthOf(kFirst), CameraHealth::kContradicts);
   EXPECT_EQ(HealthOf(kSecond), CameraHealth::kGood);
+}
+
+// The track is between the two.
+TEST_F(CameraWatchTest, CameraThatIsTurnedAgainstTheOtherIsLeftOut) {
+  for (int i = 0; i < 12; ++i, Step()) {
+    SeeTurned(kFirst, -0.02);
+    SeeTurned(kSecond, 0.03);
+  }
+  EXPECT_EQ(HealthOf(kFirst), CameraHealth::kGood);
+  EXPECT_EQ(HealthOf(kSecond), CameraHealth::kContradicts);
+  EXPECT_NEAR(watch_.state(kSecond).offset_m, 0.05 * kDistance_m, 1e-6);
+}
+
+TEST_F(CameraWatchTest, TrackThatIsBesideBothCamerasIsNoFaultOfEither) {
+  for (int i = 0; i < 30; ++i, Step()) {
+    SeeTurned(kFirst, 0.06);
+    SeeTurned(kSecond, 0.05);
+  }
+  EXPECT_TRUE(watch_.IsUsed(kFirst));
+  EXPECT_TRUE(watch_.IsUsed(kSecond));
+}
+
+TEST_F(CameraWatchTest, TurnThatLagExplainsIsNoFault) {
+  for (int i = 0; i < 30; ++i, Step()) {
+    SeeTurned(kFirst, 0, {0.05, 0, 0});
+    SeeTurned(kSecond, 0.06, {0.05, 0, 0});
+  }
+  EXPECT_TRUE(watch_.IsUsed(kSecond));
+}
+
+TEST_F(CameraWatchTest, TurnedCameraStaysLeftOutWhereSingleSightingsAreInside) {
+  for (int i = 0; i < 60; ++i, Step()) {
+    SeeTurned(kFirst, 0);
+    SeeTurned(kSecond, 0.05);
+  }
+  EXPECT_EQ(HealthOf(kSecond), CameraHealth::kContradicts);
+  EXPECT_LT(watch_.state(kSecond).since, TimeFromNanoseconds(2'500'000'000));
 }
 
 }  // namespace

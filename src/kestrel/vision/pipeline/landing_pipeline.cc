@@ -48,6 +48,34 @@ Duration ClockOffset(const CameraCalibration& calibration) {
   return calibration.clock_offset.value_or(Duration::zero());
 }
 
+// 'lag_m': offset by one standard deviation of the lag between the cameras.
+CameraSighting SightingBy(const TargetEstimate& expected, const TargetMeasurement& measurement,
+                          const Eigen::Vector3d& lag_m, const LandingObservation& observation) {
+  const Eigen::Vector3d sight =
+      measurement.position_in_world - observation.world_from_camera->translation;
+  const Eigen::Vector3d offset_m = measurement.position_in_world - expected.motion.position();
+  const double square = sight.squaredNorm();
+  const Eigen::Quaterniond body_from_world =
+      (observation.world_from_camera->rotation * observation.camera_from_body->rotation)
+          .conjugate();
+  const auto turn_by = [&](const Eigen::Vector3d& shift_m) -> Eigen::Vector3d {
+    return body_from_world * sight.cross(shift_m) / square;
+  };
+  CameraSighting sighting;
+  sighting.time = observation.time;
+  sighting.offset_m = offset_m.norm();
+  sighting.sigma_m = std::hypot(expected.position_sigma_m(), lag_m.norm());
+  sighting.distance_m = std::sqrt(square);
+  const double most_m =
+      CameraWatch::kSigmas * sighting.sigma_m + CameraWatch::kTolerated_rad * sighting.distance_m;
+  sighting.place = sighting.offset_m > most_m ? SightingPlace::kOutside : SightingPlace::kInside;
+  sighting.turn = turn_by(offset_m);
+  sighting.turn_by_lag = turn_by(CameraWatch::kSigmas * lag_m);
+  const double along = sight.dot(measurement.covariance * sight) / square;
+  sighting.turn_variance = (measurement.covariance.trace() - along) / (2 * square);
+  return sighting;
+}
+
 }  // namespace
 
 const char* ToString(PositionMethod method) {
@@ -523,28 +551,24 @@ void LandingPipeline::Impl::Judge(const TargetMeasurement& measurement,
                                   const Eigen::Vector3d& slip_mps,
                                   const std::optional<TargetEstimate>& expected,
                                   const LandingObservation& observation, Eye* eye) {
-  constexpr double kSigmas = 3;
-  constexpr double kTolerated_rad = 0.035;  // by mounts
-  constexpr double kFarthest_rad = 0.3;     // the most that they explain: beyond is another thing
+  constexpr double kFarthest_rad = 0.3;  // the most that mounts explain: beyond is another thing
   constexpr Duration kFresh = std::chrono::milliseconds(500);
-  SightingPlace place = SightingPlace::kStart;
-  Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();
+  CameraSighting sighting{observation.time};
   if (observation.fate != MeasurementFate::kStarted) {
     if (!expected) return;
-    const double distance_m = observation.report.detection->camera_from_target.translation.norm();
-    offset_m = measurement.position_in_world - expected->motion.position();
-    if (offset_m.norm() > kFarthest_rad * distance_m) return;
-    const double sigma_m = std::hypot(expected->position_sigma_m(), LagSigma_s() * slip_mps.norm());
-    const double most_m = kSigmas * sigma_m + kTolerated_rad * distance_m;
-    place = offset_m.norm() > most_m ? SightingPlace::kOutside : SightingPlace::kInside;
-    if (place == SightingPlace::kInside && eye != &eyes_.front() &&
+    const Eigen::Vector3d offset_m = measurement.position_in_world - expected->motion.position();
+    sighting = SightingBy(*expected, measurement, LagSigma_s() * slip_mps, observation);
+    if (sighting.offset_m > kFarthest_rad * sighting.distance_m) return;
+    // More than that is no lag, but a mount that is wrong.
+    const bool may_be_late = sighting.offset_m < CameraWatch::kSigmas * sighting.sigma_m;
+    if (may_be_late && eye != &eyes_.front() &&
         watch_.IsSeenByOthers(observation.camera, observation.time, kFresh)) {
       eye->lag.Add(offset_m, slip_mps,
                    measurement.covariance + expected->motion.covariance.topLeftCorner<3, 3>());
     }
   }
   const bool is_one_left_out = watch_.AddSighting(
-      observation.camera, observation.time, place, offset_m.norm(),
+      observation.camera, sighting,
       [this](std::size_t camera, std::size_t other) { return IsRefuted(camera, other); });
   if (!is_one_left_out) return;
   for (Eye& each : eyes_) each.lag = {};  // it was learnt from the wrong camera, too

@@ -97,6 +97,10 @@ std::optional<double> StampLag::Contradiction(const CameraPoses& poses) const {
       best_tolerated = std::min(best_tolerated, misfit);
     }
   }
+  // A least at an end of the range is none: something else than the stamps is wrong there.
+  if (best_lag_s < kEarliest_s + kStep_s / 2 || best_lag_s > kLatest_s - kStep_s / 2) {
+    return std::nullopt;
+  }
   const double freedom = 2.0 * (static_cast<double>(usable.count) - kTerms) - 1;
   const double variance = std::max(best / freedom, 1.0);
   if (!(best_tolerated - best > kLeastExcess * variance)) return std::nullopt;

@@ -12,6 +12,9 @@ namespace kestrel {
 namespace {
 
 constexpr std::array<std::string_view, 4> kSchemes = {"rtsp://", "rtsps://", "rtp://", "udp://"};
+// Names of passwords in a query and in GStreamer's pipelines.
+constexpr std::array<std::string_view, 6> kPasswordNames = {
+    "password=", "passwd=", "pass=", "pwd=", "user-pw=", "proxy-pw="};
 constexpr int kLatency_ms = 50;  // a packet that overtakes others waits so long for them
 
 // Returns where the pair "user:password" of an address ends, with its '@'; npos: it has none. A
@@ -21,6 +24,18 @@ std::size_t EndOfUser(std::string_view text, std::size_t begin) {
   const std::size_t query = address.find('?');
   const std::size_t at = address.substr(0, query).rfind('@');
   return at == std::string_view::npos ? at : begin + at;
+}
+
+void HideValues(std::string_view name, std::string* text) {
+  for (std::size_t i = text->find(name); i != std::string::npos; i = text->find(name, i)) {
+    i += name.size();
+    const bool is_quoted = i < text->size() && ((*text)[i] == '"' || (*text)[i] == '\'');
+    const std::string_view ends = is_quoted ? "\"'" : "& \"'\n";
+    if (is_quoted) ++i;
+    std::size_t end = std::min(text->find_first_of(ends, i), text->size());
+    if (end > i && (*text)[end - 1] == ':') --end;  // "ADDRESS: what is wrong"
+    if (end > i) text->replace(i, end - i, "***");
+  }
 }
 
 }  // namespace
@@ -40,6 +55,7 @@ std::string WithoutPassword(std::string text) {
     const std::size_t end = EndOfUser(text, i);
     if (end != std::string::npos) text.replace(i, end - i, "***");
   }
+  for (const std::string_view name : kPasswordNames) HideValues(name, &text);
   return text;
 }
 

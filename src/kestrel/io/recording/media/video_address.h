@@ -14,7 +14,8 @@ bool IsNetworkVideo(std::string_view camera);
 bool IsVideoAddress(std::string_view camera);
 
 // Returns a text for people, in which each address rtsp://USER:PASSWORD@HOST is without user and
-// password: "rtsp://***@HOST".
+// password, "rtsp://***@HOST", and each password of a query or of GStreamer's rtspsrc is hidden:
+// "?user=admin&password=***", "user-pw=***".
 std::string WithoutPassword(std::string text);
 
 // Returns the first elements of GStreamer's pipeline for an address: they deliver the encoded

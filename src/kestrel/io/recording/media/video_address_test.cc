@@ -21,6 +21,12 @@ TEST(VideoAddressTest, PasswordsAreNotShown) {
          "rtspsrc location=\"rtsps://***@host/x\" ! decodebin"},
         {"rtsp://a:b@one/x and http://c:d@two", "rtsp://***@one/x and http://***@two"},
         {"rtsp://10.0.0.2/main?user=me@home", "rtsp://10.0.0.2/main?user=me@home"},
+        {"rtsp://10.0.0.2/main?user=me&password=secret&channel=1",
+         "rtsp://10.0.0.2/main?user=me&password=***&channel=1"},
+        {"rtspsrc location=rtsp://host/x user-id=me user-pw=secret ! decodebin",
+         "rtspsrc location=rtsp://host/x user-id=me user-pw=*** ! decodebin"},
+        {"rtspsrc user-pw=\"sec ret\" ! decodebin", "rtspsrc user-pw=\"***\" ! decodebin"},
+        {"rtsp://host/x?password=secret: refused", "rtsp://host/x?password=***: refused"},
         {"/dev/video0", "/dev/video0"}}) {
     EXPECT_EQ(WithoutPassword(text), shown);
   }
