@@ -50,6 +50,7 @@ constexpr Ramp kIsStroke{0.3f, 0.8f};
 constexpr Ramp kInAnyLight{-1, 1};        // from white in a highlight to ink
 constexpr float kBeyondWhite = 0.15f;     // above lit white, share of the contrast
 constexpr float kVeiled = 0.2f;           // above the darkest ink, share of the contrast
+constexpr float kEdgePx = 2.2f;           // from a sharp edge to ink that it does not brighten
 constexpr float kLeastOfContrast = 0.25;  // share of the whole print's contrast, in any direction
 constexpr double kEnoughSeen = 0.25;      // least share of places in view by which a part is judged
 
@@ -122,6 +123,7 @@ struct InkComparison::Levels {
   std::array<float, kSectors> white;      // level of white, in the shadows that are there
   std::array<float, kSectors> per_gray;   // 1 / (white - ink)
   std::array<float, kSectors> highlight;  // gray value from which on a highlight may hide ink
+  float ink = 0;                          // gray value of ink in the least light
   float veiled = 0;                       // gray value from which on light lies on ink
   bool has_contrast = false;
 };
@@ -323,6 +325,7 @@ InkComparison::Levels InkComparison::MeasureLevels(const Grays& gray) const {
   // The ink in the least light is the measure: light that lies on much of the print raises the
   // rest.
   const auto darkest = std::min_element(ink_level.begin(), ink_level.end());
+  levels.ink = *darkest;
   levels.veiled = *darkest + kVeiled * (*std::max_element(lit.begin(), lit.end()) - *darkest);
   std::array<float, kSectors> contrasts = contrast;
   const float median = MedianInPlace(contrasts);
@@ -336,23 +339,52 @@ InkComparison::Levels InkComparison::MeasureLevels(const Grays& gray) const {
   return levels;
 }
 
-InkComparison::Darkness InkComparison::MeasureDarkness(const Grays& gray,
-                                                       const Levels& levels) const {
+InkComparison::Darkness InkComparison::MeasureDarkness(const Grays& gray, const Levels& levels,
+                                                       const EdgeRowsOfArms& edge_rows) const {
   Darkness darkness;
   for (std::size_t i = 0; i < x_m_.size(); ++i) {
     const int s = sector_[i];
     darkness.value[i] = (levels.white[s] - gray[i]) * levels.per_gray[s];
     darkness.is_seen[i] = gray[i] >= 0;
   }
-  HideInHighlights(gray, levels, &darkness);
+  HideInHighlights(gray, levels, edge_rows, &darkness);
   return darkness;
 }
 
-// Ink that a highlight hides is out of view. A highlight fades out, so that the ink next to what it
-// hides is veiled. Where that ink is as dark as elsewhere, or dark next to a sharp edge, white is
-// the board's: when overexposed it is as bright as a highlight.
+// Returns how many rows of an arm the blur of a sharp edge may brighten, at least two.
+InkComparison::EdgeRowsOfArms InkComparison::EdgeRows(const PatternView& view) const {
+  EdgeRowsOfArms rows;
+  for (int k = 0; k < kArms; ++k) {
+    const std::size_t first = arm_[k].begin, last = arm_[k].end - kAcross;
+    const std::array x_m{x_m_[first], x_m_[last]}, y_m{y_m_[first], y_m_[last]};
+    std::array<float, 2> x_px, y_px;
+    view.Project(x_m.data(), y_m.data(), x_m.size(), x_px.data(), y_px.data());
+    const float row_px = std::hypot(x_px[1] - x_px[0], y_px[1] - y_px[0]) / (kAlongArm - 1);
+    rows[k] = row_px * kAlongArm > kEdgePx
+                  ? std::max(2, static_cast<int>(std::ceil(kEdgePx / row_px)))
+                  : kAlongArm;
+  }
+  return rows;
+}
+
+// True if a highlight may be the reason that a place is as bright as 'highlight', by the ink 'rows'
+// rows away from it and one row farther. A highlight fades out, so that this ink is veiled; and the
+// logarithm of the light rises less and less towards its middle. Next to a sharp edge the ink is as
+// dark as elsewhere, or evenly veiled. Infinite: unknown.
+bool InkComparison::IsHidden(float highlight, float near, float far, int rows,
+                             const Levels& levels) {
+  if (near < levels.veiled) return false;
+  constexpr float kNoise = 3;
+  const float veil = near - levels.ink, farther = std::max(kNoise, far - kNoise - levels.ink);
+  const float rise = std::max(1.0f, veil / farther);
+  return !std::isfinite(veil * farther) ||
+         veil * std::pow(rise, static_cast<float>(rows)) > highlight - levels.ink;
+}
+
+// Ink that a highlight hides is out of view. White between sharp edges is the board's: when
+// overexposed it is as bright as a highlight.
 void InkComparison::HideInHighlights(const Grays& gray, const Levels& levels,
-                                     Darkness* darkness) const {
+                                     const EdgeRowsOfArms& edge_rows, Darkness* darkness) const {
   constexpr float kUnknown = std::numeric_limits<float>::infinity();
   const auto known = [&](std::size_t place) { return gray[place] < 0 ? kUnknown : gray[place]; };
   float hub = kUnknown;
@@ -360,22 +392,30 @@ void InkComparison::HideInHighlights(const Grays& gray, const Levels& levels,
   for (int k = 0; k < kArms; ++k) {
     for (std::size_t side = 0; side < kAcross; ++side) {
       const auto place = [&](int row) { return arm_[k].begin + kAcross * row + side; };
-      const auto is_bright = [&](int row) {
-        return gray[place(row)] >= levels.highlight[sector_[place(row)]];
-      };
+      const auto highlight = [&](int row) { return levels.highlight[sector_[place(row)]]; };
+      const auto is_bright = [&](int row) { return gray[place(row)] >= highlight(row); };
       // Ink from the middle of the print to the ring.
-      std::array<float, kAlongArm + 2> ink;
-      ink.front() = hub;
-      ink.back() = known(BeyondArm(k));
-      for (int row = 0; row < kAlongArm; ++row) ink[row + 1] = known(place(row));
+      const auto ink = [&](int row) {
+        return row < -1 || row > kAlongArm ? kUnknown
+               : row < 0                   ? hub
+                                           : known(row < kAlongArm ? place(row) : BeyondArm(k));
+      };
+      const int reach = edge_rows[k];
       for (int row = 0; row < kAlongArm; ++row) {
         if (!is_bright(row)) continue;
         const int first = row;
         while (row + 1 < kAlongArm && is_bright(row + 1)) ++row;
-        const float before = std::min(ink[first], ink[std::max(0, first - 1)]);
-        const float behind = std::min(ink[row + 2], ink[std::min(row + 3, kAlongArm + 1)]);
-        if (std::min(before, behind) < levels.veiled) continue;
-        for (int hidden = first; hidden <= row; ++hidden) darkness->is_seen[place(hidden)] = false;
+        const int last = row;
+        const auto darkest = [&](int begin, int step) {
+          float value = kUnknown;
+          for (int i = 0; i < reach; ++i) value = std::min(value, ink(begin + i * step));
+          return value;
+        };
+        const bool is_hidden =
+            IsHidden(highlight(first), darkest(first - 1, -1), ink(first - 1 - reach), reach,
+                     levels) &&
+            IsHidden(highlight(last), darkest(last + 1, 1), ink(last + 1 + reach), reach, levels);
+        for (int i = first; is_hidden && i <= last; ++i) darkness->is_seen[place(i)] = false;
       }
     }
   }
@@ -395,7 +435,7 @@ double InkComparison::Doubt(const cv::Mat& image, const PatternView& view,
     all[PrintDoubt::kUnlike] = 0;
     return seen;
   }
-  const Darkness darkness = MeasureDarkness(gray, levels);
+  const Darkness darkness = MeasureDarkness(gray, levels, EdgeRows(view));
   DoubtCross(darkness, doubts);
   DoubtRing(darkness, doubts);
   DoubtBoard(darkness, doubts);

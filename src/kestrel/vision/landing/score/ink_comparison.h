@@ -60,8 +60,13 @@ class InkComparison {
   // Index of a place on the ring beyond the end of an arm.
   std::size_t BeyondArm(int arm) const { return ring_[2 * arm].begin + kAroundSector; }
   Levels MeasureLevels(const Grays& gray) const;
-  Darkness MeasureDarkness(const Grays& gray, const Levels& levels) const;
-  void HideInHighlights(const Grays& gray, const Levels& levels, Darkness* darkness) const;
+  using EdgeRowsOfArms = std::array<int, kArms>;
+  EdgeRowsOfArms EdgeRows(const PatternView& view) const;
+  Darkness MeasureDarkness(const Grays& gray, const Levels& levels,
+                           const EdgeRowsOfArms& edge_rows) const;
+  static bool IsHidden(float highlight, float near, float far, int rows, const Levels& levels);
+  void HideInHighlights(const Grays& gray, const Levels& levels, const EdgeRowsOfArms& edge_rows,
+                        Darkness* darkness) const;
   // Set the doubts about arms and the white between them, about the ring, and about the white
   // around it.
   void DoubtCross(const Darkness& darkness, PrintDoubts* doubts) const;

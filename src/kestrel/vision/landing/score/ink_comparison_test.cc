@@ -29,9 +29,10 @@ class InkComparisonTest : public ::testing::Test {
     }
   };
 
-  Compared Compare(const cv::Mat& image) const {
+  Compared Compare(const cv::Mat& image) const { return Compare(image, pose_); }
+  Compared Compare(const cv::Mat& image, const RigidTransform& pose) const {
     Compared compared{};
-    const PatternView view(camera_, pose_, comparison_.extent_m(), {});
+    const PatternView view(camera_, pose, comparison_.extent_m(), {});
     EXPECT_TRUE(view.valid());
     compared.seen = comparison_.Doubt(image, view, &compared.doubts);
     return compared;
@@ -200,6 +201,22 @@ TEST_F(InkComparisonTest, OverexposedBoardExcusesNoMissingArm) {
     EXPECT_GT(Compare(beside)[PrintDoubt::kInklessArm], 0.9) << arms;
   }
   EXPECT_LT(Compare(1.5 * Draw(print_))[PrintDoubt::kInklessArm], 0.03);
+}
+
+// Neither blur, which makes the end of an arm look like a highlight that fades out, nor even light
+// on the ink excuses the rest of the arm.
+TEST_F(InkComparisonTest, OverexposedBoardExcusesNoShortArm) {
+  const Print short_arm = [this](double x, double y) {
+    return print_(x, y) && !(x > 0.16 && std::abs(y) < 0.06 && x < 0.39);
+  };
+  for (const double distance_m : {2.5, 5.0, 9.0}) {
+    const RigidTransform pose = PrintPose({0.1, -0.05, distance_m}, 0.4, 1, 0.3);
+    cv::Mat image = 1.5 * DrawPrint(camera_, pattern_, short_arm, pose);
+    for (const double veil : {0.0, 60.0}) {
+      image += veil;
+      EXPECT_GT(Compare(image, pose)[PrintDoubt::kInklessArm], 0.5) << distance_m << " " << veil;
+    }
+  }
 }
 
 }  // namespace
