@@ -39,7 +39,7 @@ constexpr double kSkyMargin = Radians(5);  // as the pipeline has it
 // What one way of searching found.
 struct Search {
   int found = 0, wrong = 0;
-  double farthest_m = 0;  // of those found
+  double farthest_m = 0;  // of the pads that are found
   std::vector<double> times_ms;
 };
 
@@ -114,8 +114,8 @@ class ObliqueFlight {
   }
   void Find(const cv::Mat& image, const TargetHint& hint, const Eigen::Vector3d& pad,
             Search* search) {
-    constexpr double kTolerated = 0.1;        // of the distance
-    const std::clock_t start = std::clock();  // of the processor: others may load it
+    constexpr double kTolerated = 0.1;        // share of the distance
+    const std::clock_t start = std::clock();  // time of the processor, which others may load
     const TargetReport report = detector_->Detect(image, hint, *workspace_);
     search->times_ms.push_back(1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
     if (!report.detection) return;

@@ -28,7 +28,7 @@ ViewFrame ViewFrameOf(const FollowView& /*view*/, const FollowObservation& obser
           FollowMap(observation), FollowShapes(observation), FollowFacts(observation)};
 }
 
-// Null where something else is looked for.
+// Returns null where something else is looked for.
 const HuntView* HuntIn(const TaskView& view) { return std::get_if<HuntView>(&view); }
 
 }  // namespace

@@ -28,7 +28,7 @@ const char* ToString(TargetPhase phase);  // "searching", "found", "lost", "cont
 struct LimitsInUse {
   double lean_share = 0;
   double speed_share = 0;
-  double climb_share = 0;     // share of the climb or descent that is done
+  double climb_share = 0;     // share of the limit of climb or descent
   std::string cannot_follow;  // why the target cannot be followed; empty: it can
 };
 

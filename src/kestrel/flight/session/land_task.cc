@@ -81,7 +81,8 @@ class LandingVision : public Vision {
   };
 
   void Watch(const LandingObservation& observation);
-  void WatchGimbal(std::size_t frames, PoseLookup pose);
+  void WatchGimbal(PoseLookup pose);
+  void AddFault(std::string fault);
   std::string OfCamera(std::size_t camera, const std::string& text) const;
   std::string WarningOf(std::size_t camera) const;
   void LimitSearch(const Frame& frame);
@@ -126,7 +127,8 @@ Observation LandingVision::Process(const Frame& frame) {
   if (is_live_) LimitSearch(frame);
   LandingObservation seen = pipeline_.Process(frame.image, frame.time, frame.camera);
   if (cameras_.size() > 1) Watch(seen);
-  WatchGimbal(++poses_[seen.pose], seen.pose);
+  ++poses_[seen.pose];
+  WatchGimbal(seen.pose);
   zooming_ += seen.is_zooming;
   ++snapshot_.frames;
   snapshot_.detections += seen.report.detection.has_value();
@@ -277,7 +279,6 @@ std::string LandingVision::LensWarning() const {
 
 // Notes what happens to the cameras.
 void LandingVision::Watch(const LandingObservation& observation) {
-  constexpr std::size_t kMost = 20;  // one that comes and goes shall not fill the memory
   if (!begin_) begin_ = observation.time;
   Camera& own = cameras_[observation.camera];
   ++own.frames;
@@ -285,19 +286,24 @@ void LandingVision::Watch(const LandingObservation& observation) {
   for (std::size_t i = 0; i < cameras_.size(); ++i) {
     const CameraState& state = pipeline_.camera_state(i);
     if (state.health == std::exchange(cameras_[i].health, state.health)) continue;
-    if (faults_.size() == kMost) continue;
-    faults_.push_back(fmt::format("at {:.2f} s {} {}", ToSeconds(state.since - *begin_),
-                                  cameras_[i].name, InWords(state)));
+    AddFault(fmt::format("at {:.2f} s {} {}", ToSeconds(state.since - *begin_), cameras_[i].name,
+                         InWords(state)));
   }
 }
 
-// Notes once in flight that the gimbal is silent. 'frames': so far with this 'pose'.
-void LandingVision::WatchGimbal(std::size_t frames, PoseLookup pose) {
+// Notes once in flight that the gimbal has been silent from the beginning.
+void LandingVision::WatchGimbal(PoseLookup pose) {
   constexpr std::size_t kMany = 40;
-  if (!is_live_ || pose != PoseLookup::kNoGimbal || frames != kMany) return;
-  faults_.push_back(
+  if (!is_live_ || pose != PoseLookup::kNoGimbal || poses_[pose] != kMany) return;
+  if (poses_.contains(PoseLookup::kFound) || poses_.contains(PoseLookup::kPredicted)) return;
+  AddFault(
       "no report of the gimbal, so that no frame has a place: is gimbal.device_id in the camera's "
       "file right? (kestrel doctor)");
+}
+
+void LandingVision::AddFault(std::string fault) {
+  constexpr std::size_t kMost = 20;  // a camera that comes and goes does not fill the memory
+  if (faults_.size() < kMost) faults_.push_back(std::move(fault));
 }
 
 std::string LandingVision::OfCamera(std::size_t camera, const std::string& text) const {

@@ -37,7 +37,7 @@ std::unique_ptr<Vision> VisionWith(double focal_px, std::optional<double> altitu
   return LandTask(options).MakeVision(camera);
 }
 
-constexpr double kFocal_px = 400;  // lens that takes the images
+constexpr double kFocal_px = 400;  // focal length of the images
 
 TEST(LandTask, WarnsThatTheGivenAltitudeIsWrong) {
   const cv::Mat image = DrawPattern(CameraModel(Camera(kFocal_px)), LandingPattern(),

@@ -11,9 +11,10 @@ namespace kestrel {
 namespace {
 
 constexpr std::size_t kWaitingSamples = 256;  // several seconds of poses of any autopilot
-constexpr std::size_t kWaitingFrames = 10;    // a camera: 30 per second, poses as late as below
-constexpr double kDelayMemory_s = 5;          // a large delay of a pose counts for so long
-constexpr double kLongestDelay_s = 0.3;       // a pose that is later is of no use
+constexpr std::size_t kWaitingFrames =
+    10;                                  // for each camera: 30 per second, poses as late as below
+constexpr double kDelayMemory_s = 5;     // a large delay of a pose counts for so long
+constexpr double kLongestDelay_s = 0.3;  // a pose that is later is of no use
 
 Duration PoseWaitOf(const LiveEventsOptions& options) {
   RequireValid(options);

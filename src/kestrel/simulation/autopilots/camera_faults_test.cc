@@ -182,6 +182,7 @@ TEST_P(TwoCamerasLandingTest, LandsOnCarAsWithOneCamera) {
   constexpr int kLandings = 5;
   constexpr double kMargin_m = 0.03;
   Landings one = Land({{}}, kLandings);
+  ASSERT_EQ(one.landed, kLandings);
   const TestEye wide{.sight_range_m = 15}, narrow{.sight_range_m = 60, .half_view_deg = 15};
   const TestEye ahead{.tilt_deg = 45};
   for (const TestEye& second : {narrow, ahead}) {

@@ -15,7 +15,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 constexpr double kDistance_m = 10, kHeight_m = 7;
-constexpr double kDown_deg = 35;  // where a fixed camera looks
+constexpr double kDown_deg = 35;  // how far below the horizon a fixed camera looks
 
 FlightOptions FollowFrom(const std::string& side) {
   FlightOptions options;

@@ -85,9 +85,9 @@ struct TestEye {
   double tilt_deg = 0;       // where it looks: 0 down, 90 ahead
   // What is wrong while the UAV is lower above the pad than 'wrong_below_m'.
   double wrong_below_m = std::numeric_limits<double>::infinity();
-  double late_s = 0;         // of the stamps
-  double turned_deg = 0;     // of the mount, about a horizontal axis of the body
-  double turn_axis_deg = 0;  // of that axis, from the body's x axis to the left
+  double late_s = 0;         // how late the stamps are
+  double turned_deg = 0;     // how far a fixed mount is turned, about a horizontal axis of the body
+  double turn_axis_deg = 0;  // where that axis lies, from the body's x axis to the left
   bool is_frozen = false;    // repeats its image
   bool is_stopped = false;   // sends no images
 };

@@ -68,10 +68,11 @@ class RegionSeen {
       }
     }
     const CameraModel& model = camera_->lens().camera();
-    constexpr double kMargin_px = 8;  // no lens bends an edge so far past its ends
-    is_whole_in_image_ = low.minCoeff() > kMargin_px &&
-                         high.x() < model.width_px() - 1 - kMargin_px &&
-                         high.y() < model.height_px() - 1 - kMargin_px;
+    // A lens bends edges past their ends, by less than a share of their length.
+    const double margin_px = 1 + 0.25 * (high - low).maxCoeff();
+    is_whole_in_image_ = low.minCoeff() > margin_px &&
+                         high.x() < model.width_px() - 1 - margin_px &&
+                         high.y() < model.height_px() - 1 - margin_px;
     low = low.max(0);
     high = high.min(Eigen::Array2d(model.width_px() - 1, model.height_px() - 1));
     if ((high < low).any()) return {};

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kFinest_px = 160;  // width; each coarser level has half of it
 constexpr int kFinestStep_px = 4;
-constexpr int kLighter = 3, kGrowth = 4;  // places in a Turn
+constexpr int kLighter = 3, kGrowth = 4;  // indices in a Turn
 
 // Returns the gray value between the pixels; NaN outside of the image.
 float GrayAt(const cv::Mat& image, const Eigen::Vector2f& at) {

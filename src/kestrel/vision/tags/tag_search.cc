@@ -79,7 +79,7 @@ void TagSearch::Begin(const cv::Rect& part) { tags_.finder.Begin(image_, part, &
 bool TagSearch::MayHaveSize(int pass, double distance_m, double error) const {
   return std::any_of(tags_.board.tags.begin(), tags_.board.tags.end(), [&](const TagModel& tag) {
     const double size_px = models_.camera.intrinsics().fx_px * tag.size_m / distance_m;
-    constexpr double kSlant = 0.6;  // extent of a tag that is seen from aside
+    constexpr double kSlant = 0.6;  // share of its extent that a tag shows when seen from aside
     return tags_.finder.Covers(pass, kSlant * size_px / (1 + error),
                                M_SQRT2 * size_px / (1 - error));
   });

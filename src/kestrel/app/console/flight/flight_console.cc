@@ -92,7 +92,7 @@ class FlightConsole::Page : public SinkWriter {
   }
 
  private:
-  // Null where something else is looked for.
+  // Returns null where something else is looked for.
   static const LandingObservation* LandingIn(const Observation& observation) {
     return std::get_if<LandingObservation>(&observation.seen);
   }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 
 #include <fmt/format.h>
 
@@ -12,9 +13,9 @@ namespace kestrel {
 namespace {
 
 constexpr std::array<std::string_view, 4> kSchemes = {"rtsp://", "rtsps://", "rtp://", "udp://"};
-// Names of passwords in a query and in GStreamer's pipelines.
-constexpr std::array<std::string_view, 6> kPasswordNames = {
-    "password=", "passwd=", "pass=", "pwd=", "user-pw=", "proxy-pw="};
+// Names of passwords in an address, and in GStreamer's pipelines.
+constexpr std::array<std::string_view, 4> kQueryNames = {"password", "passwd", "pass", "pwd"};
+constexpr std::array<std::string_view, 2> kPropertyNames = {"user-pw", "proxy-pw"};
 constexpr int kLatency_ms = 50;  // a packet that overtakes others waits so long for them
 
 // Returns where the pair "user:password" of an address ends, with its '@'; npos: it has none. A
@@ -26,15 +27,50 @@ std::size_t EndOfUser(std::string_view text, std::size_t begin) {
   return at == std::string_view::npos ? at : begin + at;
 }
 
-void HideValues(std::string_view name, std::string* text) {
+// Returns where a value in an address ends; "ADDRESS: what is wrong" ends one, too.
+std::size_t EndOfQueryValue(std::string_view text, std::size_t begin) {
+  const std::size_t end = std::min(text.find_first_of("& \"'\n", begin), text.size());
+  return end > begin && text[end - 1] == ':' ? end - 1 : end;
+}
+
+// Returns where the value of a property in a pipeline ends: a word, or text in quotes.
+std::size_t EndOfPropertyValue(std::string_view text, std::size_t begin) {
+  if (begin == text.size()) return begin;
+  const bool is_quoted = text[begin] == '"' || text[begin] == '\'';
+  for (std::size_t i = is_quoted ? begin + 1 : begin; i < text.size(); ++i) {
+    if (text[i] == '\\') {
+      ++i;
+    } else if (is_quoted ? text[i] == text[begin] : text[i] == ' ' || text[i] == '\n') {
+      return is_quoted ? i + 1 : i;
+    }
+  }
+  return text.size();
+}
+
+// Returns where the value after a property's name begins, behind '=' and a type; npos: nowhere.
+std::size_t BeginOfPropertyValue(std::string_view text, std::size_t i) {
+  i = text.find_first_not_of(' ', i);
+  if (i == std::string_view::npos || text[i] != '=') return std::string_view::npos;
+  i = std::min(text.find_first_not_of(' ', i + 1), text.size());
+  if (i == text.size() || text[i] != '(') return i;
+  const std::size_t type_end = text.find(')', i);
+  return type_end == std::string_view::npos ? i : type_end + 1;
+}
+
+// Replaces the values of a name by ***.
+void HideValues(std::string_view name, bool is_property, std::string* text) {
   for (std::size_t i = text->find(name); i != std::string::npos; i = text->find(name, i)) {
+    const char before = i > 0 ? (*text)[i - 1] : ' ';
     i += name.size();
-    const bool is_quoted = i < text->size() && ((*text)[i] == '"' || (*text)[i] == '\'');
-    const std::string_view ends = is_quoted ? "\"'" : "& \"'\n";
-    if (is_quoted) ++i;
-    std::size_t end = std::min(text->find_first_of(ends, i), text->size());
-    if (end > i && (*text)[end - 1] == ':') --end;  // "ADDRESS: what is wrong"
-    if (end > i) text->replace(i, end - i, "***");
+    if (std::isalnum(static_cast<unsigned char>(before)) || before == '-') continue;
+    const bool is_assigned = i < text->size() && (*text)[i] == '=';
+    const std::size_t begin = is_property   ? BeginOfPropertyValue(*text, i)
+                              : is_assigned ? i + 1
+                                            : std::string::npos;
+    if (begin == std::string::npos) continue;
+    const std::size_t end =
+        is_property ? EndOfPropertyValue(*text, begin) : EndOfQueryValue(*text, begin);
+    if (end > begin) text->replace(begin, end - begin, "***");
   }
 }
 
@@ -55,7 +91,8 @@ std::string WithoutPassword(std::string text) {
     const std::size_t end = EndOfUser(text, i);
     if (end != std::string::npos) text.replace(i, end - i, "***");
   }
-  for (const std::string_view name : kPasswordNames) HideValues(name, &text);
+  for (const std::string_view name : kQueryNames) HideValues(name, false, &text);
+  for (const std::string_view name : kPropertyNames) HideValues(name, true, &text);
   return text;
 }
 

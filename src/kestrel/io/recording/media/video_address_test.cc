@@ -25,7 +25,14 @@ TEST(VideoAddressTest, PasswordsAreNotShown) {
          "rtsp://10.0.0.2/main?user=me&password=***&channel=1"},
         {"rtspsrc location=rtsp://host/x user-id=me user-pw=secret ! decodebin",
          "rtspsrc location=rtsp://host/x user-id=me user-pw=*** ! decodebin"},
-        {"rtspsrc user-pw=\"sec ret\" ! decodebin", "rtspsrc user-pw=\"***\" ! decodebin"},
+        {"rtspsrc user-pw=\"sec ret\" ! decodebin", "rtspsrc user-pw=*** ! decodebin"},
+        {"rtspsrc user-pw=se&cret ! decodebin", "rtspsrc user-pw=*** ! decodebin"},
+        {"rtspsrc user-pw=\"it's x\" ! decodebin", "rtspsrc user-pw=*** ! decodebin"},
+        {"rtspsrc user-pw=\"a\\\"b\" ! decodebin", "rtspsrc user-pw=*** ! decodebin"},
+        {"rtspsrc user-pw = se\\ cret ! decodebin", "rtspsrc user-pw = *** ! decodebin"},
+        {"rtspsrc proxy-pw=(string)\"a b\" ! x", "rtspsrc proxy-pw=(string)*** ! x"},
+        {"rtsp://host/x?pwd=a:b", "rtsp://host/x?pwd=***"},
+        {"compass=1 bypass=2", "compass=1 bypass=2"},
         {"rtsp://host/x?password=secret: refused", "rtsp://host/x?password=***: refused"},
         {"/dev/video0", "/dev/video0"}}) {
     EXPECT_EQ(WithoutPassword(text), shown);
