@@ -11,9 +11,8 @@ namespace {
 
 TEST(RotationBetween, TurnsOneDirectionToOtherByShortestWay) {
   const Eigen::Vector3d from(3, -1, 0.5);
-  for (const Eigen::Vector3d& to :
-       {Eigen::Vector3d(0, 0, 2), Eigen::Vector3d(3, -1, 0.5), Eigen::Vector3d(-3, 1, -0.5),
-        Eigen::Vector3d(-3, 1, -0.50002), Eigen::Vector3d(-3, 1, -0.51)}) {
+  for (const Eigen::Vector3d& to : {Eigen::Vector3d(0, 0, 2), Eigen::Vector3d(3, -1, 0.5),
+                                    Eigen::Vector3d(-3, 1, -0.5), Eigen::Vector3d(-3, 1, -0.51)}) {
     const Eigen::Quaterniond rotation = RotationBetween(from, to);
     EXPECT_NEAR(rotation.norm(), 1, 1e-9);
     EXPECT_LT((rotation * from.normalized() - to.normalized()).norm(), 1e-6);
