@@ -97,7 +97,7 @@ bool CameraWatch::AddSighting(std::size_t camera, const CameraSighting& sighting
         cameras_.begin(), cameras_.end(),
         [](const Watched& each) { return each.state.health == CameraHealth::kContradicts; });
     moved_by_ = own.outside > 0 && are_all_used ? std::optional(camera) : std::nullopt;
-    for (Watched& each : cameras_) each.outside = 0;
+    own.outside = 0;
     confirmed_ = camera;
     return false;
   }
@@ -153,22 +153,15 @@ bool CameraWatch::Reconsider(std::size_t camera, const CameraSighting& sighting,
   return false;
 }
 
-// Returns the time of the oldest sighting that is kept, at least 'earliest'.
-Time CameraWatch::OldestSince(const Watched& camera, Time earliest) {
-  const std::size_t count = camera.latest.size();
-  if (camera.sightings == 0) return earliest;
-  const std::size_t oldest = camera.sightings < count ? 0 : camera.sightings % count;
-  return std::max(earliest, camera.latest[oldest].time);
-}
-
-// Returns the mean of the sightings since 'begin'; nothing where there are too few.
-std::optional<CameraSighting> CameraWatch::MeanSince(const Watched& camera, Time begin) {
+// Returns the mean of the latest sightings; nothing where there are too few.
+std::optional<CameraSighting> CameraWatch::LatestMean(const Watched& camera, Time time) {
+  constexpr Duration kRecent = std::chrono::milliseconds(1600);
   constexpr int kLeast = 8;
   CameraSighting mean;
   int count = 0;
   for (std::size_t i = 0; i < std::min(camera.sightings, camera.latest.size()); ++i) {
     const CameraSighting& each = camera.latest[i];
-    if (each.time < begin) continue;
+    if (time - each.time > kRecent) continue;
     ++count;
     mean.distance_m += each.distance_m;
     mean.turn += each.turn;
@@ -183,18 +176,15 @@ std::optional<CameraSighting> CameraWatch::MeanSince(const Watched& camera, Time
   return mean;
 }
 
-// What shifts the track shifts the means of both cameras over the same time, and not their
-// difference.
+// What shifts the track shifts the means of both cameras, and not their difference.
 std::optional<CameraWatch::Turn> CameraWatch::TurnAgainstOthers(std::size_t camera,
                                                                 Time time) const {
-  constexpr Duration kRecent = std::chrono::milliseconds(1600);
-  const Time begin = OldestSince(cameras_[camera], time - kRecent);
+  const auto own = LatestMean(cameras_[camera], time);
+  if (!own) return std::nullopt;
   for (std::size_t i = 0; i < cameras_.size(); ++i) {
     if (i == camera || !cameras_[i].state.is_used()) continue;
-    const Time both_begin = OldestSince(cameras_[i], begin);
-    const auto own = MeanSince(cameras_[camera], both_begin);
-    const auto other = MeanSince(cameras_[i], both_begin);
-    if (!own || !other) continue;
+    const auto other = LatestMean(cameras_[i], time);
+    if (!other) continue;
     const double sigma = std::sqrt(own->turn_variance + other->turn_variance);
     const double most = kTurned_rad + kDisplaced_m / own->distance_m + kSigmas * sigma;
     const double turn = WithoutLag(own->turn - other->turn, own->turn_by_lag).norm();

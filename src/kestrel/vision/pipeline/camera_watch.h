@@ -102,11 +102,10 @@ class CameraWatch {
   static void Set(Watched* camera, CameraHealth health, Time time);
   void UseThoseThatAreAlone(Time time);
   static bool CountOutside(Watched* camera);
-  static double MedianOffset(const Watched& camera);
+  static double MedianOffset(const Watched& camera);  // of the latest kSightings
   bool Reconsider(std::size_t camera, const CameraSighting& sighting, const Refutes& refutes);
   void Confirm(std::size_t camera);
-  static Time OldestSince(const Watched& camera, Time earliest);
-  static std::optional<CameraSighting> MeanSince(const Watched& camera, Time begin);
+  static std::optional<CameraSighting> LatestMean(const Watched& camera, Time time);
   std::optional<Turn> TurnAgainstOthers(std::size_t camera, Time time) const;
   std::size_t Contradicting(std::size_t camera, std::size_t other, const Refutes& refutes) const;
   void LeaveOut(std::size_t camera, double offset_m, Time time);

@@ -559,14 +559,12 @@ void LandingPipeline::Impl::Judge(const TargetMeasurement& measurement,
     const Eigen::Vector3d offset_m = measurement.position_in_world - expected->motion.position();
     sighting = SightingBy(*expected, measurement, LagSigma_s() * slip_mps, observation);
     if (sighting.offset_m > kFarthest_rad * sighting.distance_m) return;
-    const Eigen::Matrix3d covariance =
-        measurement.covariance + expected->motion.covariance.topLeftCorner<3, 3>();
-    // A mount that is wrong makes larger offsets than noise and lag do.
-    const bool may_be_late = offset_m.dot(covariance.llt().solve(offset_m)) <
-                             CameraWatch::kSigmas * CameraWatch::kSigmas;
+    // More than that is no lag, but a mount that is wrong.
+    const bool may_be_late = sighting.offset_m < CameraWatch::kSigmas * sighting.sigma_m;
     if (may_be_late && eye != &eyes_.front() &&
         watch_.IsSeenByOthers(observation.camera, observation.time, kFresh)) {
-      eye->lag.Add(offset_m, slip_mps, covariance);
+      eye->lag.Add(offset_m, slip_mps,
+                   measurement.covariance + expected->motion.covariance.topLeftCorner<3, 3>());
     }
   }
   const bool is_one_left_out = watch_.AddSighting(

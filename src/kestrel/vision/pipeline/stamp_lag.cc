@@ -15,7 +15,7 @@ namespace {
 
 constexpr Duration kLeastSpacing = std::chrono::milliseconds(45);
 constexpr Duration kWindow = std::chrono::milliseconds(3500);
-constexpr double kEarliest_s = -0.35, kLatest_s = 0.55, kStep_s = 0.05;
+constexpr double kEarliest_s = -0.3, kLatest_s = 0.5, kStep_s = 0.05;
 constexpr std::size_t kLeastSightings = 15;
 // Coefficients of the path's polynomial: a car on a curve fits one of third order for seconds.
 constexpr int kTerms = 4;
