@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an oblique camera finds on flights towards a pad on a standing vehicle, by tilt and height,
-// in the whole image and in the part that shows the ground. Each image is searched by itself.
-// Usage: oblique_accuracy [--target KIND] [--flights N] [--seed N]
+// Prints, by tilt and height, what an oblique camera finds on flights towards a pad on a standing
+// vehicle, in the whole image and in the part that shows the ground. Each image is searched by
+// itself. Usage: oblique_accuracy [--target KIND] [--flights N] [--seed N]
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,10 +19,10 @@
 
 #include "kestrel/core/base/hash.h"
 #include "kestrel/core/base/robust_statistics.h"
-#include "kestrel/core/geometry/angles.h"
 #include "kestrel/simulation/recordings/second_camera.h"
 #include "kestrel/simulation/rendering/flight_camera.h"
 #include "kestrel/simulation/scene/landing_scene.h"
+#include "kestrel/vision/pipeline/landing_pipeline.h"
 #include "kestrel/vision/targets/make_target_detector.h"
 #include "pad_settings.h"
 #include "report_main.h"
@@ -34,9 +34,8 @@ constexpr double kView_deg = 90;
 constexpr double kFarthest_m = 40, kStep_m = 1.5;  // horizontal distance from the pad
 constexpr std::array kTilts_deg = {45.0, 70.0, 80.0};
 constexpr std::array kHeights_m = {5.0, 10.0, 15.0};
-constexpr double kSkyMargin = Radians(5);  // as the pipeline has it
 
-// What one way of searching found.
+// Results of one way of searching.
 struct Search {
   int found = 0, wrong = 0;
   double farthest_m = 0;  // of the pads that are found
@@ -100,10 +99,10 @@ class ObliqueFlight {
     hint.altitude_m = height_m;
     hint.up_in_camera = world_from_camera_.rotation.conjugate() * Eigen::Vector3d::UnitZ();
     Find(image, hint, pad, &views->whole);
-    hint.sky_above_rad = kSkyMargin;
+    hint.sky_above_rad = LandingPipeline::kSkyMargin_rad;
     Find(image, hint, pad, &views->part);
   }
-  // All of it.
+  // True if all of the pad is in view.
   bool IsInView(const Eigen::Vector3d& pad_in_camera) const {
     constexpr double kRadius_m = 0.5;
     Eigen::Vector2d pixel;

@@ -78,12 +78,12 @@ class TrueDetector : public TargetDetector {
   mutable Random random_{1};
 };
 
-// What a camera sees, and what is wrong with it.
+// View and faults of a camera.
 struct TestEye {
   double sight_range_m = kTestSightRange_m;
   double half_view_deg = 0;  // 0: that of the flight
   double tilt_deg = 0;       // where it looks: 0 down, 90 ahead
-  // What is wrong while the UAV is lower above the pad than 'wrong_below_m'.
+  // Faults, while the UAV is lower above the pad than 'wrong_below_m'.
   double wrong_below_m = std::numeric_limits<double>::infinity();
   double late_s = 0;         // how late the stamps are
   double turned_deg = 0;     // how far a fixed mount is turned, about a horizontal axis of the body
@@ -161,7 +161,7 @@ class PointedFlight : public LinkedFlight {
   const CameraState& StateOf(std::size_t camera) const { return pipeline_.camera_state(camera); }
   // Time for which a camera has been left out because it contradicts the other, s.
   double LeftOutFor(std::size_t camera) const { return eyes_[camera].left_out_s; }
-  // It has been left out, for whatever reason.
+  // True if the camera has been left out, for whatever reason.
   bool HasBeenLeftOut(std::size_t camera) const { return eyes_[camera].has_been_left_out; }
   bool has_track() const { return track_.state == TrackState::kTracking; }
 

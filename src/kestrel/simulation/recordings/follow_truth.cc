@@ -45,7 +45,7 @@ class RegionSeen {
     region.place_in_world = motion_(time_s).translation;
     region.velocity_in_world = VelocityOf(motion_, time_s);
     region.box_px = BoxAt(time_s);
-    if (region.box_px.area() > 0) region.visible_fraction = VisiblePart(time_s);
+    if (region.box_px.area() > 0) region.visible_fraction = VisiblePart(region.box_px, time_s);
     return region;
   }
 
@@ -57,7 +57,7 @@ class RegionSeen {
   }
 
   // Around all corners, as far as they are in the image.
-  cv::Rect2d BoxAt(double time_s) {
+  cv::Rect2d BoxAt(double time_s) const {
     Eigen::Array2d low(1e9, 1e9), high(-1e9, -1e9);
     for (const Surface& surface : own_.surfaces) {
       for (int corner = 0; corner < 4; ++corner) {
@@ -68,20 +68,26 @@ class RegionSeen {
       }
     }
     const CameraModel& model = camera_->lens().camera();
-    // A lens bends edges past their ends, by less than a share of their length.
-    const double margin_px = 1 + 0.25 * (high - low).maxCoeff();
-    is_whole_in_image_ = low.minCoeff() > margin_px &&
-                         high.x() < model.width_px() - 1 - margin_px &&
-                         high.y() < model.height_px() - 1 - margin_px;
     low = low.max(0);
     high = high.min(Eigen::Array2d(model.width_px() - 1, model.height_px() - 1));
     if ((high < low).any()) return {};
     return {low.x(), low.y(), high.x() - low.x() + 1, high.y() - low.y() + 1};
   }
 
-  // Counts points on the surfaces that face the camera, each by the solid angle of its part.
-  double VisiblePart(double time_s) const {
+  // True if all of what the box is around is in the image. A lens bends edges past their ends, by
+  // less than a share of their length.
+  bool IsWholeInImage(const cv::Rect2d& box) const {
+    const CameraModel& model = camera_->lens().camera();
+    const double margin_px = 1 + 0.25 * std::max(box.width, box.height);
+    return box.x > margin_px && box.y > margin_px && box.br().x < model.width_px() - margin_px &&
+           box.br().y < model.height_px() - margin_px;
+  }
+
+  // Counts points on the surfaces that face the camera, each by the solid angle of its part. 'box':
+  // see BoxAt.
+  double VisiblePart(const cv::Rect2d& box, double time_s) const {
     constexpr int kSteps = 5;
+    const bool is_whole = IsWholeInImage(box);
     const Vector3d eye = camera_->WorldFromCamera(time_s).translation;
     const RigidTransform pose = motion_(time_s);
     double all = 0, visible = 0;
@@ -95,7 +101,7 @@ class RegionSeen {
         const double weight = area.dot(way) / std::pow(way.norm(), 3);
         if (weight <= 0 || IsHidden(own_, time_s, eye, point)) continue;
         all += weight;
-        const bool is_in_image = is_whole_in_image_ || IsInImage(PixelOf(surface, x, y, time_s));
+        const bool is_in_image = is_whole || IsInImage(PixelOf(surface, x, y, time_s));
         if (is_in_image && !IsHidden(others_, time_s, eye, point)) visible += weight;
       }
     }
@@ -112,7 +118,6 @@ class RegionSeen {
   const SimulatedFlight& flight_;
   std::shared_ptr<const FlightCamera> camera_;  // with its lens at the time that is looked at
   World own_, others_;
-  bool is_whole_in_image_ = false;  // with a margin
 };
 
 }  // namespace

@@ -15,7 +15,7 @@ constexpr Duration kSilence = std::chrono::seconds(1);
 constexpr Duration kBlindness = std::chrono::seconds(3);  // after which the track is lost, too
 constexpr int kFrozenImages = 5;
 constexpr int kConfirmations = 5;
-// By how much the mounts of two cameras may be turned, and their places wrong, against each other.
+// Tolerated turn and displacement of the mounts of two cameras against each other.
 constexpr double kTurned_rad = 0.028, kDisplaced_m = 0.03;
 
 // Returns what any error of the lag, the largest of which turns the view by 'by_lag', leaves of a
@@ -176,7 +176,7 @@ std::optional<CameraSighting> CameraWatch::LatestMean(const Watched& camera, Tim
   return mean;
 }
 
-// What shifts the track shifts the means of both cameras, and not their difference.
+// A track that is shifted shifts the means of both cameras, and not their difference.
 std::optional<CameraWatch::Turn> CameraWatch::TurnAgainstOthers(std::size_t camera,
                                                                 Time time) const {
   const auto own = LatestMean(cameras_[camera], time);
@@ -186,7 +186,8 @@ std::optional<CameraWatch::Turn> CameraWatch::TurnAgainstOthers(std::size_t came
     const auto other = LatestMean(cameras_[i], time);
     if (!other) continue;
     const double sigma = std::sqrt(own->turn_variance + other->turn_variance);
-    const double most = kTurned_rad + kDisplaced_m / own->distance_m + kSigmas * sigma;
+    const double most =
+        kTurned_rad + kDisplaced_m / own->distance_m + CameraSighting::kSigmas * sigma;
     const double turn = WithoutLag(own->turn - other->turn, own->turn_by_lag).norm();
     if (turn <= most) continue;
     const double offset_m = turn * own->distance_m;
@@ -203,7 +204,7 @@ void CameraWatch::Confirm(std::size_t camera) {
   confirmed_ = camera;
 }
 
-// Of two cameras, the one to leave out; 'camera' where nothing else decides.
+// Returns the one of two cameras to leave out; 'camera' where nothing else decides.
 std::size_t CameraWatch::Contradicting(std::size_t camera, std::size_t other,
                                        const Refutes& refutes) const {
   if (refutes(other, camera)) return other;

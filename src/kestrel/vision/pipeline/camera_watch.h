@@ -8,36 +8,14 @@
 #include <optional>
 #include <vector>
 
-#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 #include "kestrel/core/base/time.h"
+#include "kestrel/vision/pipeline/camera_sighting.h"
 #include "kestrel/vision/pipeline/camera_state.h"
 #include "kestrel/vision/pipeline/repeated_image.h"
 
 namespace kestrel {
-
-// A sighting's place by the track.
-enum class SightingPlace {
-  kStart,    // there was no track; it begins here
-  kInside,   // where the track is, as far as mounts and clocks can be wrong
-  kOutside,  // elsewhere
-};
-
-// Where a frame showed the target, by the track.
-struct CameraSighting {
-  Time time{};
-  SightingPlace place = SightingPlace::kStart;
-  double offset_m = 0;    // from the track
-  double sigma_m = 0;     // standard deviation of the offset of a camera that is right
-  double distance_m = 0;  // from the camera
-  // Rotation of the camera that explains the offset, across the line of sight, in the body's axes
-  // (rad), with its variance per axis (rad^2); and its part by the largest error of the lag between
-  // the cameras' clocks.
-  Eigen::Vector3d turn = Eigen::Vector3d::Zero();
-  double turn_variance = 0;
-  Eigen::Vector3d turn_by_lag = Eigen::Vector3d::Zero();
-};
 
 // Decides which of several cameras with one track can be used. A camera contradicts when several of
 // its sightings in a row are outside of the track while those of another camera are inside, or when
@@ -51,9 +29,6 @@ class CameraWatch {
  public:
   // Whether the own views of 'camera' show that it is the one of the two that is wrong.
   using Refutes = std::function<bool(std::size_t camera, std::size_t other)>;
-
-  // How much a mount may be wrong, and how much of its noise a sighting may have.
-  static constexpr double kTolerated_rad = 0.035, kSigmas = 3;
 
   explicit CameraWatch(std::size_t cameras) : cameras_(cameras) {}
 

@@ -48,34 +48,6 @@ Duration ClockOffset(const CameraCalibration& calibration) {
   return calibration.clock_offset.value_or(Duration::zero());
 }
 
-// 'lag_m': offset by one standard deviation of the lag between the cameras.
-CameraSighting SightingBy(const TargetEstimate& expected, const TargetMeasurement& measurement,
-                          const Eigen::Vector3d& lag_m, const LandingObservation& observation) {
-  const Eigen::Vector3d sight =
-      measurement.position_in_world - observation.world_from_camera->translation;
-  const Eigen::Vector3d offset_m = measurement.position_in_world - expected.motion.position();
-  const double square = sight.squaredNorm();
-  const Eigen::Quaterniond body_from_world =
-      (observation.world_from_camera->rotation * observation.camera_from_body->rotation)
-          .conjugate();
-  const auto turn_by = [&](const Eigen::Vector3d& shift_m) -> Eigen::Vector3d {
-    return body_from_world * sight.cross(shift_m) / square;
-  };
-  CameraSighting sighting;
-  sighting.time = observation.time;
-  sighting.offset_m = offset_m.norm();
-  sighting.sigma_m = std::hypot(expected.position_sigma_m(), lag_m.norm());
-  sighting.distance_m = std::sqrt(square);
-  const double most_m =
-      CameraWatch::kSigmas * sighting.sigma_m + CameraWatch::kTolerated_rad * sighting.distance_m;
-  sighting.place = sighting.offset_m > most_m ? SightingPlace::kOutside : SightingPlace::kInside;
-  sighting.turn = turn_by(offset_m);
-  sighting.turn_by_lag = turn_by(CameraWatch::kSigmas * lag_m);
-  const double along = sight.dot(measurement.covariance * sight) / square;
-  sighting.turn_variance = (measurement.covariance.trace() - along) / (2 * square);
-  return sighting;
-}
-
 }  // namespace
 
 const char* ToString(PositionMethod method) {
@@ -379,10 +351,10 @@ void LandingPipeline::Impl::Detect(const cv::Mat& image, Eye* eye,
 // pad; and of none where the pad has shown that it is wrong.
 std::optional<double> LandingPipeline::Impl::SkyAbove(const Eye& eye,
                                                       const LandingObservation& observation) {
-  constexpr double kMargin = Radians(5), kSigmas = 3;
+  constexpr double kSigmas = 3;
   constexpr int kRound = 4;
   if (eye.misses % kRound == kRound - 1 || eye.contradictions.Attitude()) return std::nullopt;
-  return kMargin + kSigmas * observation.pose_uncertainty.attitude_rad;
+  return kSkyMargin_rad + kSigmas * observation.pose_uncertainty.attitude_rad;
 }
 
 // Returns by how much (m) the given altitude is too large, as far as the detections contradict it.
@@ -557,10 +529,15 @@ void LandingPipeline::Impl::Judge(const TargetMeasurement& measurement,
   if (observation.fate != MeasurementFate::kStarted) {
     if (!expected) return;
     const Eigen::Vector3d offset_m = measurement.position_in_world - expected->motion.position();
-    sighting = SightingBy(*expected, measurement, LagSigma_s() * slip_mps, observation);
+    const RigidTransform& world_from_camera = *observation.world_from_camera;
+    sighting = SightingBy(
+        {measurement.position_in_world - world_from_camera.translation, measurement.covariance,
+         offset_m, expected->position_sigma_m(), LagSigma_s() * slip_mps},
+        (world_from_camera.rotation * observation.camera_from_body->rotation).conjugate(),
+        observation.time);
     if (sighting.offset_m > kFarthest_rad * sighting.distance_m) return;
-    // More than that is no lag, but a mount that is wrong.
-    const bool may_be_late = sighting.offset_m < CameraWatch::kSigmas * sighting.sigma_m;
+    // A mount that is wrong makes larger offsets than noise and lag do.
+    const bool may_be_late = sighting.offset_m < CameraSighting::kSigmas * sighting.sigma_m;
     if (may_be_late && eye != &eyes_.front() &&
         watch_.IsSeenByOthers(observation.camera, observation.time, kFresh)) {
       eye->lag.Add(offset_m, slip_mps,

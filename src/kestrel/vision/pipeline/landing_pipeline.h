@@ -15,6 +15,7 @@
 #include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/calibration.h"
+#include "kestrel/core/geometry/angles.h"
 #include "kestrel/core/geometry/rigid_transform.h"
 #include "kestrel/core/poses/gimbal_history.h"
 #include "kestrel/core/poses/pose_history.h"
@@ -128,6 +129,9 @@ std::string MissInWords(const LandingObservation& observation);
 // time.
 class LandingPipeline {
  public:
+  // Part above the horizon that is searched for a pad, with an attitude that is exact.
+  static constexpr double kSkyMargin_rad = Radians(5);
+
   // Throws InputError when calibration or options are invalid.
   LandingPipeline(const CameraCalibration& calibration, const LandingPipelineOptions& options);
   // The same for a detector of one's own, of this calibration's camera. The options 'target' and

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numbers>
 #include <numeric>
 #include <optional>
@@ -14,6 +13,7 @@
 #include "kestrel/core/image/gray_sampling.h"
 #include "kestrel/vision/landing/image_properties.h"
 #include "kestrel/vision/landing/score/gray_doubts.h"
+#include "kestrel/vision/landing/score/ink_in_highlights.h"
 
 namespace kestrel {
 namespace {
@@ -50,7 +50,6 @@ constexpr Ramp kIsStroke{0.3f, 0.8f};
 constexpr Ramp kInAnyLight{-1, 1};        // from white in a highlight to ink
 constexpr float kBeyondWhite = 0.15f;     // above lit white, share of the contrast
 constexpr float kVeiled = 0.2f;           // above the darkest ink, share of the contrast
-constexpr float kEdgePx = 2.2f;           // from a sharp edge to ink that it does not brighten
 constexpr float kLeastOfContrast = 0.25;  // share of the whole print's contrast, in any direction
 constexpr double kEnoughSeen = 0.25;      // least share of places in view by which a part is judged
 
@@ -351,7 +350,7 @@ InkComparison::Darkness InkComparison::MeasureDarkness(const Grays& gray, const 
   return darkness;
 }
 
-// Returns how many rows of an arm the blur of a sharp edge may brighten, at least two.
+// Returns how many rows of an arm the blur of a sharp edge may brighten.
 InkComparison::EdgeRowsOfArms InkComparison::EdgeRows(const PatternView& view) const {
   EdgeRowsOfArms rows;
   for (int k = 0; k < kArms; ++k) {
@@ -359,63 +358,36 @@ InkComparison::EdgeRowsOfArms InkComparison::EdgeRows(const PatternView& view) c
     const std::array x_m{x_m_[first], x_m_[last]}, y_m{y_m_[first], y_m_[last]};
     std::array<float, 2> x_px, y_px;
     view.Project(x_m.data(), y_m.data(), x_m.size(), x_px.data(), y_px.data());
-    const float row_px = std::hypot(x_px[1] - x_px[0], y_px[1] - y_px[0]) / (kAlongArm - 1);
-    rows[k] = row_px * kAlongArm > kEdgePx
-                  ? std::max(2, static_cast<int>(std::ceil(kEdgePx / row_px)))
-                  : kAlongArm;
+    const float length_px = std::hypot(x_px[1] - x_px[0], y_px[1] - y_px[0]);
+    rows[k] = StrokeEdgeRows(length_px / (kAlongArm - 1), kAlongArm);
   }
   return rows;
 }
 
-// True if a highlight may be the reason that a place is as bright as 'highlight', by the ink 'rows'
-// rows away from it and one row farther. A highlight fades out, so that this ink is veiled; and the
-// logarithm of the light rises less and less towards its middle. Next to a sharp edge the ink is as
-// dark as elsewhere, or evenly veiled. Infinite: unknown.
-bool InkComparison::IsHidden(float highlight, float near, float far, int rows,
-                             const Levels& levels) {
-  if (near < levels.veiled) return false;
-  constexpr float kNoise = 3;
-  const float veil = near - levels.ink, farther = std::max(kNoise, far - kNoise - levels.ink);
-  const float rise = std::max(1.0f, veil / farther);
-  return !std::isfinite(veil * farther) ||
-         veil * std::pow(rise, static_cast<float>(rows)) > highlight - levels.ink;
-}
-
-// Ink that a highlight hides is out of view. White between sharp edges is the board's: when
-// overexposed it is as bright as a highlight.
+// Ink that a highlight hides is out of view.
 void InkComparison::HideInHighlights(const Grays& gray, const Levels& levels,
                                      const EdgeRowsOfArms& edge_rows, Darkness* darkness) const {
-  constexpr float kUnknown = std::numeric_limits<float>::infinity();
-  const auto known = [&](std::size_t place) { return gray[place] < 0 ? kUnknown : gray[place]; };
-  float hub = kUnknown;
+  const auto known = [&](std::size_t place) {
+    return gray[place] < 0 ? kUnknownGray : gray[place];
+  };
+  float hub = kUnknownGray;
   for (const Range& arm : arm_) hub = std::min(hub, known(arm.begin));
   for (int k = 0; k < kArms; ++k) {
     for (std::size_t side = 0; side < kAcross; ++side) {
-      const auto place = [&](int row) { return arm_[k].begin + kAcross * row + side; };
-      const auto highlight = [&](int row) { return levels.highlight[sector_[place(row)]]; };
-      const auto is_bright = [&](int row) { return gray[place(row)] >= highlight(row); };
-      // Ink from the middle of the print to the ring.
-      const auto ink = [&](int row) {
-        return row < -1 || row > kAlongArm ? kUnknown
-               : row < 0                   ? hub
-                                           : known(row < kAlongArm ? place(row) : BeyondArm(k));
-      };
-      const int reach = edge_rows[k];
-      for (int row = 0; row < kAlongArm; ++row) {
-        if (!is_bright(row)) continue;
-        const int first = row;
-        while (row + 1 < kAlongArm && is_bright(row + 1)) ++row;
-        const int last = row;
-        const auto darkest = [&](int begin, int step) {
-          float value = kUnknown;
-          for (int i = 0; i < reach; ++i) value = std::min(value, ink(begin + i * step));
-          return value;
-        };
-        const bool is_hidden =
-            IsHidden(highlight(first), darkest(first - 1, -1), ink(first - 1 - reach), reach,
-                     levels) &&
-            IsHidden(highlight(last), darkest(last + 1, 1), ink(last + 1 + reach), reach, levels);
-        for (int i = first; is_hidden && i <= last; ++i) darkness->is_seen[place(i)] = false;
+      // From the middle of the print to the ring.
+      std::array<float, kAlongArm + 2> stroke;
+      std::array<float, kAlongArm> highlight;
+      stroke.front() = hub;
+      stroke.back() = known(BeyondArm(k));
+      for (std::size_t row = 0; row < highlight.size(); ++row) {
+        const std::size_t place = arm_[k].begin + kAcross * row + side;
+        stroke[row + 1] = known(place);
+        highlight[row] = levels.highlight[sector_[place]];
+      }
+      const auto hidden =
+          InkInHighlights(stroke, highlight, {levels.ink, levels.veiled, edge_rows[k]});
+      for (std::size_t row = 0; row < highlight.size(); ++row) {
+        if (hidden[row]) darkness->is_seen[arm_[k].begin + kAcross * row + side] = false;
       }
     }
   }

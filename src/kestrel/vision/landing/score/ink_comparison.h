@@ -64,7 +64,6 @@ class InkComparison {
   EdgeRowsOfArms EdgeRows(const PatternView& view) const;
   Darkness MeasureDarkness(const Grays& gray, const Levels& levels,
                            const EdgeRowsOfArms& edge_rows) const;
-  static bool IsHidden(float highlight, float near, float far, int rows, const Levels& levels);
   void HideInHighlights(const Grays& gray, const Levels& levels, const EdgeRowsOfArms& edge_rows,
                         Darkness* darkness) const;
   // Set the doubts about arms and the white between them, about the ring, and about the white
