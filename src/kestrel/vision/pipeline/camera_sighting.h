@@ -35,11 +35,11 @@ struct CameraSighting {
 
 // A sighting beside a track, in world axes (m).
 struct OffsetFromTrack {
-  Eigen::Vector3d sight;      // from the camera to the target
-  Eigen::Matrix3d covariance; // its covariance, m^2
-  Eigen::Vector3d offset_m;   // from the track to the target
-  double track_sigma_m;       // standard deviation of the track per axis
-  Eigen::Vector3d lag_m;      // offset by one standard deviation of the lag between the cameras
+  Eigen::Vector3d sight;       // from the camera to the target
+  Eigen::Matrix3d covariance;  // its covariance, m^2
+  Eigen::Vector3d offset_m;    // from the track to the target
+  double track_sigma_m;        // standard deviation of the track per axis
+  Eigen::Vector3d lag_m;       // offset by one standard deviation of the lag between the cameras
 };
 CameraSighting SightingBy(const OffsetFromTrack& by, const Eigen::Quaterniond& body_from_world,
                           Time time);
