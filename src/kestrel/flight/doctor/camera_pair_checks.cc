@@ -116,11 +116,10 @@ Finding CheckCamerasTogether(const CameraSetup& first, const CameraSetup& furthe
   const double distance_m = MedianOf(std::move(distances_m));
   const double apart_m = lag.apart.mean.norm();
   const double ms = kMilliseconds * std::abs(lag.late_s);
-  const std::string measured =
-      fmt::format("{:.0f} cm apart at {:.1f} m, {}", kPercent * apart_m, distance_m,
-                  lag.late_s == 0 ? "at the same time"
-                                  : fmt::format("{:.0f} ms {}", ms,
-                                                lag.late_s > 0 ? "later" : "earlier"));
+  const std::string measured = fmt::format(
+      "{:.0f} cm apart at {:.1f} m, {}", kPercent * apart_m, distance_m,
+      lag.late_s == 0 ? "at the same time"
+                      : fmt::format("{:.0f} ms {}", ms, lag.late_s > 0 ? "later" : "earlier"));
   if (std::abs(lag.late_s) > kLate_s) {
     Finding finding = Doubtful(
         check, measured + ": they see the same place at different times",
