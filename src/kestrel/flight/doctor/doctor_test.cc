@@ -69,13 +69,27 @@ TEST(DoctorTest, DelayOfVideoIsJudgedByItsUse) {
     DoctorObservations setup = GoodSetup(AutopilotKind::kArduPilot);
     setup.camera.comes_late = true;
     setup.camera.delay = given.delay;
-    const Finding finding = CheckVideoDelay(setup.camera, given.target_mps);
+    setup.use.target_mps = given.target_mps;
+    const Finding finding = CheckVideoDelay(setup.camera, setup.use);
     EXPECT_EQ(finding.verdict, given.verdict) << given.words;
     EXPECT_THAT(finding.measured, HasSubstr(given.words));
     std::vector<std::string> checks;
     for (const Finding& other : Check(setup)) checks.push_back(other.check);
     EXPECT_THAT(checks, Contains("video delay"));
   }
+}
+
+TEST(DoctorTest, VideoWithGapsIsTooOldForGuidance) {
+  DoctorObservations setup = GoodGuidedSetup(AutopilotKind::kArduPilot);
+  setup.camera.comes_late = true;
+  setup.camera.delay = ClockEstimate{-0.2, 0.004};
+  EXPECT_EQ(CheckVideoDelay(setup.camera, setup.use).verdict, Verdict::kGood);
+  std::erase_if(setup.camera.frames, [](const FrameSample& frame) {
+    return (frame.stamp - FrameTime(0)) % std::chrono::seconds(1) > std::chrono::milliseconds(500);
+  });
+  const Finding finding = CheckVideoDelay(setup.camera, setup.use);
+  EXPECT_EQ(finding.verdict, Verdict::kDoubtful);
+  EXPECT_THAT(finding.measured, HasSubstr("climbs after 0.5 s"));
 }
 
 TEST(DoctorTest, ListsEveryCheck) {

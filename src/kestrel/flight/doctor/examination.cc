@@ -331,7 +331,7 @@ namespace {
 // The checks of one camera.
 std::vector<Finding> CheckSetup(const DoctorObservations& observations) {
   std::vector<Finding> findings = CheckCalibration(observations);
-  std::ranges::copy(CheckCamera(observations.camera, observations.use.target_mps),
+  std::ranges::copy(CheckCamera(observations.camera, observations.use),
                     std::back_inserter(findings));
   std::ranges::copy(CheckMount(observations), std::back_inserter(findings));
   return findings;

@@ -33,6 +33,7 @@ struct DoctorUse {
   bool points = false;                 // and points the gimbal, if there is one
   std::optional<double> target_mps;    // speed of a target that moves; nothing: it stands
   double tilt_deg = 30;                // by which guidance may lean
+  double sight_s = 0.5;                // so long it flies on near the deck without a sighting
   bool sends_distance = false;         // DISTANCE_SENSOR too
   double attitude_rate_hz = 100;       // requested from the autopilot
   double position_rate_hz = 50;        //
