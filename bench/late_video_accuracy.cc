@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lands simulated UAVs on a standing pattern through a camera that comes by RTSP, late and with
-// losses, in real time. Prints for each flight the delay of the line, what Kestrel measured at the
-// end, how the flight ended and the distance from the centre. Usage:
-// late_video_accuracy [--flights N] [--first-seed N] [--delay-ms N]... [--loss SHARE]
+// Lands simulated UAVs through a camera that comes by RTSP, late and with losses, in real time.
+// Prints for each flight the delay of the line, what Kestrel measured at the end, how the flight
+// ended and the distance from the centre. Usage:
+// late_video_accuracy [--flights N] [--first-seed N] [--delay-ms N]... [--loss SHARE] [--guide]
+// [--source sim:SCENARIO] [--autopilot NAME] [--set KEY=VALUE]...
 #include <atomic>
 #include <cstdint>
 #include <iostream>
@@ -43,6 +44,7 @@ struct Arguments {
   std::string source = "sim:standing";
   std::string autopilot = "sim:ardupilot";
   std::vector<std::string> settings;
+  bool guides = false;
   bool is_loud = false;
 };
 
@@ -98,6 +100,22 @@ class Words : public ObservationSink {
   bool IsWanted() const override { return false; }
 };
 
+// Sends the images over a line.
+void MakeLate(const Arguments& arguments, int delay_ms, std::uint64_t seed,
+              OpenedLiveSource* live) {
+  const TestVideoLine line{.delay = std::chrono::milliseconds(delay_ms),
+                           .jitter = std::chrono::milliseconds(20),
+                           .loss = arguments.loss,
+                           .encoder = kEncoder,
+                           .seed = seed};
+  auto detour =
+      std::make_unique<Detour>(std::move(live->source), live->calibration.intrinsics, line);
+  auto video = std::make_unique<LateVideo>(std::move(detour), live->calibration, true);
+  live->late = {{.video = video.get()}};
+  live->source = std::move(video);
+  live->truth = {};  // of the frames before the line
+}
+
 void FlyOne(const Arguments& arguments, int delay_ms, std::uint64_t seed) {
   KestrelOptions options = ReadKestrelOptions("", arguments.settings);
   options.fly.sim_seed = static_cast<int>(seed);
@@ -106,25 +124,19 @@ void FlyOne(const Arguments& arguments, int delay_ms, std::uint64_t seed) {
   choice.sources = {arguments.source};
   source.Open(choice, false);
   OpenedLiveSource& live = source.live;
-  const TestVideoLine line{.delay = std::chrono::milliseconds(delay_ms),
-                           .jitter = std::chrono::milliseconds(20),
-                           .loss = arguments.loss,
-                           .encoder = kEncoder,
-                           .seed = seed};
-  auto detour = std::make_unique<Detour>(std::move(live.source), live.calibration.intrinsics, line);
-  auto late = std::make_unique<LateVideo>(std::move(detour), live.calibration, true);
-  live.late_video = late.get();
-  live.source = std::move(late);
-  live.truth = {};  // of the frames before the detour
-  FlyAutopilot autopilot = MakeFlyAutopilot(arguments.autopilot, options.fly, false, &source);
+  if (delay_ms > 0) MakeLate(arguments, delay_ms, seed, &live);
+  FlyAutopilot autopilot =
+      MakeFlyAutopilot(arguments.autopilot, options.fly, arguments.guides, &source);
   const auto task = MakeTask("land", options, {});
-  const auto session = MakeSession(live, *task, SessionOptionsFor(autopilot, options.fly, false));
+  const auto session =
+      MakeSession(live, *task, SessionOptionsFor(autopilot, options.fly, arguments.guides));
   if (arguments.is_loud) session->sinks().Add(std::make_unique<Words>());
   const Time start = Now();
   autopilot.simulated->Start();
   const FlightEnd end = session->Run([&] { return Now() - start > std::chrono::seconds(150); });
   autopilot.simulated->Stop();
-  const auto offset = live.late_video->offset();
+  std::optional<ClockEstimate> offset;
+  for (const LateCamera& late : live.late) offset = late.video->offset();
   fmt::print("{},{},{},{},{},{:.1f}\n", delay_ms, seed,
              offset ? fmt::format("{:.0f}", -1e3 * offset->offset_s) : "", ToString(end.outcome),
              end.offset_m ? fmt::format("{:.3f}", *end.offset_m) : "", ToSeconds(Now() - start));
@@ -145,7 +157,8 @@ void Run(const Arguments& arguments) {
 int main(int argc, char** argv) {
   CLI::App app{"Landings through late video"};
   kestrel::Arguments arguments;
-  app.add_option("--delay-ms", arguments.delays_ms, "Delay of the line; may be given again")
+  app.add_option("--delay-ms", arguments.delays_ms,
+                 "Delay of the line; 0: no line; may be given again")
       ->allow_extra_args(false);
   app.add_option("--flights", arguments.flights, "How many, each with the next seed (20)");
   app.add_option("--first-seed", arguments.first_seed, "Seed of the first flight (1)");
@@ -154,6 +167,7 @@ int main(int argc, char** argv) {
   app.add_option("--autopilot", arguments.autopilot, "sim:ardupilot or sim:px4");
   app.add_option("--set", arguments.settings, "One option, as key=value; may be given again")
       ->allow_extra_args(false);
+  app.add_flag("--guide", arguments.guides, "Kestrel flies by set-points");
   app.add_flag("--loud", arguments.is_loud, "Print what Kestrel reports");
   CLI11_PARSE(app, argc, argv);
   return kestrel::ReportMain([&] {

@@ -272,7 +272,8 @@ class Session {
                     WithChoices(SessionOptionsFor(autopilot, flight_.fly, choices_.guides)));
     session->sinks().Add(std::make_unique<AsynchronousSink>(
         AsynchronousSinkOptions{.thread_name = "python"},
-        std::make_unique<CallingWriter>(SinkFor(source.live.calibration), &sink_error)));
+        std::make_unique<CallingWriter>(SinkFor(source.live.calibration, source.live.further),
+                                        &sink_error)));
     if (autopilot.simulated) autopilot.simulated->Start();
     std::exception_ptr interruption;
     const FlightEnd end = session->Run([&] {
@@ -301,7 +302,7 @@ class Session {
 
   // Returns a sink that calls the functions of Python.
   std::unique_ptr<CallingSink> SinkFor(const CameraCalibration& calibration,
-                                       const std::vector<CameraCalibration>& further = {}) const {
+                                       const std::vector<CameraCalibration>& further) const {
     const LandingPipelineOptions& landing = options_.landing;
     const TargetShape shape = ShapeOfTarget(landing.target, landing.detector);
     const auto view_of = [&](const CameraCalibration& camera) {

@@ -60,6 +60,7 @@ class DoctorVisit {
     ExaminationParts parts;
     parts.source = source_.live.source.get();
     parts.calibration = source_.live.calibration;
+    parts.further = source_.live.further;
     parts.connection = connection_ ? &*connection_ : nullptr;
     parts.autopilot = autopilot_ ? &*autopilot_ : nullptr;
     examination_.emplace(options_.landing, options_.fly.events, parts);
@@ -81,9 +82,11 @@ class DoctorVisit {
       computer.disk_mb_per_s = MeasureDisk(observations_.use.record);
     }
     observations_.computer = computer;
-    if (const LateVideo* video = source_.live.late_video) {
-      observations_.camera.comes_late = true;
-      observations_.camera.delay = video->offset();
+    for (const LateCamera& late : source_.live.late) {
+      CameraSetup& setup =
+          late.camera == 0 ? observations_ : observations_.further[late.camera - 1];
+      setup.camera.comes_late = true;
+      setup.camera.delay = late.video->offset();
     }
     return Check(observations_);
   }
@@ -117,8 +120,10 @@ class DoctorVisit {
     if (flight.profile != "auto") use.profile = ParseLinkProfile(flight.profile);
     use.guides = arguments_.flight.guide;
     use.points = flight.point || flight.guide;
+    use.follows = flight.task.name == "follow";
     if (arguments_.moving_mps > 0) use.target_mps = arguments_.moving_mps;
     use.tilt_deg = options_.fly.guidance.limits.max_tilt_deg;
+    use.sight_s = options_.fly.guidance.sight_s;
     use.sends_distance = options_.fly.messages.sends_distance;
     use.attitude_rate_hz = options_.fly.autopilot.attitude_rate_hz;
     use.position_rate_hz = options_.fly.autopilot.position_rate_hz;
@@ -127,12 +132,16 @@ class DoctorVisit {
   }
 
   void OpenSource() {
-    if (arguments_.flight.source.sources.size() > 1) {
-      throw InputError("expected one SOURCE: each camera is checked by itself");
-    }
     CameraObservations& camera = observations_.camera;
     try {
-      source_.Open(arguments_.flight.source.Recording(PixelFormat::kGray), arguments_.flight.loop);
+      if (arguments_.flight.source.sources.size() > 1) {
+        source_.Open(arguments_.flight.Cameras(PixelFormat::kGray),
+                     [this](const std::string& fault) { observations_.unopened.push_back(fault); });
+      } else {
+        RecordingChoice choice = arguments_.flight.source.Recording(PixelFormat::kGray);
+        choice.all_cameras = true;
+        source_.Open(choice, arguments_.flight.loop);
+      }
     } catch (const ImageSizeError& error) {
       camera.open_error = error.what();
       camera.has_other_size = true;
@@ -145,10 +154,10 @@ class DoctorVisit {
 
   // The calibration of a camera that cannot be opened.
   void ReadCameraFile() {
-    const std::string file = arguments_.flight.source.camera();
-    if (file.empty()) return;
+    const std::vector<std::string>& files = arguments_.flight.source.cameras;
+    if (files.empty()) return;
     try {
-      source_.live.calibration = ReadCalibration(file);
+      source_.live.calibration = ReadCalibration(files.front());
     } catch (const InputError&) {  // which is why it could not be opened
     }
   }
@@ -191,12 +200,12 @@ class DoctorVisit {
   void TakePose(const PoseSample& pose) {
     if (!source_.live.has_poses) examination_->TakePose(pose);
     source_.simulated.TakePose(pose);
-    if (source_.live.late_video != nullptr) source_.live.late_video->Add(pose);
+    for (const LateCamera& late : source_.live.late) late.video->Add(pose);
   }
 
   void TakeGimbal(const GimbalSample& report) {
     examination_->TakeGimbal(report);
-    if (source_.live.late_video != nullptr) source_.live.late_video->Add(report);
+    for (const LateCamera& late : source_.live.late) late.video->Add(report);
   }
 
   bool IsWanted(const Finding& finding) const {

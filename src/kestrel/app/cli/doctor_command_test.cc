@@ -120,6 +120,16 @@ TEST_F(DoctorCommandTest, ReportsRotatedMount) {
   EXPECT_THAT(outcome.out, HasSubstr("turned by 90 deg"));
 }
 
+TEST_F(DoctorCommandTest, ReportsCameraThatSeesPadAtAnotherTime) {
+  const Outcome outcome = Look(
+      "--json --autopilot sim:ardupilot --set fly.sim_autopilot.uav.wind.min_mps=5"
+      " --set fly.sim_autopilot.uav.wind.max_mps=7 --set fly.sim_camera.second.fov_deg=100"
+      " --set fly.sim_camera.second.clock_offset_s=-0.15");
+  EXPECT_THAT(Checks(outcome, "wrong"), Contains("cam1: beside the first camera")) << outcome.out;
+  EXPECT_THAT(Checks(outcome, "good"), Contains("cam1: image size")) << outcome.out;
+  EXPECT_THAT(outcome.out, HasSubstr("at different times"));
+}
+
 TEST_F(DoctorCommandTest, ReportsUnavailableCameraAndAutopilot) {
   const Outcome outcome =
       Run("doctor /dev/no_such_camera --camera " + folder_.Write("camera.yaml", "") +

@@ -153,7 +153,9 @@ class Flight {
  private:
   void OpenSource() {
     if (arguments_.source.sources.size() > 1) {
-      source_.Open(arguments_.Cameras(task_->format()));
+      source_.Open(arguments_.Cameras(task_->format()), [](const std::string& fault) {
+        fmt::print(stderr, "kestrel: {}; the flight goes on with the others\n", fault);
+      });
     } else {
       RecordingChoice choice = arguments_.source.Recording(task_->format());
       choice.all_cameras = task_->takes_several_cameras();

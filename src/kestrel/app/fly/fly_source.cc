@@ -39,9 +39,10 @@ void FlySource::Open(const RecordingChoice& recording, bool is_looped) {
   live = OpenLiveSource({recording, is_looped}, camera_, {dds.Scheme(), simulated.Scheme()});
 }
 
-void FlySource::Open(const std::vector<RecordingChoice>& cameras) {
+void FlySource::Open(const std::vector<RecordingChoice>& cameras,
+                     const std::function<void(const std::string&)>& notify) {
   for (const RecordingChoice& camera : cameras) RequireCalibration(camera);
-  live = OpenLiveCameras(cameras, camera_, PrintLine);
+  live = OpenLiveCameras(cameras, camera_, notify);
 }
 
 }  // namespace kestrel

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
+#include <string>
+#include <vector>
+
 #include "kestrel/app/options/kestrel_options.h"
 #include "kestrel/flight/onboard/open_live_source.h"
 #include "kestrel/flight/ros/dds_source.h"
@@ -20,7 +24,8 @@ struct FlySource {
   // Throws InputError as OpenLiveSource does.
   void Open(const RecordingChoice& recording, bool is_looped);
   // Opens several cameras, see OpenLiveCameras.
-  void Open(const std::vector<RecordingChoice>& cameras);
+  void Open(const std::vector<RecordingChoice>& cameras,
+            const std::function<void(const std::string&)>& notify);
 
   SimulatedSource simulated;  // owns what 'live' renders
   DdsSource dds;

@@ -27,6 +27,12 @@ std::vector<double> Intervals(const CameraObservations& camera) {
   return intervals;
 }
 
+// Age of what is seen just before the next image, as it is in one of fifty images, s.
+double AgeOfSight(const CameraObservations& camera) {
+  constexpr double kMostOf = 0.98;
+  return QuantileOf(Intervals(camera), kMostOf) - camera.delay->offset_s;
+}
+
 double MedianOfQualities(const CameraObservations& camera, double ImageQuality::*value) {
   std::vector<double> values;
   for (const ImageQuality& quality : camera.qualities) values.push_back(quality.*value);
@@ -193,7 +199,7 @@ Finding CheckCaptureClock(const CameraObservations& camera) {
   return Good(check, measured);
 }
 
-Finding CheckVideoDelay(const CameraObservations& camera, std::optional<double> target_mps) {
+Finding CheckVideoDelay(const CameraObservations& camera, const DoctorUse& use) {
   constexpr double kLateForMoving_s = 0.3;
   constexpr double kTooLate_s = 0.6;
   constexpr double kError_m = 0.05;
@@ -209,12 +215,20 @@ Finding CheckVideoDelay(const CameraObservations& camera, std::optional<double> 
       "less latency: a lower resolution, no B-frames and a short interval of key frames in the "
       "camera, UDP, a wired link; docs/camera.md";
   if (late_s > kTooLate_s) return Wrong(check, measured, advice);
-  if (!target_mps) return Good(check, measured);
-  const double error_m = *target_mps * camera.delay->sigma_s;
+  if (use.guides && !HasTooFew(camera) && AgeOfSight(camera) > use.sight_s) {
+    return Doubtful(
+        check,
+        fmt::format("{}: what is seen is up to {:.1f} s old, near the deck guidance climbs "
+                    "after {:g} s",
+                    measured, AgeOfSight(camera), use.sight_s),
+        "fewer lost packets, key frames more often; " + advice);
+  }
+  if (!use.target_mps) return Good(check, measured);
+  const double error_m = *use.target_mps * camera.delay->sigma_s;
   if (late_s > kLateForMoving_s || error_m > kError_m) {
     return Doubtful(
         check,
-        fmt::format("{}: {:.2f} m for a target at {:.1f} m/s", measured, error_m, *target_mps),
+        fmt::format("{}: {:.2f} m for a target at {:.1f} m/s", measured, error_m, *use.target_mps),
         advice);
   }
   return Good(check, measured);
@@ -271,14 +285,13 @@ Finding CheckFocus(const CameraObservations& camera) {
   return Good(check, measured);
 }
 
-std::vector<Finding> CheckCamera(const CameraObservations& camera,
-                                 std::optional<double> target_mps) {
+std::vector<Finding> CheckCamera(const CameraObservations& camera, const DoctorUse& use) {
   if (!camera.open_error.empty()) return {CheckImages(camera)};
   std::vector<Finding> findings = {CheckImages(camera),       CheckFrameRate(camera),
                                    CheckSteadiness(camera),   CheckMissedFrames(camera),
                                    CheckFrozenFrames(camera), CheckCaptureClock(camera),
                                    CheckExposure(camera),     CheckFocus(camera)};
-  if (camera.comes_late) findings.push_back(CheckVideoDelay(camera, target_mps));
+  if (camera.comes_late) findings.push_back(CheckVideoDelay(camera, use));
   return findings;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "kestrel/flight/doctor/finding.h"
@@ -18,12 +17,11 @@ Finding CheckMissedFrames(const CameraObservations& camera);
 Finding CheckFrozenFrames(const CameraObservations& camera);
 Finding CheckCaptureClock(const CameraObservations& camera);
 // Delay of a network's camera, whether it is known well enough for a target of this speed.
-Finding CheckVideoDelay(const CameraObservations& camera, std::optional<double> target_mps);
+Finding CheckVideoDelay(const CameraObservations& camera, const DoctorUse& use);
 Finding CheckExposure(const CameraObservations& camera);
 Finding CheckFocus(const CameraObservations& camera);
 
 // All of these checks.
-std::vector<Finding> CheckCamera(const CameraObservations& camera,
-                                 std::optional<double> target_mps = std::nullopt);
+std::vector<Finding> CheckCamera(const CameraObservations& camera, const DoctorUse& use = {});
 
 }  // namespace kestrel

@@ -10,7 +10,7 @@
 namespace kestrel {
 namespace {
 
-constexpr std::array<ListedCheck, 42> kChecks = {{
+constexpr std::array<ListedCheck, 43> kChecks = {{
     {"image size", "images have the size of the calibration"},
     {"lens model", "every pixel has a ray: the distortion does not bend back before the rim"},
     {"principal point, pixels", "the optical axis is near the middle, and pixels are square"},
@@ -27,6 +27,7 @@ constexpr std::array<ListedCheck, 42> kChecks = {{
     {"mount", "T_BS has the camera look down: body x ahead, y left, z up"},
     {"mount against gravity", "by mount and attitude the pattern is level"},
     {"mount against motion", "by mount and poses the pattern stays where it is"},
+    {"beside the first camera", "a further one shows the pattern there, and at the same time"},
     {"line", "it opens (rights: the group dialout), and packets arrive whole: baud, wires"},
     {"signing", "both sides sign with the same key, or neither"},
     {"heartbeat", "there is an autopilot, and it does not restart"},

@@ -20,6 +20,7 @@ namespace kestrel {
 namespace {
 
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using Break = std::function<void(DoctorObservations*)>;
@@ -68,13 +69,27 @@ TEST(DoctorTest, DelayOfVideoIsJudgedByItsUse) {
     DoctorObservations setup = GoodSetup(AutopilotKind::kArduPilot);
     setup.camera.comes_late = true;
     setup.camera.delay = given.delay;
-    const Finding finding = CheckVideoDelay(setup.camera, given.target_mps);
+    setup.use.target_mps = given.target_mps;
+    const Finding finding = CheckVideoDelay(setup.camera, setup.use);
     EXPECT_EQ(finding.verdict, given.verdict) << given.words;
     EXPECT_THAT(finding.measured, HasSubstr(given.words));
     std::vector<std::string> checks;
     for (const Finding& other : Check(setup)) checks.push_back(other.check);
     EXPECT_THAT(checks, Contains("video delay"));
   }
+}
+
+TEST(DoctorTest, VideoWithGapsIsTooOldForGuidance) {
+  DoctorObservations setup = GoodGuidedSetup(AutopilotKind::kArduPilot);
+  setup.camera.comes_late = true;
+  setup.camera.delay = ClockEstimate{-0.2, 0.004};
+  EXPECT_EQ(CheckVideoDelay(setup.camera, setup.use).verdict, Verdict::kGood);
+  std::erase_if(setup.camera.frames, [](const FrameSample& frame) {
+    return (frame.stamp - FrameTime(0)) % std::chrono::seconds(1) > std::chrono::milliseconds(500);
+  });
+  const Finding finding = CheckVideoDelay(setup.camera, setup.use);
+  EXPECT_EQ(finding.verdict, Verdict::kDoubtful);
+  EXPECT_THAT(finding.measured, HasSubstr("climbs after 0.5 s"));
 }
 
 TEST(DoctorTest, ListsEveryCheck) {
@@ -327,6 +342,14 @@ std::vector<Fault> GimbalFaults() {
          report->sample.level_from_platform = report->world_from_body;
        })),
        "gimbal's motors", Verdict::kWrong, "locked to the UAV"},
+      {"a gimbal whose yaw is zero at power-on", Setup::kArduPilot,
+       Gimbal([](DoctorObservations* all) {
+         for (GimbalObservation& report : all->gimbal.reports) {
+           Eigen::Quaterniond& platform = report.sample.level_from_platform;
+           platform = Eigen::AngleAxisd(Radians(-40), Eigen::Vector3d::UnitZ()) * platform;
+         }
+       }),
+       "gimbal against images", Verdict::kWrong, "turned by 40 deg"},
       {"a gimbal controlled by another", Setup::kPx4, Gimbal([](DoctorObservations* all) {
          all->gimbal.controller = {255, 190};
        }),
@@ -354,6 +377,24 @@ std::vector<Fault> GimbalFaults() {
 
 std::vector<Fault> ParameterFaults() {
   return {
+      {"CAM1_TYPE beside a camera that follows", Setup::kArduPilot,
+       [](DoctorObservations* all) {
+         all->use.follows = true;
+         Parameter("CAM1_TYPE", 4)(all);
+       },
+       "CAM1_TYPE", Verdict::kDoubtful, "param set CAM1_TYPE 0"},
+      {"CAM1_TYPE of none with a zoom", Setup::kArduPilot,
+       [](DoctorObservations* all) {
+         all->calibration.zoom.emplace();
+         Parameter("CAM1_TYPE", 0)(all);
+       },
+       "CAM1_TYPE", Verdict::kDoubtful, "no camera that could report"},
+      {"CAM1_HFOV with a zoom", Setup::kArduPilot,
+       [](DoctorObservations* all) {
+         all->calibration.zoom.emplace();
+         Parameter("CAM1_HFOV", 60)(all);
+       },
+       "CAM1_HFOV", Verdict::kDoubtful, "whatever the lens does"},
       {"PLND_TYPE wrong", Setup::kArduPilot, Parameter("PLND_TYPE", 2), "PLND_TYPE",
        Verdict::kWrong, "param set PLND_TYPE 1, then reboot"},
       {"PLND_ENABLED", Setup::kArduPilot, Parameter("PLND_ENABLED", 0), "PLND_ENABLED",
@@ -522,6 +563,61 @@ INSTANTIATE_TEST_SUITE_P(Gimbal, DoctorFaultTest, ::testing::ValuesIn(GimbalFaul
 INSTANTIATE_TEST_SUITE_P(Link, DoctorFaultTest, ::testing::ValuesIn(LinkFaults()));
 INSTANTIATE_TEST_SUITE_P(Parameters, DoctorFaultTest, ::testing::ValuesIn(ParameterFaults()));
 INSTANTIATE_TEST_SUITE_P(Computer, DoctorFaultTest, ::testing::ValuesIn(ComputerFaults()));
+
+// --- A further camera ---
+
+// A good set-up with a second camera that looks ahead, named "cam1", whose mount is turned by
+// 'turned_deg' and whose stamps are late.
+DoctorObservations WithSecondCamera(double turned_deg, double late_s, double tilt_deg = 15) {
+  DoctorObservations all = GoodSetup(AutopilotKind::kArduPilot);
+  all.vision.patterns = PatternsSeen(DownwardMount(), tilt_deg);
+  CameraSetup& second = all.further.emplace_back();
+  second.calibration = all.calibration;
+  second.calibration.name = "cam1";
+  RigidTransform mount = DownwardMount();
+  mount.rotation = mount.rotation * Eigen::AngleAxisd(Radians(30), Eigen::Vector3d::UnitX());
+  second.calibration.body_from_camera = mount;
+  mount.rotation =
+      mount.rotation * Eigen::AngleAxisd(Radians(turned_deg), Eigen::Vector3d::UnitY());
+  second.camera = GoodCamera();
+  second.vision = all.vision;
+  second.vision.patterns = PatternsSeen(mount, tilt_deg);
+  for (PatternSample& pattern : second.vision.patterns) {
+    pattern.time += DurationFromSeconds(late_s);
+  }
+  return all;
+}
+
+TEST(DoctorTest, FurtherCameraIsComparedWithFirst) {
+  struct Case {
+    double turned_deg, late_s, tilt_deg;
+    Verdict verdict;
+    const char* words;
+  };
+  for (const Case& given : std::vector<Case>{{0, 0, 15, Verdict::kGood, "at the same time"},
+                                             {0, 0.02, 15, Verdict::kGood, "20 ms later"},
+                                             {0, 0.06, 15, Verdict::kDoubtful, "60 ms less"},
+                                             {0, -0.2, 15, Verdict::kWrong, "200 ms more"},
+                                             {5, 0, 15, Verdict::kDoubtful, "calibrate mount"},
+                                             {0, 0, 0.1, Verdict::kNotChecked, "too little"}}) {
+    const DoctorObservations all = WithSecondCamera(given.turned_deg, given.late_s, given.tilt_deg);
+    const std::vector<Finding> findings = Check(all);
+    const auto found =
+        std::ranges::find(findings, "cam1: beside the first camera", &Finding::check);
+    ASSERT_NE(found, findings.end());
+    EXPECT_EQ(found->verdict, given.verdict) << found->measured;
+    EXPECT_THAT(found->measured + found->advice, HasSubstr(given.words));
+  }
+}
+
+TEST(DoctorTest, ChecksFurtherCameraByItself) {
+  EXPECT_THAT(Flagged(Check(WithSecondCamera(0, 0))), IsEmpty());
+  DoctorObservations all = WithSecondCamera(0, 0);
+  all.further[0].camera.width_px = 640;
+  all.unopened = {"cam2: /dev/video7: there is no such device"};
+  EXPECT_THAT(Flagged(Check(all)),
+              ElementsAre(HasSubstr("cam1: image size: "), HasSubstr("images: cam2: /dev/video7")));
+}
 
 // --- Cases that must not mislead a check ---
 

@@ -8,9 +8,12 @@
 #include <utility>
 #include <variant>
 
+#include <fmt/format.h>
+
 #include "kestrel/comms/mavlink/silence.h"
 #include "kestrel/flight/doctor/calibration_checks.h"
 #include "kestrel/flight/doctor/camera_checks.h"
+#include "kestrel/flight/doctor/camera_pair_checks.h"
 #include "kestrel/flight/doctor/computer_checks.h"
 #include "kestrel/flight/doctor/gimbal_checks.h"
 #include "kestrel/flight/doctor/link_checks.h"
@@ -43,9 +46,14 @@ Duration ClockOffsetOf(const CameraCalibration& calibration) {
 Examination::Examination(const LandingPipelineOptions& options, const LiveEventsOptions& events,
                          const ExaminationParts& parts)
     : parts_(parts),
-      events_(events, ClockOffsetOf(parts.calibration)),
+      events_(events, ClockOffsetOf(parts.calibration), 1 + parts.further.size()),
       poses_(kRememberedPoses, kLargestGap) {
-  if (parts.source != nullptr) pipeline_.emplace(WithoutMount(parts.calibration), options);
+  if (parts.source != nullptr) {
+    eyes_.push_back({parts.calibration, LandingPipeline(WithoutMount(parts.calibration), options)});
+    for (const CameraCalibration& camera : parts.further) {
+      eyes_.push_back({camera, LandingPipeline(WithoutMount(camera), options)});
+    }
+  }
   if (const auto& gimbal = parts.calibration.gimbal; gimbal && parts.autopilot != nullptr) {
     manager_.emplace(gimbal->device_id, parts.autopilot, parts.connection);
   }
@@ -92,9 +100,10 @@ void Examination::Capture() {
       continue;
     }
     auto& frame = std::get<Frame>(*event);
-    frames_.push_back({frame.time, Now()});
-    width_px_ = frame.image.cols;
-    height_px_ = frame.image.rows;
+    Eye& eye = eyes_.at(frame.camera);
+    eye.frames.push_back({frame.time, Now()});
+    eye.width_px = frame.image.cols;
+    eye.height_px = frame.image.rows;
     events_.Push(std::move(frame));
   }
 }
@@ -108,9 +117,9 @@ void Examination::See() {
     if (const auto* pose = std::get_if<PoseSample>(&event)) {
       poses_.Add(*pose);
     } else if (const auto* gimbal = std::get_if<GimbalSample>(&event)) {
-      pipeline_->AddGimbal(*gimbal);
+      for (Eye& eye : eyes_) eye.pipeline.AddGimbal(*gimbal);
     } else if (const auto* zoom = std::get_if<ZoomSample>(&event)) {
-      pipeline_->AddZoom(*zoom);
+      for (Eye& eye : eyes_) eye.pipeline.AddZoom(*zoom);
     } else {
       Look(std::get<Frame>(event));
     }
@@ -119,12 +128,13 @@ void Examination::See() {
 
 void Examination::Look(const Frame& frame) {
   constexpr Duration kFurthestPose = std::chrono::milliseconds(100);
-  const LandingObservation seen = pipeline_->Process(frame.image, frame.time);
-  detect_s_.push_back(ToSeconds(seen.detect_time));
-  const Time taken = frame.time + ClockOffsetOf(parts_.calibration);
-  latency_s_.push_back(ToSeconds(Now() - taken));
-  qualities_.push_back(MeasureImageQuality(frame.image));
-  other_tag_ = seen.other_tag;
+  Eye& eye = eyes_.at(frame.camera);
+  const LandingObservation seen = eye.pipeline.Process(frame.image, frame.time);
+  eye.detect_s.push_back(ToSeconds(seen.detect_time));
+  const Time taken = frame.time + ClockOffsetOf(eye.calibration);
+  eye.latency_s.push_back(ToSeconds(Now() - taken));
+  eye.qualities.push_back(MeasureImageQuality(frame.image));
+  eye.other_tag = seen.other_tag;
   const auto& detection = seen.report.detection;
   if (!detection) return;
   PatternSample sample = PatternSampleOf(*detection);
@@ -132,7 +142,7 @@ void Examination::Look(const Frame& frame) {
   if (const auto pose = poses_.Predict(taken, kFurthestPose, {})) {
     sample.world_from_body = pose->world_from_body;
   }
-  patterns_.push_back(sample);
+  eye.patterns.push_back(sample);
 }
 
 // --- The link ---
@@ -213,17 +223,16 @@ void Examination::TakeEvent(const AutopilotEvent& event) {
 void Examination::Summarize(Time start, Time end, DoctorObservations* observations) const {
   observations->calibration = parts_.calibration;
   if (parts_.source != nullptr) {
-    CameraObservations& camera = observations->camera;
-    camera.error = parts_.source->error();
-    camera.duration_s = ToSeconds(end - start);
-    camera.width_px = width_px_;
-    camera.height_px = height_px_;
-    camera.frames = frames_;
-    camera.qualities = qualities_;
-    camera.counters = parts_.source->counters();
+    const double duration_s = ToSeconds(end - start);
+    SummarizeCamera(eyes_.front(), duration_s, observations);
+    observations->further.resize(parts_.further.size());
+    for (std::size_t i = 0; i < parts_.further.size(); ++i) {
+      SummarizeCamera(eyes_[1 + i], duration_s, &observations->further[i]);
+    }
     constexpr double kMega = 1e6;
-    observations->computer.frame_mb = width_px_ * height_px_ / kMega;
-    SummarizeVision(&observations->vision);
+    for (const Eye& eye : eyes_) {
+      observations->computer.frame_mb += eye.width_px * eye.height_px / kMega;
+    }
   }
   if (parts_.autopilot == nullptr) return;
   observations->camera.is_on_ground =
@@ -233,18 +242,31 @@ void Examination::Summarize(Time start, Time end, DoctorObservations* observatio
   SummarizeParameters(&observations->parameters);
 }
 
-void Examination::SummarizeVision(VisionObservations* vision) const {
+void Examination::SummarizeCamera(const Eye& eye, double duration_s, CameraSetup* setup) const {
+  setup->calibration = eye.calibration;
+  CameraObservations& camera = setup->camera;
+  camera.error = parts_.source->error();
+  camera.duration_s = duration_s;
+  camera.width_px = eye.width_px;
+  camera.height_px = eye.height_px;
+  camera.frames = eye.frames;
+  camera.qualities = eye.qualities;
+  camera.counters = parts_.source->counters();
+  SummarizeVision(eye, &setup->vision);
+}
+
+void Examination::SummarizeVision(const Eye& eye, VisionObservations* vision) const {
   constexpr double kMostOf = 0.9;
-  vision->frames = static_cast<int>(detect_s_.size());
+  vision->frames = static_cast<int>(eye.detect_s.size());
   vision->dropped_frames = static_cast<int>(events_.counters().dropped_frames);
-  vision->patterns = patterns_;
-  vision->other_tag = other_tag_;
-  vision->focal = pipeline_->calibration_monitor().Focal();
-  vision->focal_contradiction = pipeline_->calibration_monitor().Contradiction();
-  if (detect_s_.empty()) return;
-  vision->detect_s = MedianOf(detect_s_);
-  vision->detect_p90_s = QuantileOf(detect_s_, kMostOf);
-  vision->latency_s = MedianOf(latency_s_);
+  vision->patterns = eye.patterns;
+  vision->other_tag = eye.other_tag;
+  vision->focal = eye.pipeline.calibration_monitor().Focal();
+  vision->focal_contradiction = eye.pipeline.calibration_monitor().Contradiction();
+  if (eye.detect_s.empty()) return;
+  vision->detect_s = MedianOf(eye.detect_s);
+  vision->detect_p90_s = QuantileOf(eye.detect_s, kMostOf);
+  vision->latency_s = MedianOf(eye.latency_s);
 }
 
 void Examination::SummarizeLink(Time end, LinkObservations* link) const {
@@ -304,6 +326,31 @@ void Examination::SummarizeParameters(ParameterValues* values) const {
   }
 }
 
+namespace {
+
+// The checks of one camera.
+std::vector<Finding> CheckSetup(const DoctorObservations& observations) {
+  std::vector<Finding> findings = CheckCalibration(observations);
+  std::ranges::copy(CheckCamera(observations.camera, observations.use),
+                    std::back_inserter(findings));
+  std::ranges::copy(CheckMount(observations), std::back_inserter(findings));
+  return findings;
+}
+
+std::vector<Finding> CheckFurther(const DoctorObservations& observations,
+                                  const CameraSetup& further) {
+  DoctorObservations own = observations;
+  static_cast<CameraSetup&>(own) = further;
+  std::vector<Finding> findings = CheckSetup(own);
+  findings.push_back(CheckCamerasTogether(observations, further));
+  for (Finding& finding : findings) {
+    finding.check = fmt::format("{}: {}", further.calibration.name, finding.check);
+  }
+  return findings;
+}
+
+}  // namespace
+
 PatternSample PatternSampleOf(const TargetDetection& detection) {
   PatternSample sample;
   sample.camera_from_target = detection.camera_from_target;
@@ -319,9 +366,13 @@ std::vector<Finding> Check(const DoctorObservations& observations) {
   const auto add = [&](const std::vector<Finding>& part) {
     findings.insert(findings.end(), part.begin(), part.end());
   };
-  add(CheckCalibration(observations));
-  add(CheckCamera(observations.camera, observations.use.target_mps));
-  add(CheckMount(observations));
+  add(CheckSetup(observations));
+  for (const CameraSetup& further : observations.further) add(CheckFurther(observations, further));
+  for (const std::string& fault : observations.unopened) {
+    CameraObservations unopened;
+    unopened.open_error = fault;
+    add({CheckImages(unopened)});
+  }
   add(CheckLink(observations.link, observations.use));
   add(CheckGimbal(observations));
   if (observations.calibration.zoom) add({CheckZoom(observations)});

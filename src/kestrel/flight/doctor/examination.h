@@ -24,7 +24,8 @@ namespace kestrel {
 // Input of an examination; all outlive it. Null where there is none.
 struct ExaminationParts {
   LiveSource* source = nullptr;
-  CameraCalibration calibration;  // calibration of the source
+  CameraCalibration calibration = {};           // calibration of the source
+  std::vector<CameraCalibration> further = {};  // of its further cameras
   Connection* connection = nullptr;
   Autopilot* autopilot = nullptr;  // on the connection
 };
@@ -57,29 +58,37 @@ class Examination {
   void Look(const Frame& frame);
   void TakePacket(const mavlink::Packet& packet, Time received);
   void WantParameters();
+  // A camera of the source.
+  struct Eye {
+    CameraCalibration calibration;
+    // It has no mount: what it finds does not depend on the attitude.
+    LandingPipeline pipeline;
+
+    // Used by the capture thread.
+    std::vector<FrameSample> frames = {};
+    int width_px = 0;
+    int height_px = 0;
+    // Used by the vision thread.
+    std::vector<ImageQuality> qualities = {};
+    std::vector<PatternSample> patterns = {};
+    std::optional<OtherTag> other_tag = {};
+    std::vector<double> detect_s = {};
+    std::vector<double> latency_s = {};
+  };
+
   void Summarize(Time start, Time end, DoctorObservations* observations) const;
-  void SummarizeVision(VisionObservations* vision) const;
+  void SummarizeCamera(const Eye& eye, double duration_s, CameraSetup* setup) const;
+  void SummarizeVision(const Eye& eye, VisionObservations* vision) const;
   void SummarizeLink(Time end, LinkObservations* link) const;
   void SummarizeGimbal(GimbalObservations* gimbal) const;
   void SummarizeParameters(ParameterValues* values) const;
 
   ExaminationParts parts_;
   LiveEvents events_;
-  // Set when there is a source. It has no mount: what it finds does not depend on the attitude.
-  std::optional<LandingPipeline> pipeline_;
-  PoseHistory poses_;  // used by the vision thread
+  std::vector<Eye> eyes_;  // none without a source
+  PoseHistory poses_;      // used by the vision thread
   std::atomic<bool> is_over_{false};
 
-  // Used by the capture thread.
-  std::vector<FrameSample> frames_;
-  int width_px_ = 0;
-  int height_px_ = 0;
-  // Used by the vision thread.
-  std::vector<ImageQuality> qualities_;
-  std::vector<PatternSample> patterns_;
-  std::optional<OtherTag> other_tag_;
-  std::vector<double> detect_s_;
-  std::vector<double> latency_s_;
   // Used by the link's thread.
   bool requested_parameters_ = false;
   int heartbeats_ = 0;
@@ -103,7 +112,8 @@ class Examination {
 // Returns the part of a detection that the checks use; the caller adds its time and the UAV's pose.
 PatternSample PatternSampleOf(const TargetDetection& detection);
 
-// Runs all checks, in the order in which a set-up is put right.
+// Runs all checks, in the order in which a set-up is put right. Those of a further camera have its
+// name before theirs.
 std::vector<Finding> Check(const DoctorObservations& observations);
 
 }  // namespace kestrel

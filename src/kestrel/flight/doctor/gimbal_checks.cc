@@ -22,10 +22,11 @@ using Eigen::Vector3d;
 constexpr Duration kAhead = std::chrono::milliseconds(300);
 constexpr double kCmPerMetre = 100;
 
-// Reads the reports in one frame of the yaw, so much later than they claim.
+// Reads the reports in one frame of the yaw, so much later than they claim, and turned.
 struct Reading {
   YawFrame frame;
   double late_s = 0;
+  double yaw_rad = 0;
 };
 
 double AngleBetween(const Quaterniond& a, const Quaterniond& b) { return a.angularDistance(b); }
@@ -40,6 +41,8 @@ std::vector<Vector3d> Places(const DoctorObservations& all, const GimbalHistory&
     auto attitude = reports.At(time, kAhead);
     if (!pattern.world_from_body || !attitude) continue;
     attitude->yaw_frame = reading.frame;
+    attitude->level_from_platform =
+        Eigen::AngleAxisd(reading.yaw_rad, Vector3d::UnitZ()) * attitude->level_from_platform;
     const RigidTransform world_from_platform =
         WorldFromPlatform(*pattern.world_from_body, mount.body_from_pivot, *attitude);
     places.push_back(world_from_platform *
@@ -90,6 +93,41 @@ double FastestTurn(const std::vector<GimbalObservation>& reports) {
         fastest, AngleBetween(before.level_from_platform, after.level_from_platform) / seconds);
   }
   return fastest;
+}
+
+// What the reports of a gimbal may mean instead.
+std::vector<Reading> OtherReadings(YawFrame frame) {
+  constexpr int kLongest = 8, kHalfTurn = 18;  // steps
+  constexpr double kStep_s = 0.05, kStep = Radians(10.0);
+  std::vector<Reading> readings = {
+      {frame == YawFrame::kEarth ? YawFrame::kVehicle : YawFrame::kEarth}};
+  for (int i = -kLongest; i <= kLongest; ++i) readings.push_back({frame, kStep_s * i});
+  for (int i = 1 - kHalfTurn; i <= kHalfTurn; ++i) readings.push_back({frame, 0, kStep * i});
+  return readings;
+}
+
+// 'measured': by the reports as they are, and by 'best', the reading that explains the images.
+Finding WrongReading(const std::string& check, const std::string& measured, YawFrame frame,
+                     const Reading& best) {
+  if (best.frame != frame) {
+    return Wrong(check,
+                 fmt::format("{} with their yaw against {}", measured,
+                             best.frame == YawFrame::kEarth ? "north" : "the UAV's heading"),
+                 "the flags of its reports name another frame than they have: newer firmware of "
+                 "the gimbal, or lock and follow mode changed in it");
+  }
+  if (best.yaw_rad != 0) {
+    return Wrong(
+        check,
+        fmt::format("{} with their yaw turned by {:.0f} deg", measured, Degrees(best.yaw_rad)),
+        "its yaw is zero where it looked when it was powered on: power it on while it "
+        "looks ahead; kestrel calibrate mount --both finds an error that stays");
+  }
+  return Wrong(check,
+               fmt::format("{} if the gimbal is {:.2f} s {}", measured, std::abs(best.late_s),
+                           best.late_s > 0 ? "behind its reports" : "ahead of its reports"),
+               "an echoed set-point, or late stamps: kestrel calibrate mount --both finds the "
+               "gimbal's clock; MNT_MODE_OUT 0 of PX4 and servos of ArduPilot echo");
 }
 
 }  // namespace
@@ -145,7 +183,6 @@ Finding CheckGimbalMotors(const GimbalObservations& gimbal) {
 Finding CheckGimbalByImages(const DoctorObservations& observations) {
   constexpr std::size_t kFewest = 10;
   constexpr double kLeast_m = 0.06, kClear = 0.5;  // as of a fixed mount
-  constexpr double kLongest_s = 0.4, kStep_s = 0.05;
   const std::string check = "gimbal against images";
   const char* const advice = "turn UAV and gimbal above the pattern while doctor runs";
   const auto& reports = observations.gimbal.reports;
@@ -158,35 +195,20 @@ Finding CheckGimbalByImages(const DoctorObservations& observations) {
     return NotChecked(check, fmt::format("the pattern in {} images", places.size()), advice);
   }
   const double spread_m = Spread(places);
-  std::string measured = fmt::format("the pattern wanders by {:.0f} cm", kCmPerMetre * spread_m);
-  const auto is_better = [&](double other_m) {
-    return spread_m - other_m > kLeast_m && other_m < kClear * spread_m;
-  };
-  const YawFrame other = frame == YawFrame::kEarth ? YawFrame::kVehicle : YawFrame::kEarth;
-  const double other_m = Spread(Places(observations, history, {other}));
-  double best_m = spread_m, late_s = 0;
-  for (double s = -kLongest_s; s <= kLongest_s; s += kStep_s) {
-    const std::vector<Vector3d> shifted = Places(observations, history, {frame, s});
-    if (2 * shifted.size() < places.size()) continue;
-    const double shifted_m = Spread(shifted);
-    if (shifted_m >= best_m) continue;
-    best_m = shifted_m;
-    late_s = s;
+  const std::string measured =
+      fmt::format("the pattern wanders by {:.0f} cm", kCmPerMetre * spread_m);
+  double best_m = spread_m;
+  Reading best{frame};
+  for (const Reading& other : OtherReadings(frame)) {
+    const std::vector<Vector3d> by_other = Places(observations, history, other);
+    if (2 * by_other.size() < places.size() || Spread(by_other) >= best_m) continue;
+    best_m = Spread(by_other);
+    best = other;
   }
-  if (is_better(other_m) && other_m < best_m) {
-    return Wrong(check,
-                 fmt::format("{} by its reports, by {:.0f} cm with their yaw against {}", measured,
-                             kCmPerMetre * other_m,
-                             other == YawFrame::kEarth ? "north" : "the UAV's heading"),
-                 "the flags of its reports name another frame than they have: newer firmware of "
-                 "the gimbal, or lock and follow mode changed in it");
-  }
-  if (is_better(best_m)) {
-    return Wrong(check,
-                 fmt::format("{}; the gimbal is {:.2f} s {} its reports", measured,
-                             std::abs(late_s), late_s > 0 ? "behind" : "ahead of"),
-                 "an echoed set-point, or late stamps: kestrel calibrate mount --both finds the "
-                 "gimbal's clock; MNT_MODE_OUT 0 of PX4 and servos of ArduPilot echo");
+  if (spread_m - best_m > kLeast_m && best_m < kClear * spread_m) {
+    return WrongReading(
+        check, fmt::format("{} by its reports, by {:.0f} cm", measured, kCmPerMetre * best_m),
+        frame, best);
   }
   if (spread_m < kLeast_m) return Good(check, measured);
   return Doubtful(check, measured,

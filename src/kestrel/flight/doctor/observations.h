@@ -33,12 +33,14 @@ struct DoctorUse {
   bool points = false;                 // and points the gimbal, if there is one
   std::optional<double> target_mps;    // speed of a target that moves; nothing: it stands
   double tilt_deg = 30;                // by which guidance may lean
+  double sight_s = 0.5;                // so long it flies on near the deck without a sighting
   bool sends_distance = false;         // DISTANCE_SENSOR too
   double attitude_rate_hz = 100;       // requested from the autopilot
   double position_rate_hz = 50;        //
   std::optional<double> link_delay_s;  // as configured; nothing: by the round trip
   std::string record;                  // folder of the recording; empty: none
   double sight_range_m = 0;            // from which the camera sees the pattern; 0: not known
+  bool follows = false;                // Kestrel is a camera in which people mark what it follows
 };
 
 // The times of a frame.
@@ -57,9 +59,9 @@ struct CameraObservations {
   int height_px = 0;
   std::vector<FrameSample> frames;      // in the order in which they came
   std::vector<ImageQuality> qualities;  // quality of each examined frame
-  CaptureCounters counters;
-  bool comes_late = false;             // over a network
-  std::optional<ClockEstimate> delay;  // how late the images come, by their turns
+  CaptureCounters counters;             // of all cameras together
+  bool comes_late = false;              // over a network
+  std::optional<ClockEstimate> delay;   // how late the images come, by their turns
 };
 
 // The pattern in one frame, found without mount and attitude.
@@ -156,11 +158,18 @@ struct ComputerObservations {
   bool has_battery_clock = true;                  // keeps the time of day while it is off
 };
 
-struct DoctorObservations {
-  DoctorUse use;
+// A camera and what it showed.
+struct CameraSetup {
   CameraCalibration calibration;
   CameraObservations camera;
   VisionObservations vision;
+};
+
+// The set-up of the first camera, and all else.
+struct DoctorObservations : CameraSetup {
+  std::vector<CameraSetup> further;   // cameras
+  std::vector<std::string> unopened;  // why cameras beside these could not be opened
+  DoctorUse use;
   LinkObservations link;
   GimbalObservations gimbal;
   ParameterValues parameters;

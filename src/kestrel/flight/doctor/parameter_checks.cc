@@ -17,7 +17,7 @@
 namespace kestrel {
 namespace {
 
-constexpr std::array<ListedCheck, 25> kOfArduPilot = {{
+constexpr std::array<ListedCheck, 27> kOfArduPilot = {{
     {"PLND_ENABLED", "1"},
     {"PLND_TYPE", "1, targets by MAVLink"},
     {"PLND_ORIENT", "25, down"},
@@ -43,6 +43,8 @@ constexpr std::array<ListedCheck, 25> kOfArduPilot = {{
     {"PSC_JERK_NE", "--guide --moving: at least 12 m/s^3"},
     {"MNT1_TYPE", "with a gimbal: its type; 1, servos, reports the set-point"},
     {"MNT1_DEFLT_MODE", "with a gimbal: not 0, retracted"},
+    {"CAM1_TYPE", "with a zoom that is not heard: its type; --follow: 0"},
+    {"CAM1_HFOV", "with a zoom: 0: else this is reported, whatever the lens does"},
 }};
 
 constexpr std::array<ListedCheck, 25> kOfPx4 = {{
@@ -314,6 +316,24 @@ void CheckGimbalOfArduPilot(ParameterRules* rules) {
               [](double mode) { return mode != 0; });
 }
 
+// With --follow Kestrel is the camera in whose images ground stations mark.
+void CheckCameraOfArduPilot(ParameterRules* rules) {
+  const DoctorObservations& all = rules->all();
+  if (all.use.follows) {
+    rules->WantExactly("CAM1_TYPE", Verdict::kDoubtful,
+                       {0,
+                        "ArduPilot answers as a camera, too: ground stations show two, and mark "
+                        "in the wrong one",
+                        true});
+  }
+  if (!all.calibration.zoom) return;
+  rules->WantExactly("CAM1_HFOV", Verdict::kDoubtful,
+                     {0, "it is reported as the field of view, whatever the lens does"});
+  if (all.link.zoom_reports > 0 || rules->Find("CAM1_TYPE") != 0) return;
+  rules->Add(Doubtful("CAM1_TYPE", "0: ArduPilot has no camera that could report its view",
+                      "the type of the camera (4 that of the gimbal, 6 MAVLink), then reboot"));
+}
+
 void CheckArduPilot(ParameterRules* rules) {
   CheckPrecisionLandingOfArduPilot(rules);
   if (rules->moves()) CheckMovingTargetOfArduPilot(rules);
@@ -323,6 +343,7 @@ void CheckArduPilot(ParameterRules* rules) {
   if (rules->all().use.guides) CheckGuidanceOfArduPilot(rules);
   if (rules->all().use.guides && rules->moves()) CheckAgilityOfArduPilot(rules);
   if (rules->all().calibration.gimbal) CheckGimbalOfArduPilot(rules);
+  CheckCameraOfArduPilot(rules);
 }
 
 // --- PX4 ---

@@ -145,7 +145,7 @@ void FlightProgram::EndByLanding(FlightEnd end) {
 void FlightProgram::Capture() {
   SetUpThisThread("capture", {});
   std::string trouble;
-  std::string delay;
+  std::vector<std::string> delays(parts_.late.size());
   Time last = Now();
   while (!is_over_) {
     capture_life_.Give(Now());
@@ -164,10 +164,11 @@ void FlightProgram::Capture() {
       report_(now.empty() ? end : now);
       trouble = now;
     }
-    if (parts_.late_video != nullptr) {
-      if (const std::string now = parts_.late_video->InWords(); now != delay) {
-        report_(now);
-        delay = now;
+    for (std::size_t i = 0; i < delays.size(); ++i) {
+      const LateCamera& late = parts_.late[i];
+      if (std::string now = late.video->InWords(); now != delays[i]) {
+        report_(late.name.empty() ? now : fmt::format("{}: {}", late.name, now));
+        delays[i] = std::move(now);
       }
     }
     if (ToSeconds(Now() - last) < options_.source_timeout_s) continue;

@@ -23,8 +23,8 @@
 #include "kestrel/flight/onboard/guard_watch.h"
 #include "kestrel/flight/onboard/guided_flight.h"
 #include "kestrel/flight/onboard/landing_watch.h"
-#include "kestrel/flight/onboard/late_video.h"
 #include "kestrel/flight/onboard/latency_statistics.h"
+#include "kestrel/flight/onboard/open_live_source.h"
 #include "kestrel/flight/onboard/pad_position.h"
 #include "kestrel/flight/onboard/pointed_gimbal.h"
 #include "kestrel/flight/onboard/recording_switch.h"
@@ -45,7 +45,7 @@ namespace kestrel {
 // The parts of a flight; all outlive the program. Null where there is none.
 struct FlightParts {
   LiveSource* source = nullptr;
-  const LateVideo* late_video = nullptr;  // the source, if its images come late
+  std::vector<LateCamera> late = {};  // cameras of the source
   Vision* vision = nullptr;
   ExposureDrive* exposure = nullptr;  // keeps the target's white right
   Connection* connection = nullptr;

@@ -324,7 +324,7 @@ void Flight::OpenAutopilot() {
 
 FlightParts Flight::ProgramParts() {
   return {.source = live_.source.get(),
-          .late_video = live_.late_video,
+          .late = live_.late,
           .vision = &mutable_vision(),
           .exposure = exposure_ ? &*exposure_ : nullptr,
           .connection = connection_ ? &*connection_ : nullptr,
@@ -349,12 +349,12 @@ FlightParts Flight::ProgramParts() {
 void Flight::TakePose(const PoseSample& pose) {
   program_->TakeAutopilotPose(pose);
   if (live_.pose) live_.pose(pose);
-  if (live_.late_video != nullptr) live_.late_video->Add(pose);
+  for (const LateCamera& late : live_.late) late.video->Add(pose);
 }
 
 void Flight::TakeGimbal(const GimbalSample& report) {
   program_->TakeAutopilotGimbal(report);
-  if (live_.late_video != nullptr) live_.late_video->Add(report);
+  for (const LateCamera& late : live_.late) late.video->Add(report);
 }
 
 void Flight::TakeTruePose(const PoseSample& pose) {

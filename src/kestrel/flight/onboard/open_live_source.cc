@@ -22,7 +22,7 @@ void MeasureDelay(const GstreamerCameraOptions& options, OpenedLiveSource* opene
   const bool corrects = options.measures_delay || !opened->calibration.clock_offset;
   auto video =
       std::make_unique<LateVideo>(std::move(opened->source), opened->calibration, corrects);
-  opened->late_video = video.get();
+  opened->late = {{.video = video.get()}};
   opened->source = std::move(video);
 }
 
@@ -103,6 +103,9 @@ OpenedLiveSource AsOne(std::vector<OpenedLiveSource> cameras) {
   std::vector<SeveralSources::Camera> sources;
   for (OpenedLiveSource& camera : cameras) {
     if (!sources.empty()) all.further.push_back(camera.calibration);
+    for (const LateCamera& late : camera.late) {
+      all.late.push_back({sources.size(), camera.calibration.name, late.video});
+    }
     sources.push_back({camera.calibration.name, std::move(camera.source)});
   }
   all.source = std::make_unique<SeveralSources>(std::move(sources));
@@ -125,7 +128,7 @@ OpenedLiveSource OpenLiveCameras(const std::vector<RecordingChoice>& cameras,
       opened.back().calibration.name = name;
     } catch (const InputError& error) {
       fault = fmt::format("{}: {}", name, error.what());
-      notify(fault + "; the flight goes on with the others");
+      notify(fault);
     }
   }
   if (opened.empty()) throw InputError(fault);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -19,6 +20,13 @@
 
 namespace kestrel {
 
+// A camera whose images come late.
+struct LateCamera {
+  std::size_t camera = 0;      // its index
+  std::string name = {};       // for messages; empty: it is the only camera
+  LateVideo* video = nullptr;  // view of the source, or of a part of it
+};
+
 // A live source, its calibration, and what a session wants to know about it.
 struct OpenedLiveSource {
   std::unique_ptr<LiveSource> source = {};
@@ -29,7 +37,7 @@ struct OpenedLiveSource {
   bool has_poses = false;                // the source has poses of its own
   ExposureActuator* actuator = nullptr;  // view of 'source'; null: its exposure cannot be set
 
-  LateVideo* late_video = nullptr;  // view of 'source'; null: its images come in time
+  std::vector<LateCamera> late = {};
 
   // Images that equal the one before are processed. False: a camera that repeats its image is
   // frozen.

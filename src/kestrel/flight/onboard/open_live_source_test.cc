@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/flight/onboard/open_live_source.h"
 
+#include <cstddef>
+#include <string>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -68,6 +71,25 @@ TEST_F(LiveCamerasTest, OneThatCannotBeOpenedIsLeftOut) {
   EXPECT_THAT(reported_, HasSubstr("cam0: there is no /dev/video99"));
   EXPECT_EQ(opened.calibration.name, "cam1");
   EXPECT_TRUE(opened.further.empty());
+}
+
+TEST_F(LiveCamerasTest, DelayOfEachIsMeasured) {
+  const std::string mounted = ReadFile(CameraFile()) +
+                              "T_BS: [[0, -1, 0, 0], [-1, 0, 0, 0], [0, 0, -1, 0], [0, 0, 0, 1]]\n";
+  folder_.Write("first.yaml", mounted);
+  folder_.Write("second.yaml", mounted);
+  GstreamerCameraOptions options;
+  options.measures_delay = true;
+  const OpenedLiveSource opened =
+      OpenLiveCameras({Camera(kImages, folder_ / "first.yaml"),
+                       Camera(std::string(kImages) + " ! identity", folder_ / "second.yaml")},
+                      options, {});
+  ASSERT_EQ(opened.late.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(opened.late[i].camera, i);
+    EXPECT_EQ(opened.late[i].name, "cam" + std::to_string(i));
+    EXPECT_THAT(opened.late[i].video->InWords(), HasSubstr("not known yet"));
+  }
 }
 
 TEST_F(LiveCamerasTest, WrongChoicesAreNamed) {

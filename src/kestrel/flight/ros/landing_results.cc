@@ -34,11 +34,13 @@ void LandingResults::PublishTags(const CameraModel& camera, const LandingObserva
   if (!transforms.transforms.empty()) Publish(ResultTopic::kTransforms, transforms);
 }
 
+void LandingResults::PublishMarkers(const LandingObservation& observation) {
+  if (!connection_->HasSubscribers(ResultTopic::kMarkers)) return;
+  Publish(ResultTopic::kMarkers,
+          MarkersOf(observation, options_.shape, options_.camera_frame, options_.world_frame));
+}
+
 void LandingResults::PublishTrack(const LandingObservation& observation) {
-  if (connection_->HasSubscribers(ResultTopic::kMarkers)) {
-    Publish(ResultTopic::kMarkers,
-            MarkersOf(observation, options_.shape, options_.camera_frame, options_.world_frame));
-  }
   if (!options_.world_frame || !observation.target) return;
   Publish(ResultTopic::kTrack,
           TrackOf(*observation.target, *options_.world_frame, options_.target_frame));

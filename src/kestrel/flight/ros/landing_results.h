@@ -39,7 +39,7 @@ class LandingResults {
 
   // 'camera' made the image.
   void PublishDetection(const CameraModel& camera, const LandingObservation& observation);
-  // Also publishes markers.
+  void PublishMarkers(const LandingObservation& observation);
   void PublishTrack(const LandingObservation& observation);
   // The image with the results drawn on it.
   void PublishImage(const cv::Mat& image, const CameraModel& camera,

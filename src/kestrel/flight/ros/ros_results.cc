@@ -98,9 +98,11 @@ void RosResults::Publish(const Frame& frame, const LandingObservation& observati
   LandingObservation stamped = observation;
   stamped.time += frames_.to_stamps;
   if (stamped.target) stamped.target->time += frames_.to_stamps;
+  if (frame.camera > 0) return landing_.PublishTrack(stamped);
   PublishTransforms(stamped);
   landing_.PublishDetection(camera_, stamped);
   Count(observation.report.detection.has_value(), frame.time, observation.detect_time);
+  landing_.PublishMarkers(stamped);
   landing_.PublishTrack(stamped);
   landing_.PublishImage(frame.image, camera_, stamped);
 }

@@ -48,6 +48,7 @@ class RosResults {
   // Waits until somebody subscribes, at most 'timeout': subscribers are found only after a moment.
   void WaitForSubscribers(Duration timeout) const;
 
+  // Of a further camera only the track, which is that of all: the topics are the first camera's.
   void Publish(const Frame& frame, const LandingObservation& observation);
   void Publish(const Frame& frame, const HuntObservation& observation);
   void Publish(const Frame& frame, const FollowObservation& observation);

@@ -14,9 +14,7 @@ namespace {
 constexpr std::size_t kFrames = 8;  // that wait for the network
 constexpr Duration kReportPeriod = std::chrono::seconds(1);
 
-// Of several cameras, the topics are those of the first one; the track is that of all.
 void Publish(const Observation& observation, RosResults* results) {
-  if (observation.frame.camera > 0) return;
   std::visit([&](const auto& seen) { results->Publish(observation.frame, seen); },
              observation.seen);
 }
