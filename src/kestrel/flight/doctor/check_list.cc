@@ -10,7 +10,7 @@
 namespace kestrel {
 namespace {
 
-constexpr std::array<ListedCheck, 42> kChecks = {{
+constexpr std::array<ListedCheck, 43> kChecks = {{
     {"image size", "images have the size of the calibration"},
     {"lens model", "every pixel has a ray: the distortion does not bend back before the rim"},
     {"principal point, pixels", "the optical axis is near the middle, and pixels are square"},
@@ -35,6 +35,7 @@ constexpr std::array<ListedCheck, 42> kChecks = {{
     {"attitude", "comes as often as requested"},
     {"position", "comes as often as requested"},
     {"position estimate", "the autopilot trusts its own position"},
+    {"origin", "--pad-position: there is one, or fly.pad_origin"},
     {"autopilot's clock", "TIMESYNC is answered, and the clock does not jump"},
     {"round trip", "at most 100 ms, with px4-vte 10 ms"},
     {"others on the line", "one companion, one set of ids, one source of landing targets"},

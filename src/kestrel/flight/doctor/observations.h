@@ -33,6 +33,8 @@ struct DoctorUse {
   bool points = false;                 // and points the gimbal, if there is one
   std::optional<double> target_mps;    // speed of a target that moves; nothing: it stands
   double tilt_deg = 30;                // by which guidance may lean
+  bool pad_position = false;           // the pad is the autopilot's position
+  bool has_pad_origin = false;         // Kestrel sets the origin of its frame
   bool sends_distance = false;         // DISTANCE_SENSOR too
   double attitude_rate_hz = 100;       // requested from the autopilot
   double position_rate_hz = 50;        //
@@ -109,6 +111,7 @@ struct LinkObservations {
   std::optional<double> view_rad;     // the newest one of these
   double attitude_age_s = 0;          // age of the newest attitude at the end
   double position_age_s = 0;
+  bool has_origin = false;                // of the autopilot's local frame
   std::optional<bool> has_good_position;  // according to the autopilot's own estimator
   std::uint64_t lost_packets = 0;
   bool knows_clock = false;
