@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 namespace kestrel {
 namespace {
@@ -17,6 +18,7 @@ constexpr Duration kPause = std::chrono::milliseconds(250);
 constexpr Duration kLongestStop = std::chrono::seconds(3);
 constexpr double kStands_mps = 0.4;
 constexpr Duration kVelocityAge = std::chrono::milliseconds(300);  // an older one is not used
+constexpr Duration kThrottleAge = std::chrono::seconds(2);
 // ArduCopter shapes a wanted velocity gently (2.5 m/s^2, 1 m/s^2 down), and adds a wanted
 // acceleration within its limits of jerk (PSC_JERK_NE and _D as they come): a braking that ends
 // faster than they allow would carry it backwards.
@@ -26,7 +28,14 @@ constexpr Duration kListening = std::chrono::seconds(1);
 // An autopilot that is silent for so long is gone.
 constexpr Duration kSilence = std::chrono::seconds(10);
 
-const char* TakeOverText(GuardTask task, AutopilotKind kind, bool has_ended) {
+const char* TakeOverText(GuardTask task, AutopilotKind kind, bool has_ended, bool has_pilot) {
+  if (task == GuardTask::kLower && has_pilot) {
+    return has_ended ? "Kestrel is gone, no position: fly by hand"
+                     : "Kestrel hangs, no position: fly by hand";
+  }
+  if (task == GuardTask::kLower) {
+    return has_ended ? "Kestrel is gone, no position: LAND" : "Kestrel hangs, no position: LAND";
+  }
   if (task == GuardTask::kLand) {
     return has_ended ? "Kestrel is gone, at the deck: LAND" : "Kestrel hangs, at the deck: LAND";
   }
@@ -92,6 +101,24 @@ SetPoint FlightGuard::Stop(Time now) {
   return *stop_;
 }
 
+// It sends one level attitude only.
+void FlightGuard::TakeHeading(float heading) {
+  if (state_ == State::kWatches && std::isfinite(heading)) heading_ = heading;
+}
+
+void FlightGuard::TakeThrottle(bool is_centred, Time now) {
+  if (is_centred) {
+    throttle_centred_ = now;
+  } else {
+    throttle_centred_.reset();
+  }
+}
+
+// A throttle at its lower end would let the UAV down fast in the pilot's mode.
+bool FlightGuard::HasPilot(Time now) const {
+  return is_received_ && throttle_centred_ && now - *throttle_centred_ < kThrottleAge;
+}
+
 void FlightGuard::TakeRefusal() {
   if (state_ == State::kWorks) is_refused_ = !is_refused_;
 }
@@ -124,7 +151,7 @@ GuardAction FlightGuard::TakeOver(Time now) {
   if (!is_guided_) return HandBack("Kestrel is gone, the mode was left before", now);
   state_ = State::kWorks;
   GuardAction action = Work(now);
-  action.text = TakeOverText(task_, kind_, has_ended_);
+  action.text = TakeOverText(task_, kind_, has_ended_, HasPilot(now));
   return action;
 }
 
@@ -138,6 +165,9 @@ GuardAction FlightGuard::Work(Time now) {
     set_point_due_ = now + kSetPointPeriod;
     action.stop = Stop(now);
   }
+  if (task_ == GuardTask::kLower && kind_ == AutopilotKind::kArduPilot) {
+    action.level = std::exchange(heading_, std::nullopt);
+  }
   if (now < mode_due_) return action;
   action.mode = ModeToRequest(now);
   if (!action.mode) return action;
@@ -149,6 +179,9 @@ GuardAction FlightGuard::Work(Time now) {
 
 std::optional<FlightMode> FlightGuard::ModeToRequest(Time now) const {
   if (task_ == GuardTask::kLand) return FlightMode::kLand;
+  if (task_ == GuardTask::kLower) {
+    return HasPilot(now) && !is_refused_ ? FlightMode::kAltitude : FlightMode::kLand;
+  }
   const auto velocity = Velocity(now);
   const bool is_led = stop_ && !stop_->velocity.isZero();
   const bool is_stopped = velocity && velocity->norm() < kStands_mps && !is_led;
@@ -159,7 +192,9 @@ std::optional<FlightMode> FlightGuard::ModeToRequest(Time now) const {
 GuardAction FlightGuard::HandBack(const char* text, Time now) {
   state_ = State::kListens;
   since_ = now;
-  return {.stop = std::nullopt, .mode = std::nullopt, .text = text};
+  GuardAction action;
+  action.text = text;
+  return action;
 }
 
 }  // namespace kestrel

@@ -16,18 +16,22 @@ namespace kestrel {
 enum class GuardTask : std::uint8_t {
   kNothing,  // guidance does not fly
   kStop,     // guidance flies: the UAV is stopped and handed back
+  kLower,    // guidance flies, and the position ends with the program, or is lost: see below
   kLand,     // in the last decimetres or on the deck: landing is requested
 };
 
 // Messages that the guard sends now.
 struct GuardAction {
   std::optional<SetPoint> stop;    // a set-point that stops the UAV
+  std::optional<float> level;      // a level attitude with this heading of NED, without climb
   std::optional<FlightMode> mode;  // a request for this mode
   const char* text = nullptr;      // to the ground station, up to 50 characters
 };
 
 // Decides what the guard does. A state machine without clock or socket: every event is
 // passed to it. Neither throws nor allocates. docs/guard.md describes what it does in which case.
+// A UAV that is lowered gets one level set-point, then LAND; or, where a pilot has his sticks in
+// their middle, a mode that follows them. Nothing that needs a position is requested.
 class FlightGuard {
  public:
   // 'patience': after so long without a sign of life the program that flies is taken for dead.
@@ -42,7 +46,11 @@ class FlightGuard {
   void TakeMode(bool is_guided, Time now);
   void TakeArmed(bool is_armed) { is_armed_ = is_armed; }
   void TakeVelocity(const Eigen::Vector3d& velocity, Time now);  // ENU, m/s
-  void TakeRefusal();                                            // the autopilot refused a mode
+  void TakeHeading(float heading);                               // NED, rad
+  // The autopilot receives a transmitter, whose throttle is or is not in its middle.
+  void TakeReceiver(bool is_received) { is_received_ = is_received; }
+  void TakeThrottle(bool is_centred, Time now);
+  void TakeRefusal();  // the autopilot refused a mode
 
   // Call it every 20 ms at most.
   GuardAction Update(Time now);
@@ -58,6 +66,7 @@ class FlightGuard {
   GuardAction TakeOver(Time now);
   GuardAction Work(Time now);
   SetPoint Stop(Time now);
+  bool HasPilot(Time now) const;
   std::optional<Eigen::Vector3d> Velocity(Time now) const;
   std::optional<FlightMode> ModeToRequest(Time now) const;
   GuardAction HandBack(const char* text, Time now);
@@ -75,8 +84,11 @@ class FlightGuard {
   Eigen::Vector3d velocity_{0, 0, 0};
   std::optional<Time> velocity_reported_;
   std::optional<SetPoint> stop_;  // the last one
-  bool is_refused_ = false;       // the mode wanted first
-  Time since_{};                  // beginning of the state
+  std::optional<float> heading_;  // until the UAV was levelled
+  bool is_received_ = false;
+  std::optional<Time> throttle_centred_;  // when it was last
+  bool is_refused_ = false;               // the mode wanted first
+  Time since_{};                          // beginning of the state
   Time set_point_due_{};
   Time mode_due_{};
 };

@@ -18,6 +18,7 @@ class FlightGuardTest : public ::testing::Test {
  protected:
   struct Sent {
     int set_points = 0;
+    int levels = 0;
     std::vector<FlightMode> modes;
     std::string text;
     SetPoint stop;  // the last
@@ -44,6 +45,7 @@ class FlightGuardTest : public ::testing::Test {
       const GuardAction action = guard_.Update(now_);
       sent.set_points += action.stop ? 1 : 0;
       if (action.stop) sent.stop = *action.stop;
+      sent.levels += action.level ? 1 : 0;
       if (action.mode) sent.modes.push_back(*action.mode);
       if (action.text != nullptr) sent.text += std::string(action.text) + "\n";
     }
@@ -134,6 +136,51 @@ TEST_F(FlightGuardTest, SwitchesPx4ToHoldAfterTimeoutWithoutSpeed) {
   guard_.TakeEnd();
   EXPECT_THAT(BeSilent(2900).modes, ::testing::IsEmpty());
   EXPECT_THAT(BeSilent(200).modes, ::testing::ElementsAre(FlightMode::kHold));
+}
+
+// --- No position that lasts ---
+
+TEST_F(FlightGuardTest, LevelsOnceAndLandsWithoutPosition) {
+  for (const AutopilotKind kind : {AutopilotKind::kArduPilot, AutopilotKind::kPx4}) {
+    guard_ = FlightGuard(milliseconds(200));
+    guard_.TakeHeading(0.7F);
+    Fly(GuardTask::kLower, kind, 100);
+    guard_.TakeEnd();
+    velocity_ = {0, 0, 0};
+    const Sent sent = BeSilent(1000);
+    EXPECT_EQ(sent.set_points, 0);
+    EXPECT_EQ(sent.levels, kind == AutopilotKind::kArduPilot ? 1 : 0);
+    EXPECT_THAT(sent.modes, ::testing::Each(FlightMode::kLand));
+    EXPECT_GE(sent.modes.size(), 3u);
+    EXPECT_EQ(sent.text, "Kestrel is gone, no position: LAND\n");
+  }
+}
+
+TEST_F(FlightGuardTest, GivesUavWithoutPositionToPilotWithSticks) {
+  guard_.TakeReceiver(true);
+  guard_.TakeThrottle(true, now_);
+  Fly(GuardTask::kLower, AutopilotKind::kPx4, 100);
+  const Sent sent = BeSilent(400);
+  EXPECT_EQ(sent.modes.front(), FlightMode::kAltitude);
+  EXPECT_EQ(sent.text, "Kestrel hangs, no position: fly by hand\n");
+  guard_.TakeRefusal();
+  EXPECT_THAT(BeSilent(300).modes, ::testing::ElementsAre(FlightMode::kLand));
+}
+
+// It would come down as fast as it may.
+TEST_F(FlightGuardTest, DoesNotGiveUavToPilotWithThrottleDown) {
+  guard_.TakeReceiver(true);
+  guard_.TakeThrottle(true, now_);
+  guard_.TakeThrottle(false, now_);
+  Fly(GuardTask::kLower, AutopilotKind::kArduPilot, 100);
+  EXPECT_THAT(BeSilent(600).modes, ::testing::Each(FlightMode::kLand));
+}
+
+TEST_F(FlightGuardTest, DoesNotGiveUavToLostTransmitter) {
+  guard_.TakeThrottle(true, now_);
+  guard_.TakeReceiver(false);
+  Fly(GuardTask::kLower, AutopilotKind::kArduPilot, 100);
+  EXPECT_THAT(BeSilent(600).modes, ::testing::Each(FlightMode::kLand));
 }
 
 TEST_F(FlightGuardTest, LandsUavOnDeckWithoutSetPoint) {

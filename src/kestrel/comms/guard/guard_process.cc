@@ -10,12 +10,10 @@
 #include <thread>
 #include <utility>
 
-#include "kestrel/comms/mavlink/command_requests.h"
+#include "kestrel/comms/guard/guard_exchange.h"
 #include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/comms/mavlink/messages.h"
-#include "kestrel/comms/mavlink/ned.h"
 #include "kestrel/comms/mavlink/parameter_reader.h"
-#include "kestrel/comms/mavlink/set_point_message.h"
 #include "kestrel/comms/mavlink/wait_readable.h"
 #include "kestrel/core/base/error.h"
 
@@ -147,20 +145,7 @@ void GuardProcess::Read(const mavlink::Packet& packet) {
       signing_->Check(packet, mavlink::UnixNanoseconds()) != mavlink::Signing::Verdict::kGood) {
     return;
   }
-  const Time now = Now();
-  if (const auto heartbeat = packet.As<mavlink::Heartbeat>()) {
-    guard_.TakeMode(IsGuidedMode(life_.kind, heartbeat->custom_mode), now);
-    guard_.TakeArmed((heartbeat->base_mode & mavlink::kModeFlagArmed) != 0);
-  } else if (const auto mode = packet.As<mavlink::CurrentMode>()) {
-    guard_.TakeMode(IsGuidedMode(life_.kind, mode->custom_mode), now);
-  } else if (const auto position = packet.As<mavlink::LocalPositionNed>()) {
-    guard_.TakeVelocity(EnuFromNed({position->vx, position->vy, position->vz}), now);
-  } else if (const auto ack = packet.As<mavlink::CommandAck>()) {
-    const bool is_mode = ack->command == mavlink::kCommandDoSetMode;
-    const bool is_open =
-        ack->result == mavlink::kResultAccepted || ack->result == mavlink::kResultInProgress;
-    if (is_mode && !is_open) guard_.TakeRefusal();
-  }
+  TakePacket(packet, life_, Now(), &guard_);
 }
 
 void GuardProcess::Act(const GuardAction& action) {
@@ -170,14 +155,7 @@ void GuardProcess::Act(const GuardAction& action) {
     if (signing_) signing_->Continue(life_.signing_timestamp);
     SendTo(program_, GuardMessage::kTakenOver);
   }
-  if (action.stop) {
-    Send(SetPointMessage(*action.stop, life_.kind, life_.autopilot_system,
-                         life_.autopilot_component, /*boot_ms=*/0));
-  }
-  if (action.mode) {
-    Send(ModeCommand(life_.kind, CustomModeOf(life_.kind, *action.mode), life_.autopilot_system,
-                     life_.autopilot_component));
-  }
+  SendAction(action, life_, [this](const auto& message) { Send(message); });
   if (action.text != nullptr) Report(action.text);
 }
 

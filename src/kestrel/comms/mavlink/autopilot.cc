@@ -174,7 +174,7 @@ void Autopilot::HandleHeartbeat(const mavlink::Packet& packet, const mavlink::He
 
 void Autopilot::ReportChange(const mavlink::Heartbeat& before) {
   if (heartbeat_.custom_mode != before.custom_mode && heartbeat_.custom_mode != requested_mode_) {
-    commands_.Drop(mavlink::kCommandDoSetMode);
+    DropModeRequest();
   }
   if (heartbeat_.custom_mode != before.custom_mode || is_armed() != IsArmed(before)) {
     Notify(AutopilotEventKind::kModeChanged,
@@ -461,6 +461,7 @@ void Autopilot::WantStreams() {
   if (options_.wants_acceleration) {
     streams_.WantIfThere(is_px4 ? mavlink::HighresImu::kId : mavlink::RawImu::kId,
                          kAcceleration_hz);
+    streams_.WantIfThere(mavlink::RcChannels::kId, kStatusRate_hz);  // for the guard
   }
   if (options_.wants_true_pose) {
     streams_.Want(is_px4 ? mavlink::HilStateQuaternion::kId : mavlink::SimState::kId,
@@ -517,8 +518,14 @@ bool Autopilot::RequestMode(FlightMode mode) {
   const std::uint32_t custom_mode = CustomModeOf(kind_, mode);
   if (custom_mode == 0) return false;
   requested_mode_ = custom_mode;
+  DropModeRequest();
   commands_.Want(ModeCommand(kind_, custom_mode, system_, component_));
   return true;
+}
+
+void Autopilot::DropModeRequest() {
+  commands_.Drop(mavlink::kCommandDoSetMode);
+  commands_.Drop(mavlink::kCommandLand);
 }
 
 void Autopilot::DisarmByForce() {
@@ -527,6 +534,7 @@ void Autopilot::DisarmByForce() {
 
 bool Autopilot::is_request_pending() const {
   return commands_.IsWanted(mavlink::kCommandDoSetMode) ||
+         commands_.IsWanted(mavlink::kCommandLand) ||
          commands_.IsWanted(mavlink::kCommandArmDisarm);
 }
 
@@ -537,7 +545,7 @@ void Autopilot::SendCommands(Time now) {
 }
 
 void Autopilot::ReportEnding(const CommandRequests::Ending& ending) {
-  const bool is_mode = ending.command.command == mavlink::kCommandDoSetMode;
+  const bool is_mode = IsModeCommand(ending.command.command);
   const std::string what =
       is_mode ? "mode " + ModeName(kind_, requested_mode_) : std::string("disarming");
   if (!ending.result) {

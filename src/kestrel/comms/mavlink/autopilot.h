@@ -222,6 +222,7 @@ class Autopilot {
   void SendInterval(std::uint32_t id, double rate_hz);
   mavlink::CommandLong MakeCommand(std::uint16_t command, float param1, float param2) const;
   void SendCommands(Time now);
+  void DropModeRequest();
   void ReportEnding(const CommandRequests::Ending& ending);
   void SendParameterRequests(Time now);
   void SendQuestions(Time now);

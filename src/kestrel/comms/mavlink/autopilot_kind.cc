@@ -13,6 +13,7 @@
 namespace kestrel {
 namespace {
 
+constexpr std::uint32_t kArduCopterAltHold = 2;
 constexpr std::uint32_t kArduCopterGuided = 4;
 constexpr std::uint32_t kArduCopterLoiter = 5;
 constexpr std::uint32_t kArduCopterReturn = 6;
@@ -22,7 +23,7 @@ constexpr std::uint32_t kArduCopterBrake = 17;
 constexpr std::array<std::pair<std::uint32_t, std::string_view>, 22> kArduCopterModes = {
     {{0, "STABILIZE"},
      {1, "ACRO"},
-     {2, "ALT_HOLD"},
+     {kArduCopterAltHold, "ALT_HOLD"},
      {3, "AUTO"},
      {kArduCopterGuided, "GUIDED"},
      {kArduCopterLoiter, "LOITER"},
@@ -43,6 +44,7 @@ constexpr std::array<std::pair<std::uint32_t, std::string_view>, 22> kArduCopter
      {24, "ZIGZAG"},
      {27, "AUTO_RTL"}}};
 
+constexpr std::uint32_t kPx4Altitude = Px4CustomMode(2, 0);
 constexpr std::uint32_t kPx4Position = Px4CustomMode(3, 0);
 constexpr std::uint32_t kPx4Loiter = Px4CustomMode(4, 3);
 constexpr std::uint32_t kPx4Return = Px4CustomMode(4, 5);
@@ -52,7 +54,7 @@ constexpr std::uint32_t kPx4Offboard = Px4CustomMode(6, 0);
 
 constexpr std::array<std::pair<std::uint32_t, std::string_view>, 29> kPx4Modes = {
     {{Px4CustomMode(1, 0), "MANUAL"},
-     {Px4CustomMode(2, 0), "ALTCTL"},
+     {kPx4Altitude, "ALTCTL"},
      {kPx4Position, "POSCTL"},
      {Px4CustomMode(3, 1), "ORBIT"},
      {Px4CustomMode(3, 2), "POSITION_SLOW"},
@@ -100,6 +102,8 @@ std::uint32_t ArduCopterMode(FlightMode mode) {
       return kArduCopterBrake;
     case FlightMode::kPilot:
       return kArduCopterLoiter;
+    case FlightMode::kAltitude:
+      return kArduCopterAltHold;
     case FlightMode::kReturn:
       return kArduCopterReturn;
   }
@@ -118,6 +122,8 @@ std::uint32_t Px4Mode(FlightMode mode) {
       return kPx4Loiter;
     case FlightMode::kPilot:
       return kPx4Position;
+    case FlightMode::kAltitude:
+      return kPx4Altitude;
     case FlightMode::kReturn:
       return kPx4Return;
   }

@@ -23,6 +23,7 @@ enum class FlightMode {
   kPrecisionLand,  // descends onto the reported target: LAND, PRECLAND
   kHold,           // holds its place without a pilot: BRAKE, LOITER ("Hold")
   kPilot,          // follows the pilot's sticks: LOITER, POSCTL
+  kAltitude,       // likewise, without a position: ALT_HOLD, ALTCTL
   kReturn,         // RTL
 };
 

@@ -116,11 +116,10 @@ TEST_F(AutopilotTest, RequestsModeUntilAnswered) {
     EXPECT_TRUE(autopilot_->RequestMode(FlightMode::kLand));
     Pass(0.5);
     const auto command = last_heard_[mavlink::CommandLong::kId].As<mavlink::CommandLong>();
-    EXPECT_EQ(command->command, mavlink::kCommandDoSetMode);
-    EXPECT_EQ(command->param2, is_px4 ? 4 : 9);
-    EXPECT_EQ(command->param3, is_px4 ? 6 : 0);
+    EXPECT_EQ(command->command, is_px4 ? mavlink::kCommandLand : mavlink::kCommandDoSetMode);
+    EXPECT_EQ(command->param2, is_px4 ? 0 : 9);
     EXPECT_EQ(command->confirmation, 1);
-    SendMessage(mavlink::CommandAck{mavlink::kCommandDoSetMode, mavlink::kResultDenied});
+    SendMessage(mavlink::CommandAck{command->command, mavlink::kResultDenied});
     EXPECT_FALSE(autopilot_->is_request_pending());
     EXPECT_EQ(TextOfEvent(AutopilotEventKind::kCommandRefused),
               "the autopilot refuses mode LAND: denied");
@@ -129,6 +128,20 @@ TEST_F(AutopilotTest, RequestsModeUntilAnswered) {
     EXPECT_EQ(TextOfEvent(AutopilotEventKind::kCommandUnanswered),
               "the autopilot does not answer the request for disarming");
   }
+}
+
+// PX4 numbers a mode by two numbers.
+TEST_F(AutopilotTest, RequestsModeOfPx4ByTwoNumbers) {
+  kind_ = mavlink::kAutopilotPx4;
+  Start();
+  Pass(1);
+  autopilot_->RequestMode(FlightMode::kLand);
+  autopilot_->RequestMode(FlightMode::kHold);  // in place of the landing
+  Pass(0.5);
+  const auto command = last_heard_[mavlink::CommandLong::kId].As<mavlink::CommandLong>();
+  EXPECT_EQ(command->command, mavlink::kCommandDoSetMode);
+  EXPECT_EQ(command->param2, 4);
+  EXPECT_EQ(command->param3, 3);
 }
 
 // Otherwise a pilot who takes over would lose the mode again.

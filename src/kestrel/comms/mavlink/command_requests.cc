@@ -12,13 +12,21 @@ mavlink::CommandLong ModeCommand(AutopilotKind kind, std::uint32_t custom_mode, 
   constexpr std::uint32_t kByte = 0xff;
   const bool is_px4 = kind == AutopilotKind::kPx4;
   mavlink::CommandLong command;
-  command.command = mavlink::kCommandDoSetMode;
   command.target_system = system;
   command.target_component = component;
+  if (is_px4 && custom_mode == CustomModeOf(kind, FlightMode::kLand)) {
+    command.command = mavlink::kCommandLand;
+    return command;
+  }
+  command.command = mavlink::kCommandDoSetMode;
   command.param1 = mavlink::kModeFlagCustom;
   command.param2 = static_cast<float>(is_px4 ? custom_mode >> 16 & kByte : custom_mode);
   if (is_px4) command.param3 = static_cast<float>(custom_mode >> 24);
   return command;
+}
+
+bool IsModeCommand(std::uint16_t command) {
+  return command == mavlink::kCommandDoSetMode || command == mavlink::kCommandLand;
 }
 
 bool CommandRequests::Ending::is_accepted() const { return result == mavlink::kResultAccepted; }

@@ -11,9 +11,13 @@
 
 namespace kestrel {
 
-// The command that requests a mode (HEARTBEAT.custom_mode) of an autopilot with these ids.
+// The command that requests a mode (HEARTBEAT.custom_mode) of an autopilot with these ids. LAND is
+// requested from PX4 by NAV_LAND: DO_SET_MODE is refused without a position, and NAV_LAND never is.
 mavlink::CommandLong ModeCommand(AutopilotKind kind, std::uint32_t custom_mode, std::uint8_t system,
                                  std::uint8_t component);
+
+// True for the commands of ModeCommand.
+bool IsModeCommand(std::uint16_t command);
 
 // Commands whose answer matters: each is repeated until the autopilot answers it. The answer does
 // not prove that the command was carried out.

@@ -73,6 +73,10 @@ inline constexpr std::uint8_t kStateCritical = 5;
 inline constexpr std::uint8_t kStateEmergency = 6;
 
 // MAV_CMD
+// SYS_STATUS: of a transmitter.
+inline constexpr std::uint32_t kSensorReceiver = 0x10000;
+
+inline constexpr std::uint16_t kCommandLand = 21;
 inline constexpr std::uint16_t kCommandTakeOff = 22;
 inline constexpr std::uint16_t kCommandDoSetMode = 176;
 inline constexpr std::uint16_t kCommandArmDisarm = 400;

@@ -58,17 +58,22 @@ mavlink::SetPositionTargetLocalNed SetPointMessage(const SetPoint& set_point, Au
   return message;
 }
 
-mavlink::SetAttitudeTarget CarriedMessage(const SetPoint& set_point, std::uint8_t system,
-                                          std::uint8_t component, std::uint32_t boot_ms) {
-  const float half = 0.5F * HeadingOfYaw(set_point.yaw.value_or(0));
+mavlink::SetAttitudeTarget LevelMessage(float heading, float thrust, std::uint8_t system,
+                                        std::uint8_t component, std::uint32_t boot_ms) {
+  const float half = 0.5F * heading;
   mavlink::SetAttitudeTarget message;
   message.time_boot_ms = boot_ms;
   message.target_system = system;
   message.target_component = component;
   message.type_mask = mavlink::kIgnoreBodyRates;
   message.q = {std::cos(half), 0, 0, std::sin(half)};
-  message.thrust = 0;  // a climb rate: the fastest sink rate
+  message.thrust = thrust;
   return message;
+}
+
+mavlink::SetAttitudeTarget CarriedMessage(const SetPoint& set_point, std::uint8_t system,
+                                          std::uint8_t component, std::uint32_t boot_ms) {
+  return LevelMessage(HeadingOfYaw(set_point.yaw.value_or(0)), 0, system, component, boot_ms);
 }
 
 bool SendSetPoint(const SetPoint& set_point, const Autopilot& autopilot, Time now,

@@ -20,6 +20,11 @@ mavlink::SetPositionTargetLocalNed SetPointMessage(const SetPoint& set_point, Au
                                                    std::uint8_t system, std::uint8_t component,
                                                    std::uint32_t boot_ms);
 
+// Returns a level attitude for ArduPilot's GUIDED. 'heading': clockwise from north, rad. 'thrust':
+// a climb rate, 0.5 for none, 0 and 1 for the fastest down and up.
+mavlink::SetAttitudeTarget LevelMessage(float heading, float thrust, std::uint8_t system,
+                                        std::uint8_t component, std::uint32_t boot_ms);
+
 // Returns the form of a set-point for a UAV that a deck carries, for ArduPilot's GUIDED: level, the
 // heading, and down as fast as it may. Where it controls a velocity against the deck, it leans ever
 // more, and its land detector never finds that it has landed.

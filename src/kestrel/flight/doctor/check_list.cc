@@ -36,6 +36,7 @@ constexpr std::array<ListedCheck, 43> kChecks = {{
     {"attitude", "comes as often as requested"},
     {"position", "comes as often as requested"},
     {"position estimate", "the autopilot trusts its own position"},
+    {"origin", "--pad-position: there is one, or fly.pad_origin"},
     {"autopilot's clock", "TIMESYNC is answered, and the clock does not jump"},
     {"round trip", "at most 100 ms, with px4-vte 10 ms"},
     {"others on the line", "one companion, one set of ids, one source of landing targets"},

@@ -42,6 +42,7 @@ TEST(DoctorTest, FlagsNothingOnGoodSetup) {
     EXPECT_THAT(Flagged(Check(GoodSetup(kind))), IsEmpty()) << ToString(kind);
     EXPECT_THAT(Flagged(Check(GoodGuidedSetup(kind))), IsEmpty()) << ToString(kind);
     EXPECT_THAT(Flagged(Check(OnGimbal(GoodSetup(kind)))), IsEmpty()) << ToString(kind);
+    EXPECT_THAT(Flagged(Check(GoodPadSetup(kind))), IsEmpty()) << ToString(kind);
   }
 }
 
@@ -97,7 +98,8 @@ TEST(DoctorTest, ListsEveryCheck) {
   for (const ListedCheck& check : ListedChecks()) listed.emplace_back(check.name);
   for (const AutopilotKind kind : {AutopilotKind::kArduPilot, AutopilotKind::kPx4}) {
     for (const ListedCheck& check : CheckedParameters(kind)) listed.emplace_back(check.name);
-    for (const auto& setup : {GoodSetup(kind), GoodGuidedSetup(kind), OnGimbal(GoodSetup(kind))}) {
+    for (const auto& setup :
+         {GoodSetup(kind), GoodGuidedSetup(kind), OnGimbal(GoodSetup(kind)), GoodPadSetup(kind)}) {
       for (const Finding& finding : Check(setup)) EXPECT_THAT(listed, Contains(finding.check));
     }
   }
@@ -105,7 +107,7 @@ TEST(DoctorTest, ListsEveryCheck) {
 
 // --- One fault at a time ---
 
-enum class Setup { kArduPilot, kPx4, kGuidedArduPilot, kGuidedPx4 };
+enum class Setup { kArduPilot, kPx4, kGuidedArduPilot, kGuidedPx4, kPadArduPilot, kPadPx4 };
 
 DoctorObservations Make(Setup setup) {
   switch (setup) {
@@ -117,6 +119,10 @@ DoctorObservations Make(Setup setup) {
       return GoodGuidedSetup(AutopilotKind::kArduPilot);
     case Setup::kGuidedPx4:
       return GoodGuidedSetup(AutopilotKind::kPx4);
+    case Setup::kPadArduPilot:
+      return GoodPadSetup(AutopilotKind::kArduPilot);
+    case Setup::kPadPx4:
+      return GoodPadSetup(AutopilotKind::kPx4);
   }
   return {};
 }
@@ -502,6 +508,54 @@ std::vector<Fault> ParameterFaults() {
   };
 }
 
+// The pad is the position.
+std::vector<Fault> PadFaults() {
+  return {
+      {"no origin", Setup::kPadPx4,
+       [](DoctorObservations* all) { all->use.has_pad_origin = false; }, "origin", Verdict::kWrong,
+       "fly.pad_origin"},
+      {"ODOMETRY not read", Setup::kPadArduPilot, Parameter("VISO_TYPE", 0), "VISO_TYPE",
+       Verdict::kWrong, "param set VISO_TYPE 1, then reboot"},
+      {"a delay left at its default", Setup::kPadArduPilot,
+       [](DoctorObservations* all) { all->vision.latency_s = 0.12; }, "VISO_DELAY_MS",
+       Verdict::kDoubtful, "param set VISO_DELAY_MS 122"},
+      {"place by GNSS", Setup::kPadArduPilot, Parameter("EK3_SRC1_POSXY", 3), "EK3_SRC1_POSXY",
+       Verdict::kWrong, "param set EK3_SRC1_POSXY 6"},
+      {"speed by GNSS", Setup::kPadArduPilot, Parameter("EK3_SRC1_VELXY", 3), "EK3_SRC1_VELXY",
+       Verdict::kWrong, "does not arm"},
+      {"vertical speed by GNSS", Setup::kPadArduPilot, Parameter("EK3_SRC1_VELZ", 3),
+       "EK3_SRC1_VELZ", Verdict::kWrong, "does not arm"},
+      {"height by GNSS", Setup::kPadArduPilot, Parameter("EK3_SRC1_POSZ", 3), "EK3_SRC1_POSZ",
+       Verdict::kWrong, "does not arm"},
+      {"heading by GNSS", Setup::kPadArduPilot, Parameter("EK3_SRC1_YAW", 2), "EK3_SRC1_YAW",
+       Verdict::kWrong, "param set EK3_SRC1_YAW 1"},
+      {"a receiver of GNSS", Setup::kPadArduPilot, Parameter("GPS1_TYPE", 1), "GPS1_TYPE",
+       Verdict::kDoubtful, "param set GPS1_TYPE 0"},
+      {"no failsafe of the estimator", Setup::kPadArduPilot, Parameter("FS_EKF_ACTION", 0),
+       "FS_EKF_ACTION", Verdict::kDoubtful, "drifts"},
+      {"a fence", Setup::kPadArduPilot, Parameter("FENCE_ENABLE", 1), "FENCE_ENABLE",
+       Verdict::kDoubtful, "arms with a position only"},
+      {"a return without transmitter", Setup::kPadArduPilot, Parameter("FS_THR_ENABLE", 1),
+       "FS_THR_ENABLE", Verdict::kDoubtful, "returns"},
+      {"a return without ground station", Setup::kPadArduPilot, Parameter("FS_GCS_ENABLE", 1),
+       "FS_GCS_ENABLE", Verdict::kDoubtful, "returns"},
+      {"GUID_TIMEOUT", Setup::kPadArduPilot, Parameter("GUID_TIMEOUT", 3), "GUID_TIMEOUT",
+       Verdict::kWrong, "param set GUID_TIMEOUT 0.3"},
+      {"external vision off", Setup::kPadPx4, Parameter("EKF2_EV_CTRL", 8), "EKF2_EV_CTRL",
+       Verdict::kWrong, "param set EKF2_EV_CTRL 11"},
+      {"a guess for 5 s", Setup::kPadPx4, Parameter("EKF2_NOAID_TOUT", 5e6), "EKF2_NOAID_TOUT",
+       Verdict::kDoubtful, "param set EKF2_NOAID_TOUT 500000"},
+      {"GNSS in the estimator", Setup::kPadPx4, Parameter("EKF2_GPS_CTRL", 7), "EKF2_GPS_CTRL",
+       Verdict::kDoubtful, "param set EKF2_GPS_CTRL 0"},
+      {"GNSS wanted", Setup::kPadPx4, Parameter("SYS_HAS_GPS", 1), "SYS_HAS_GPS",
+       Verdict::kDoubtful, "does not arm"},
+      {"COM_OBL_RC_ACT that returns", Setup::kPadPx4, Parameter("COM_OBL_RC_ACT", 3),
+       "COM_OBL_RC_ACT", Verdict::kWrong, "param set COM_OBL_RC_ACT 4"},
+      {"NAV_RCL_ACT that returns", Setup::kPadPx4, Parameter("NAV_RCL_ACT", 2), "NAV_RCL_ACT",
+       Verdict::kDoubtful, "returns"},
+  };
+}
+
 std::vector<Fault> ComputerFaults() {
   return {
       {"too slow a computer", Setup::kPx4,
@@ -562,6 +616,7 @@ INSTANTIATE_TEST_SUITE_P(Mount, DoctorFaultTest, ::testing::ValuesIn(MountFaults
 INSTANTIATE_TEST_SUITE_P(Gimbal, DoctorFaultTest, ::testing::ValuesIn(GimbalFaults()));
 INSTANTIATE_TEST_SUITE_P(Link, DoctorFaultTest, ::testing::ValuesIn(LinkFaults()));
 INSTANTIATE_TEST_SUITE_P(Parameters, DoctorFaultTest, ::testing::ValuesIn(ParameterFaults()));
+INSTANTIATE_TEST_SUITE_P(Pad, DoctorFaultTest, ::testing::ValuesIn(PadFaults()));
 INSTANTIATE_TEST_SUITE_P(Computer, DoctorFaultTest, ::testing::ValuesIn(ComputerFaults()));
 
 // --- A further camera ---

@@ -291,6 +291,7 @@ void Examination::SummarizeLink(Time end, LinkObservations* link) const {
   link->view_rad = view_rad_;
   link->attitude_age_s = ToSeconds(end - attitude_time_);
   link->position_age_s = ToSeconds(end - position_time_);
+  link->has_origin = autopilot.origin().has_value();
   link->has_good_position = autopilot.is_position_good(end);
   link->lost_packets = autopilot.counters().lost_packets;
   const TimeSync& clock = autopilot.time_sync();

@@ -181,19 +181,35 @@ Finding CheckAttitudes(const LinkObservations& link, const DoctorUse& use) {
 }
 
 Finding CheckPositions(const LinkObservations& link, const DoctorUse& use) {
+  if (use.pad_position && link.positions == 0) {
+    return NotChecked("position", "none before kestrel fly sends the pad's");
+  }
   return CheckStream("position", link.positions, link.listened_s, link.position_age_s,
                      use.position_rate_hz,
                      "no local position: wait for GNSS and the estimator, go outdoors; then "
                      "SR2_POSITION or MAV2_POSITION 50 (ArduPilot), MAV_1_MODE 2 (PX4)");
 }
 
-Finding CheckEstimate(const LinkObservations& link) {
+Finding CheckEstimate(const LinkObservations& link, const DoctorUse& use) {
   const std::string check = "position estimate";
+  if (use.pad_position && !link.has_good_position.value_or(false)) {
+    return NotChecked(check, "none before kestrel fly sends the pad's");
+  }
   if (!link.has_good_position) return NotChecked(check, "the autopilot does not report it");
   if (*link.has_good_position) return Good(check, "the autopilot trusts its own position");
   return Wrong(check, "the autopilot does not trust its own position",
                "GNSS (or another source of position), compass, and some time; without it neither "
                "precision landing nor guidance starts");
+}
+
+Finding CheckOrigin(const LinkObservations& link, const DoctorUse& use) {
+  const std::string check = "origin";
+  if (link.has_origin) return Good(check, "the autopilot has one");
+  if (use.has_pad_origin) return Good(check, "Kestrel sets fly.pad_origin");
+  return Wrong(check,
+               "the autopilot has none: no home, without which --guide refuses, and ArduPilot no "
+               "failsafe of its estimator",
+               "--set fly.pad_origin=LATITUDE,LONGITUDE, or set it at the ground station");
 }
 
 Finding CheckAutopilotClock(const LinkObservations& link) {
@@ -255,7 +271,8 @@ std::vector<Finding> CheckLink(const LinkObservations& link, const DoctorUse& us
   findings.push_back(CheckVehicle(link));
   findings.push_back(CheckAttitudes(link, use));
   findings.push_back(CheckPositions(link, use));
-  findings.push_back(CheckEstimate(link));
+  findings.push_back(CheckEstimate(link, use));
+  if (use.pad_position) findings.push_back(CheckOrigin(link, use));
   findings.push_back(CheckAutopilotClock(link));
   findings.push_back(CheckRoundTrip(link, use));
   findings.push_back(CheckLinkEvents(link));

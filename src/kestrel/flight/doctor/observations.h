@@ -34,6 +34,8 @@ struct DoctorUse {
   std::optional<double> target_mps;    // speed of a target that moves; nothing: it stands
   double tilt_deg = 30;                // by which guidance may lean
   double sight_s = 0.5;                // so long it flies on near the deck without a sighting
+  bool pad_position = false;           // the pad is the autopilot's position
+  bool has_pad_origin = false;         // Kestrel sets the origin of its frame
   bool sends_distance = false;         // DISTANCE_SENSOR too
   double attitude_rate_hz = 100;       // requested from the autopilot
   double position_rate_hz = 50;        //
@@ -111,6 +113,7 @@ struct LinkObservations {
   std::optional<double> view_rad;     // the newest one of these
   double attitude_age_s = 0;          // age of the newest attitude at the end
   double position_age_s = 0;
+  bool has_origin = false;                // of the autopilot's local frame
   std::optional<bool> has_good_position;  // according to the autopilot's own estimator
   std::uint64_t lost_packets = 0;
   bool knows_clock = false;

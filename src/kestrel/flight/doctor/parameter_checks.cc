@@ -17,7 +17,7 @@
 namespace kestrel {
 namespace {
 
-constexpr std::array<ListedCheck, 27> kOfArduPilot = {{
+constexpr std::array<ListedCheck, 36> kOfArduPilot = {{
     {"PLND_ENABLED", "1"},
     {"PLND_TYPE", "1, targets by MAVLink"},
     {"PLND_ORIENT", "25, down"},
@@ -41,13 +41,22 @@ constexpr std::array<ListedCheck, 27> kOfArduPilot = {{
     {"FS_GCS_ENABLE", "--guide: not 5, which lands on the spot"},
     {"WP_ACC", "--guide --moving: at least 4 m/s^2"},
     {"PSC_JERK_NE", "--guide --moving: at least 12 m/s^3"},
+    {"VISO_TYPE", "--pad-position: 1, ODOMETRY is used"},
+    {"VISO_DELAY_MS", "--pad-position: the measured latency"},
+    {"EK3_SRC1_POSXY", "--pad-position: 6, external navigation"},
+    {"EK3_SRC1_VELZ", "--pad-position: 0 or 6, as EK3_SRC1_VELXY and _POSZ not by GNSS"},
+    {"EK3_SRC1_YAW", "--pad-position: 1, or 6 where the compass is disturbed"},
+    {"GPS1_TYPE", "--pad-position: 0"},
+    {"FS_EKF_ACTION", "--pad-position: 1, land"},
+    {"FS_THR_ENABLE", "--pad-position: 3, land, or 0; a return needs another position"},
+    {"FENCE_ENABLE", "--pad-position: 0, else it arms with a position only"},
     {"MNT1_TYPE", "with a gimbal: its type; 1, servos, reports the set-point"},
     {"MNT1_DEFLT_MODE", "with a gimbal: not 0, retracted"},
     {"CAM1_TYPE", "with a zoom that is not heard: its type; --follow: 0"},
     {"CAM1_HFOV", "with a zoom: 0: else this is reported, whatever the lens does"},
 }};
 
-constexpr std::array<ListedCheck, 25> kOfPx4 = {{
+constexpr std::array<ListedCheck, 29> kOfPx4 = {{
     {"VTE_EN", "1 with the profile px4-vte, else 0; not with --guide"},
     {"VTE_AID_MASK", "bit 1, with the profile px4-vte"},
     {"LTEST_MODE", "--moving: 0"},
@@ -61,8 +70,12 @@ constexpr std::array<ListedCheck, 25> kOfPx4 = {{
     {"EKF2_RNG_CTRL", "--moving: below 2"},
     {"EKF2_OF_CTRL", "--moving: 0"},
     {"COM_OF_LOSS_T", "--guide: 0.1 to 0.5 s: so long the last set-point is flown on"},
-    {"COM_OBL_RC_ACT", "--guide: 5, Hold"},
-    {"NAV_RCL_ACT", "--guide: not 0 where COM_OBL_RC_ACT is 0 to 2"},
+    {"COM_OBL_RC_ACT", "--guide: 5, Hold; with --pad-position 4, Land"},
+    {"NAV_RCL_ACT", "--guide: not 0 where COM_OBL_RC_ACT is 0 to 2; --pad-position: not 2"},
+    {"EKF2_EV_CTRL", "--pad-position: 11, place, height and heading; at least bit 0"},
+    {"EKF2_NOAID_TOUT", "--pad-position: at most 1 s: so long it flies by a guess"},
+    {"EKF2_GPS_CTRL", "--pad-position: 0"},
+    {"SYS_HAS_GPS", "--pad-position: 0, else it does not arm without GNSS"},
     {"COM_RC_OVERRIDE", "--guide: bit 1, the sticks end OFFBOARD"},
     {"MAN_OVERRIDE_SPD", "--guide: 0 or more, the sticks end OFFBOARD"},
     {"LNDMC_XY_VEL_MAX", "--guide: above the target's speed, else it does not disarm"},
@@ -146,6 +159,10 @@ class ParameterRules {
   std::vector<Finding> findings_;
 };
 
+double LinkDelayOf(const DoctorObservations& observations) {
+  return observations.use.link_delay_s.value_or(observations.link.round_trip_s / 2);
+}
+
 // Checks the autopilot's largest lean. Guidance refuses where it may lean more by its own limits
 // than the autopilot allows.
 void CheckTilt(std::string_view name, ParameterRules* rules) {
@@ -219,7 +236,54 @@ void CheckSpeedsOfArduPilot(ParameterRules* rules) {
   CheckTilt("ATC_ANGLE_MAX", rules);
 }
 
+// ArduPilot takes the smallest delay of the messages for none at all, and this for that one.
+void CheckDelayOfArduPilot(ParameterRules* rules) {
+  constexpr double kGood_ms = 40, kLongest_ms = 250;
+  const DoctorObservations& all = rules->all();
+  if (all.vision.frames == 0) return;
+  const double latency_ms =
+      std::min(std::round(kMilliseconds * (all.vision.latency_s + LinkDelayOf(all))), kLongest_ms);
+  rules->Want(
+      "VISO_DELAY_MS", Verdict::kDoubtful,
+      {latency_ms, "not the time from light to message: its place lags in every turn", true},
+      [&](double ms) { return std::abs(ms - latency_ms) <= kGood_ms; });
+}
+
+// What lets it use the pad as its position, and keeps it from flying home by it.
+void CheckPadPositionOfArduPilot(ParameterRules* rules) {
+  constexpr double kOdometry = 1, kExternal = 6, kGnss = 3, kCompass = 1, kLand = 3;
+  constexpr double kLandWithoutStation = 5;
+  rules->WantAtLeast("VISO_TYPE", Verdict::kWrong, kOdometry,
+                     {kOdometry, "ODOMETRY is ignored", true});
+  rules->WantExactly("EK3_SRC1_POSXY", Verdict::kWrong,
+                     {kExternal, "its estimator does not take the pad's position"});
+  for (const std::string_view name : {"EK3_SRC1_VELXY", "EK3_SRC1_VELZ"}) {
+    rules->Want(name, Verdict::kWrong, {0, "it does not arm: speed by GNSS or flow is wanted"},
+                [](double source) { return source == 0 || source == kExternal; });
+  }
+  rules->Want("EK3_SRC1_POSZ", Verdict::kWrong, {1, "it does not arm: height by GNSS is wanted"},
+              [](double source) { return source != kGnss; });
+  rules->Want("EK3_SRC1_YAW", Verdict::kWrong,
+              {kCompass, "it does not arm: the heading by GNSS is wanted"},
+              [](double source) { return source == kCompass || source == kExternal; });
+  rules->WantExactly("GPS1_TYPE", Verdict::kDoubtful,
+                     {0, "it waits for GNSS before it arms, and jumps where a fix comes", true});
+  rules->WantExactly("FS_EKF_ACTION", Verdict::kDoubtful,
+                     {1, "it drifts when the pad is lost and Kestrel is gone"});
+  rules->WantExactly("FENCE_ENABLE", Verdict::kDoubtful,
+                     {0, "it arms with a position only, and there is none before the pad is seen"});
+  rules->Want("FS_THR_ENABLE", Verdict::kDoubtful,
+              {kLand, "when the transmitter is lost it climbs and returns, by the pad's position"},
+              [](double action) { return action == 0 || action == kLand; });
+  rules->Want("FS_GCS_ENABLE", Verdict::kDoubtful,
+              {kLandWithoutStation,
+               "when the ground station is lost it climbs and returns, by the pad's position"},
+              [](double action) { return action == 0 || action == kLandWithoutStation; });
+  CheckDelayOfArduPilot(rules);
+}
+
 void CheckEstimatorOfArduPilot(ParameterRules* rules) {
+  if (rules->all().use.pad_position) return CheckPadPositionOfArduPilot(rules);
   constexpr double kRangeFinder = 2;
   constexpr double kOpticalFlow = 5;
   const Verdict otherwise = rules->moves() ? Verdict::kWrong : Verdict::kDoubtful;
@@ -273,6 +337,7 @@ void CheckGuidanceOfArduPilot(ParameterRules* rules) {
   constexpr double kLand = 5;
   constexpr double kReturn = 1;
   CheckLossTimeout({"GUID_TIMEOUT", 0.1, 0.3}, rules);
+  if (rules->all().use.pad_position) return;
   rules->Want("FS_GCS_ENABLE", Verdict::kDoubtful,
               {kReturn,
                "when the ground station is lost it lands where it is, beside a pattern that "
@@ -426,6 +491,22 @@ void CheckEstimatorOfPx4(ParameterRules* rules) {
                      {0, "speed by optical flow is the deck's"});
 }
 
+void CheckPadPositionOfPx4(ParameterRules* rules) {
+  constexpr double kAll = 11, kWanted_us = 500'000, kLongest_us = 1e6, kReturn = 2, kLand = 3;
+  rules->Want("EKF2_EV_CTRL", Verdict::kWrong,
+              {kAll, "its estimator does not take the pad's position"},
+              [](double control) { return (static_cast<unsigned>(control) & 1) != 0; });
+  rules->Want("EKF2_NOAID_TOUT", Verdict::kDoubtful,
+              {kWanted_us, "so long it flies on by a guess when the pad is lost", true},
+              [](double us) { return us <= kLongest_us; });
+  rules->WantExactly("EKF2_GPS_CTRL", Verdict::kDoubtful,
+                     {0, "it jumps where a fix of GNSS comes"});
+  rules->WantExactly("SYS_HAS_GPS", Verdict::kDoubtful, {0, "it does not arm without GNSS", true});
+  rules->Want("NAV_RCL_ACT", Verdict::kDoubtful,
+              {kLand, "when the transmitter is lost it climbs and returns, by the pad's position"},
+              [](double action) { return action != kReturn; });
+}
+
 // The reaction of PX4 when set-points stop has to be one that holds. Without a transmitter
 // NAV_RCL_ACT sets what follows the modes that need one (0 to 2).
 void CheckLossOfPx4(ParameterRules* rules) {
@@ -433,6 +514,15 @@ void CheckLossOfPx4(ParameterRules* rules) {
   constexpr int kLand = 4;
   constexpr double kHold = 5;
   CheckLossTimeout({"COM_OF_LOSS_T", 0.1, 0.5}, rules);
+  if (rules->all().use.pad_position) {
+    const bool returns = rules->Find("COM_OBL_RC_ACT") == kReturn;
+    rules->Want(
+        "COM_OBL_RC_ACT", Verdict::kWrong,
+        {kLand, returns ? "it climbs and returns when set-points stop"
+                        : "it drifts or falls when set-points stop: its position ends, too"},
+        [](double reported) { return reported == kLand || reported == kHold; });
+    return;
+  }
   const int action = static_cast<int>(rules->Find("COM_OBL_RC_ACT").value_or(0));
   const bool flies_on = action < kReturn && rules->Find("NAV_RCL_ACT").value_or(2) == 0;
   const bool falls = action > kHold;
@@ -504,12 +594,9 @@ void CheckPx4(ParameterRules* rules) {
   }
   CheckLandingOfPx4(rules);
   CheckEstimatorOfPx4(rules);
+  if (rules->all().use.pad_position) CheckPadPositionOfPx4(rules);
   if (rules->all().use.guides) CheckGuidanceOfPx4(rules);
   if (rules->all().calibration.gimbal) CheckGimbalOfPx4(rules);
-}
-
-double LinkDelayOf(const DoctorObservations& observations) {
-  return observations.use.link_delay_s.value_or(observations.link.round_trip_s / 2);
 }
 
 }  // namespace

@@ -211,4 +211,33 @@ inline DoctorObservations GoodGuidedSetup(AutopilotKind kind) {
   return all;
 }
 
+// A set-up without GNSS that is right for guidance by a pad that stands, which is its position.
+inline DoctorObservations GoodPadSetup(AutopilotKind kind) {
+  DoctorObservations all = GoodGuidedSetup(kind);
+  all.use.target_mps.reset();
+  all.use.pad_position = all.use.has_pad_origin = true;
+  all.link.positions = 0;
+  all.link.has_good_position = false;
+  const auto set = [&](const std::string& name, double value) {
+    all.parameters[name] = {value, name, 1};
+  };
+  if (kind == AutopilotKind::kPx4) {
+    set("EKF2_EV_CTRL", 11);
+    set("EKF2_NOAID_TOUT", 1e6);
+    set("EKF2_GPS_CTRL", 0);
+    set("SYS_HAS_GPS", 0);
+    set("COM_OBL_RC_ACT", 4);
+    set("NAV_RCL_ACT", 3);
+  } else {
+    set("VISO_TYPE", 1);
+    set("VISO_DELAY_MS", 40);
+    set("EK3_SRC1_POSXY", 6);
+    set("EK3_SRC1_VELXY", 0);
+    set("EK3_SRC1_VELZ", 0);
+    set("GPS1_TYPE", 0);
+    set("FS_THR_ENABLE", 3);
+  }
+  return all;
+}
+
 }  // namespace kestrel

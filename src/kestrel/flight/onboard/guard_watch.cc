@@ -10,6 +10,17 @@
 
 namespace kestrel {
 
+GuardTask TaskOfGuard(const GuidedFlight& guided, const Autopilot& autopilot, Time now) {
+  const GuidancePhase phase = guided.phase();
+  // In the last decimetres a stop ends on the deck anyway, with the motors on.
+  const bool is_at_deck =
+      phase == GuidancePhase::kLanded || (guided.is_flying() && phase == GuidancePhase::kCommit);
+  if (is_at_deck && autopilot.is_guided_mode()) return GuardTask::kLand;
+  if (!guided.is_flying()) return GuardTask::kNothing;
+  const bool is_lost = !guided.has_pose() && !autopilot.is_position_good(now).value_or(true);
+  return guided.is_position_by_pad() || is_lost ? GuardTask::kLower : GuardTask::kStop;
+}
+
 GuardWatch::GuardWatch(GuardLink* guard, Autopilot* autopilot, const Connection* connection,
                        const GuardOptions& options, std::function<void(const std::string&)> report)
     : guard_(guard),
@@ -19,7 +30,7 @@ GuardWatch::GuardWatch(GuardLink* guard, Autopilot* autopilot, const Connection*
       report_(std::move(report)) {}
 
 bool GuardWatch::Watch(Time now, const GuidedFlight& guided) {
-  guard_->SendLife(Life(guided), now);
+  guard_->SendLife(LifeOf(TaskOfGuard(guided, *autopilot_, now), *autopilot_, *connection_), now);
   const GuardState state = guard_->state();
   if (state == reported_) return true;
   reported_ = state;
@@ -43,20 +54,6 @@ bool GuardWatch::Watch(Time now, const GuidedFlight& guided) {
       return false;
   }
   return true;
-}
-
-GuardLife GuardWatch::Life(const GuidedFlight& guided) const {
-  const GuidancePhase phase = guided.phase();
-  // In the last decimetres a stop ends on the deck anyway, with the motors on.
-  const bool is_at_deck =
-      phase == GuidancePhase::kLanded || (guided.is_flying() && phase == GuidancePhase::kCommit);
-  GuardTask task = GuardTask::kNothing;
-  if (is_at_deck && autopilot_->is_guided_mode()) {
-    task = GuardTask::kLand;
-  } else if (guided.is_flying()) {
-    task = GuardTask::kStop;
-  }
-  return LifeOf(task, *autopilot_, *connection_);
 }
 
 // Guidance goes on: to end it here would leave the UAV to itself for certain.

@@ -13,6 +13,9 @@
 
 namespace kestrel {
 
+// Task of the guard if this is the last sign of life.
+GuardTask TaskOfGuard(const GuidedFlight& guided, const Autopilot& autopilot, Time now);
+
 // Gives the guard its signs of life, and informs the user and the ground station what becomes of
 // it. Used by the link's thread only.
 class GuardWatch {
@@ -29,7 +32,6 @@ class GuardWatch {
   const std::string& reason() const { return reason_; }
 
  private:
-  GuardLife Life(const GuidedFlight& guided) const;
   void ReportGone();
 
   GuardLink* guard_;

@@ -106,7 +106,7 @@ std::optional<Eigen::Vector2d> HomeOf(const Autopilot& autopilot) {
 }
 
 std::string WhyNotGuide(const Autopilot& autopilot, const GuidanceOptions& options,
-                        const Eigen::Vector3d& position, Time now) {
+                        const Eigen::Vector3d& position, Time now, bool is_position_by_pad) {
   const FlightLimitsOptions& limits = options.limits;
   if (autopilot.kind() != AutopilotKind::kArduPilot && autopilot.kind() != AutopilotKind::kPx4) {
     return "the autopilot is neither ArduPilot nor PX4";
@@ -128,7 +128,7 @@ std::string WhyNotGuide(const Autopilot& autopilot, const GuidanceOptions& optio
       !beyond.empty()) {
     return fmt::format("{}", fmt::join(beyond, "; "));
   }
-  if (const std::string unsafe = UnsafeLoss(autopilot);
+  if (const std::string unsafe = UnsafeLoss(autopilot, is_position_by_pad);
       !unsafe.empty() && !options.accept_unsafe_loss) {
     return unsafe +
            " (`kestrel doctor --fix` sets it; --set fly.guidance.accept_unsafe_loss=true flies so)";
@@ -136,7 +136,7 @@ std::string WhyNotGuide(const Autopilot& autopilot, const GuidanceOptions& optio
   return FlightLimits(limits, *home).WhyNot(position);
 }
 
-std::string UnsafeLoss(const Autopilot& autopilot) {
+std::string UnsafeLoss(const Autopilot& autopilot, bool is_position_by_pad) {
   const ParameterReader& parameters = autopilot.parameters();
   const auto value = [&](std::string_view name) { return parameters.Find(name).value_or(0); };
   if (autopilot.kind() == AutopilotKind::kArduPilot) {
@@ -153,8 +153,14 @@ std::string UnsafeLoss(const Autopilot& autopilot) {
   }
   const int action = static_cast<int>(value(kPx4LossAction));
   const int without_radio = static_cast<int>(value(kPx4RadioLossAction));
-  constexpr int kPosition = 0, kReturn = 3, kHold = 5;  // COM_OBL_RC_ACT
-  constexpr int kRadioHold = 1, kRadioReturn = 2;       // NAV_RCL_ACT
+  constexpr int kPosition = 0, kReturn = 3, kLand = 4, kHold = 5;  // COM_OBL_RC_ACT
+  constexpr int kRadioHold = 1, kRadioReturn = 2;                  // NAV_RCL_ACT
+  if (is_position_by_pad) {
+    if (action == kLand || action == kHold) return "";  // Hold ends in a landing
+    return fmt::format(
+        "COM_OBL_RC_ACT is {}, expected 4 (Land): without this computer PX4 soon has no position",
+        action);
+  }
   if (action == kHold || action == kReturn) return "";
   const bool holds_without_radio = without_radio == kRadioHold || without_radio == kRadioReturn;
   if (action == kPosition && holds_without_radio) return "";

@@ -30,11 +30,12 @@ std::optional<Eigen::Vector2d> HomeOf(const Autopilot& autopilot);
 // Returns one line that says why guidance must not begin with this autopilot and the body at
 // 'position' at 'now': not a multicopter, no position estimate, no home, limits beyond its own, an
 // unsafe reaction to the loss of set-points, out of the geofence around home. Empty when it may.
+// 'is_position_by_pad': the autopilot's position ends with this program.
 std::string WhyNotGuide(const Autopilot& autopilot, const GuidanceOptions& options,
-                        const Eigen::Vector3d& position, Time now);
+                        const Eigen::Vector3d& position, Time now, bool is_position_by_pad);
 
-// Returns one line on a reaction to the loss of set-points that does not hold the UAV; empty: it
-// does.
-std::string UnsafeLoss(const Autopilot& autopilot);
+// Returns one line on a reaction to the loss of set-points that does not hold the UAV, or, where
+// its position is lost as well, not land it; empty: it does.
+std::string UnsafeLoss(const Autopilot& autopilot, bool is_position_by_pad);
 
 }  // namespace kestrel

@@ -63,6 +63,7 @@ bool GuidedFlight::Fly(Time now, const TrackSnapshot& track, const PoseHistory& 
   KnowAutopilot(now);
   if (kind_ == AutopilotKind::kUnknown) return false;
   GuidanceInput input = Input(now, track, poses);
+  has_pose_ = input.uav.has_value();
   WatchMode(input, now);
   input.is_guided = is_begun_;
   const GuidanceOutput output = guidance_->Update(input);
@@ -128,15 +129,16 @@ void GuidedFlight::WatchMode(const GuidanceInput& input, Time now) {
 
 void GuidedFlight::CheckPermission(const GuidanceInput& input, Time now) {
   permission_due_ = now + kPermissionPeriod;
-  refusal_ = input.uav ? WhyNotGuide(autopilot_, options_.guidance,
-                                     input.uav->world_from_body.translation, now)
-                       : "no position is sent";
+  refusal_ = input.uav
+                 ? WhyNotGuide(autopilot_, options_.guidance,
+                               input.uav->world_from_body.translation, now, is_position_by_pad_)
+                 : "no position is sent";
   may_begin_ = refusal_.empty();
   if (knows_parameters_ || !autopilot_.parameters().is_done()) return;
   knows_parameters_ = true;
   guidance_ = make_(OptionsFor(autopilot_, options_.guidance, is_in_its_frame_));
   guidance_->Update(input);  // guidance has not begun
-  if (const std::string unsafe = UnsafeLoss(autopilot_); !unsafe.empty()) {
+  if (const std::string unsafe = UnsafeLoss(autopilot_, is_position_by_pad_); !unsafe.empty()) {
     Notify(mavlink::kSeverityWarning, unsafe);
   }
 }
@@ -156,7 +158,7 @@ GuidanceInput GuidedFlight::Input(Time now, const TrackSnapshot& track,
   if (track.seen) input.target_age_s = ToSeconds(now - *track.seen);
   input.mark = track.mark;
   input.order = order_;
-  input.can_hold = can_hold_;
+  input.can_hold = !is_position_by_pad_;
   input.is_armed = autopilot_.is_armed();
   input.is_landed = autopilot_.landed_state() == LandedState::kOnGround;
   input.is_link_up = ToSeconds(now - autopilot_.received()) < kLinkAge_s;

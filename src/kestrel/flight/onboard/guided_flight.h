@@ -40,7 +40,10 @@ class GuidedFlight {
   void Take(const FollowOrder& order) { order_ = order; }
 
   // The autopilot's position comes from the pad, and is a guess without it.
-  void set_position_by_pad() { can_hold_ = false; }
+  void set_position_by_pad() { is_position_by_pad_ = true; }
+  bool is_position_by_pad() const { return is_position_by_pad_; }
+  // True when the autopilot's pose was known at the last set-point that was due.
+  bool has_pose() const { return has_pose_; }
 
   // True while guidance flies the UAV and it has not landed.
   bool is_flying() const { return is_begun_ && phase() != GuidancePhase::kLanded; }
@@ -77,7 +80,8 @@ class GuidedFlight {
   std::function<void(const std::string&)> report_;
   GuidanceMaker make_;
   std::unique_ptr<Guidance> guidance_;  // for this autopilot, once its parameters are known
-  bool can_hold_ = true;
+  bool is_position_by_pad_ = false;
+  bool has_pose_ = false;
   FollowOrder order_;  // the newest one
   AutopilotKind kind_ = AutopilotKind::kUnknown;
   SendSchedule schedule_;

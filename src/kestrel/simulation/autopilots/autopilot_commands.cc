@@ -147,6 +147,10 @@ std::uint8_t AutopilotModel::Execute(const mavlink::CommandLong& command, Time n
                                             : mavlink::kResultUnsupported;
     case mavlink::kCommandDoSetMode:
       return SetModeBy(command, now);
+    case mavlink::kCommandLand:
+      if (!is_px4()) return mavlink::kResultUnsupported;
+      EnterMode(FlightMode::kLand, Wish::kLink, now);
+      return mavlink::kResultAccepted;
     case mavlink::kCommandArmDisarm:
       return Arm(command.param1 == 1, command.param2 == mavlink::kArmByForce);
     case mavlink::kCommandTakeOff:
@@ -171,6 +175,9 @@ std::uint8_t AutopilotModel::SetModeBy(const mavlink::CommandLong& command, Time
     }
     const std::uint32_t mode = Px4CustomMode(static_cast<std::uint32_t>(command.param2),
                                              static_cast<std::uint32_t>(command.param3));
+    // Only NAV_LAND is taken without a position.
+    const bool is_land = mode == CustomModeOf(kind(), FlightMode::kLand);
+    if (is_land && LacksPosition()) return mavlink::kResultTemporarilyRejected;
     return EnterMode(mode, Wish::kLink, now) ? mavlink::kResultAccepted
                                              : mavlink::kResultTemporarilyRejected;
   }
@@ -178,8 +185,7 @@ std::uint8_t AutopilotModel::SetModeBy(const mavlink::CommandLong& command, Time
     return static_cast<float>(known) == command.param2;
   });
   if (mode == kArduPilotModes.end()) return mavlink::kResultFailed;
-  EnterMode(*mode, Wish::kLink, now);
-  return mavlink::kResultAccepted;
+  return EnterMode(*mode, Wish::kLink, now) ? mavlink::kResultAccepted : mavlink::kResultFailed;
 }
 
 std::uint8_t AutopilotModel::Arm(bool arm, bool by_force) {

@@ -67,7 +67,7 @@ mavlink::HomePosition HomePositionOf(const GlobalOrigin& origin, std::int64_t bo
 mavlink::GpsGlobalOrigin GlobalOriginOf(const GlobalOrigin& origin, std::int64_t boot_us);
 
 // State of battery and sensors, with a low battery or a good one.
-mavlink::SysStatus SysStatusOf(bool has_low_battery);
+mavlink::SysStatus SysStatusOf(bool has_low_battery, bool has_receiver);
 
 // Flags of EKF_STATUS_REPORT and of ESTIMATOR_STATUS, with and without a position.
 std::uint16_t EstimatorFlags(bool has_position);

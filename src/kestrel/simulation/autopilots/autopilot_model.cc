@@ -2,6 +2,7 @@
 #include "kestrel/simulation/autopilots/autopilot_model.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -235,9 +236,13 @@ void AutopilotModel::EnterBatteryFailsafe(Time now) {
   EnterMode(lands ? FlightMode::kLand : FlightMode::kReturn, Wish::kPilot, now);
 }
 
-// Handles set-points that stop, and that come again after its own failsafe.
+// Handles set-points that stop, and that come again after its own failsafe; and a lost position.
 void AutopilotModel::WatchSetPoints(Time now) {
   if (!is_armed_) return;
+  if (LacksPosition() && !pilot_flies_ && NeedsPosition(custom_mode_)) {
+    SendText(Severity::kCritical, "Failsafe activated: no position");
+    return EnterMode(FlightMode::kLand, Wish::kFailsafe, now);
+  }
   if (IsIn(FlightMode::kGuided)) {
     if (const auto action = guided_->LossAction(state_)) {
       SendText(Severity::kCritical, "Failsafe activated: no offboard signal");
@@ -249,6 +254,7 @@ void AutopilotModel::WatchSetPoints(Time now) {
 }
 
 FlightCommand AutopilotModel::Fly() {
+  if (LacksPosition() && !pilot_flies_) return FlyLevel();
   FlightCommand command;
   if (LandsByTarget()) {
     command.set_point = landing_->Land(state_);
@@ -295,11 +301,36 @@ SetPoint AutopilotModel::Hold() const {
   return command;
 }
 
+// Drifts with the wind.
+FlightCommand AutopilotModel::FlyLevel() const {
+  constexpr double kGain = 2;  // as an acceleration per velocity error
+  double climb_mps = 0;
+  if (IsIn(FlightMode::kLand))
+    climb_mps = -parameters_[is_px4() ? "MPC_LAND_SPEED" : "LAND_SPD_MS"];
+  FlightCommand command;
+  command.is_thrust = true;
+  command.set_point.velocity << state_.velocity().head<2>(), climb_mps;
+  command.set_point.acceleration.z() = kGain * (climb_mps - state_.velocity().z());
+  return command;
+}
+
+// All but those that the sticks fly, and LAND.
+bool AutopilotModel::NeedsPosition(std::uint32_t custom_mode) const {
+  constexpr std::array kArduPilotModes = {0U, 1U, 2U, 9U, 20U};
+  constexpr std::array kPx4Modes = {Px4CustomMode(1, 0), Px4CustomMode(2, 0), Px4CustomMode(4, 6),
+                                    Px4CustomMode(5, 0), Px4CustomMode(7, 0)};
+  const auto is_one = [&](const auto& modes) { return std::ranges::count(modes, custom_mode) > 0; };
+  return is_px4() ? !is_one(kPx4Modes) : !is_one(kArduPilotModes);
+}
+
 // False when it refuses the mode.
 bool AutopilotModel::EnterMode(std::uint32_t custom_mode, Wish wish, Time now) {
   const bool is_guided = custom_mode == CustomModeOf(kind(), FlightMode::kGuided);
   if (is_guided && !guided_->IsAvailable(state_)) return false;
-  if (is_guided && external_ && !external_->has_position()) return false;
+  if (LacksPosition() && NeedsPosition(custom_mode)) {
+    if (wish != Wish::kFailsafe) return false;
+    custom_mode = CustomModeOf(kind(), FlightMode::kLand);
+  }
   if (wish == Wish::kLink) ++result_.modes_by_link;
   pilot_flies_ = false;
   resumes_guided_ = wish == Wish::kFailsafe;

@@ -82,6 +82,7 @@ class AutopilotModel {
   FlightCommand Fly();
   SetPoint Stop();
   SetPoint Hold() const;
+  FlightCommand FlyLevel() const;
   void FollowPilot(Time now);
   void WatchSetPoints(Time now);
   void EnterBatteryFailsafe(Time now);
@@ -102,6 +103,9 @@ class AutopilotModel {
   // True within 'for_s' from 'after_s' after the start; false for a negative 'after_s'.
   bool IsWithin(Time now, double after_s, double for_s) const;
   bool HasPosition(Time now) const;
+  // Without GNSS, and without ODOMETRY of late.
+  bool LacksPosition() const { return external_ && !external_->has_position(); }
+  bool NeedsPosition(std::uint32_t custom_mode) const;
   void UseExternalNavigation();
   void MeasureAcceleration();
 

@@ -65,7 +65,11 @@ bool AutopilotModel::SendMessage(std::uint32_t id, Time now) {
       send_(mavlink::ExtendedSysState{.vtol_state = 0, .landed_state = LandedState()});
       return true;
     case mavlink::SysStatus::kId:
-      send_(SysStatusOf(pilot_.has_low_battery()));
+      send_(SysStatusOf(pilot_.has_low_battery(), pilot_.has_sticks()));
+      return true;
+    case mavlink::RcChannels::kId:
+      if (mount_ || !pilot_.has_sticks()) return SendMount(id);
+      send_(mavlink::RcChannels{.chancount = 8, .chan3_raw = 1500});
       return true;
     case mavlink::Timesync::kId:
       send_(mavlink::Timesync{.tc1 = 0, .ts1 = OwnTime(now)});

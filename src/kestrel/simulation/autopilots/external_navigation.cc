@@ -15,9 +15,8 @@ using Eigen::Vector3d;
 
 constexpr std::int64_t kKept_us = 1'000'000;
 constexpr std::int64_t kArduPilotHolds_us = 7'000'000;
-constexpr std::int64_t kPx4Holds_us = 5'000'000;  // EKF2_NOAID_TOUT
-constexpr std::int64_t kLate_us = 200'000;        // PX4 begins with steady messages only
-constexpr double kDrift_mps = 0.1;                // how fast dead reckoning drifts
+constexpr std::int64_t kLate_us = 200'000;  // PX4 begins with steady messages only
+constexpr double kDrift_mps = 0.1;          // how fast dead reckoning drifts
 
 }  // namespace
 
@@ -57,8 +56,9 @@ bool ExternalNavigation::Uses(const mavlink::Odometry& message) const {
 }
 
 bool ExternalNavigation::has_position() const {
-  const std::int64_t holds_us =
-      firmware_ == AutopilotFirmware::kPx4 ? kPx4Holds_us : kArduPilotHolds_us;
+  const std::int64_t holds_us = firmware_ == AutopilotFirmware::kPx4
+                                    ? static_cast<std::int64_t>(parameters_["EKF2_NOAID_TOUT"])
+                                    : kArduPilotHolds_us;
   return used_us_ && places_.back().boot_us - *used_us_ < holds_us;
 }
 

@@ -47,6 +47,7 @@ MessageStreams::MessageStreams(AutopilotFirmware firmware, bool has_gimbal, bool
     // Only ArduPilot's simulator sends the truth.
     streams_.push_back({mavlink::SimState::kId, 0, 0});
   }
+  streams_.push_back({mavlink::RcChannels::kId, 0, 0});
   if (has_zoom) streams_.push_back({mavlink::CameraFovStatus::kId, 0, 0});
   if (!has_gimbal) return;
   constexpr std::int64_t kPx4Attitude_us = 200'000, kPx4Status_us = 2'000'000;
@@ -56,7 +57,6 @@ MessageStreams::MessageStreams(AutopilotFirmware firmware, bool has_gimbal, bool
   };
   add(mavlink::GimbalDeviceAttitudeStatus::kId, kPx4Attitude_us);
   add(mavlink::GimbalManagerStatus::kId, kPx4Status_us);
-  add(mavlink::RcChannels::kId, 0);
 }
 
 bool MessageStreams::Has(std::uint32_t id) const {

@@ -27,6 +27,7 @@ struct PilotOptions {
   double take_back_after_s = -1;
   double battery_failsafe_after_s = -1;
   bool follows_vehicle = true;
+  bool has_sticks = false;
 
   static void Visit(auto& self, auto&& visit) {
     visit("start_altitude_m", self.start_altitude_m, Range{0, 200},
@@ -45,6 +46,7 @@ struct PilotOptions {
           "time at which the battery is low and the autopilot returns or lands; negative: never");
     visit("follows_vehicle", self.follows_vehicle,
           "the pilot flies along with the vehicle until then; else the UAV hovers");
+    visit("has_sticks", self.has_sticks, "there is a transmitter, with the throttle in its middle");
   }
 };
 
@@ -59,6 +61,7 @@ class SimulatedPilot {
   // UAV.
   SetPoint FollowVehicle(Time now, const Eigen::Vector3d& position) const;
   bool follows_vehicle() const { return options_.follows_vehicle; }
+  bool has_sticks() const { return options_.has_sticks; }
 
   // Returns the mode to which the pilot switches at 'now'. 'flies': nobody else has taken over. The
   // pilot tries the guided mode repeatedly.

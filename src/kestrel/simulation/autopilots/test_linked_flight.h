@@ -9,11 +9,16 @@
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
+#include "kestrel/comms/guard/flight_guard.h"
+#include "kestrel/comms/guard/guard_exchange.h"
+#include "kestrel/comms/guard/life_of.h"
 #include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/comms/mavlink/packet_parser.h"
 #include "kestrel/comms/mavlink/packet_writer.h"
 #include "kestrel/core/camera/calibration.h"
+#include "kestrel/flight/onboard/guard_watch.h"
 #include "kestrel/flight/onboard/guided_flight.h"
 #include "kestrel/flight/onboard/pad_position.h"
 #include "kestrel/flight/onboard/pointed_gimbal.h"
@@ -40,7 +45,16 @@ class LinkedFlight : public TestAutopilot {
     SendFromGround(command);
   }
 
+  // From now on Kestrel is killed, or hangs: the guard is alone with the autopilot.
+  void Kill() {
+    is_alive_ = false;
+    guard_.TakeEnd();
+  }
+  void Hang() { is_alive_ = false; }
+  const std::vector<FlightMode>& modes_by_guard() const { return modes_by_guard_; }
+
   int set_points = 0;  // sent to the gimbal
+  int refusals = 0;    // of modes and set-points by the autopilot, since Kestrel is gone
   std::string reported;
 
  protected:
@@ -79,6 +93,8 @@ class LinkedFlight : public TestAutopilot {
     for (const AutopilotMessage& message : std::exchange(sent, {})) {
       std::visit([this](const auto& typed) { Deliver(typed); }, message);
     }
+    Guard();
+    if (!is_alive_) return;
     autopilot_.Tick(now);
     See();
     if (pad_position_) pad_position_->Send(now, track_);
@@ -134,6 +150,18 @@ class LinkedFlight : public TestAutopilot {
     return [this](const std::string& text) { reported += text + "\n"; };
   }
 
+  void Guard() {
+    if (!guided_) return;
+    if (is_alive_) {
+      life_ = LifeOf(TaskOfGuard(*guided_, autopilot_, now), autopilot_, connection_);
+      guard_.TakeLife(life_.task, life_.kind, now);
+    }
+    const GuardAction action = guard_.Update(now);
+    if (action.mode) modes_by_guard_.push_back(*action.mode);
+    if (action.text != nullptr) reported += std::string(action.text) + "\n";
+    SendAction(action, life_, [this](const auto& message) { Carry(guard_writer_.Write(message)); });
+  }
+
   void Carry(std::span<const std::uint8_t> frame) {
     companion_.Parse(frame, [this](const mavlink::Packet& packet) {
       set_points += packet.id == mavlink::GimbalManagerSetPitchyaw::kId ? 1 : 0;
@@ -143,15 +171,27 @@ class LinkedFlight : public TestAutopilot {
   template <class Message>
   void Deliver(const Message& message) {
     from_autopilot_.Parse(writer_.Write(message), [this](const mavlink::Packet& packet) {
+      TakePacket(packet, life_, now, &guard_);
+      if (!is_alive_) return CountRefusal(packet);
       autopilot_.Handle(packet, now);
       if (pointed_) pointed_->Handle(packet);
     });
+  }
+
+  void CountRefusal(const mavlink::Packet& packet) {
+    const auto ack = packet.As<mavlink::CommandAck>();
+    if (ack && ack->result != mavlink::kResultAccepted) ++refusals;
   }
 
   mavlink::PacketParser companion_, from_autopilot_;
   mavlink::PacketWriter writer_{1, 1};
   Connection connection_;
   Autopilot autopilot_;
+  FlightGuard guard_{std::chrono::milliseconds(200)};
+  GuardLife life_;
+  mavlink::PacketWriter guard_writer_{1, 191};
+  std::vector<FlightMode> modes_by_guard_;
+  bool is_alive_ = true;
 };
 
 }  // namespace kestrel
