@@ -221,7 +221,7 @@ Finding CheckVideoDelay(const CameraObservations& camera, const DoctorUse& use) 
         fmt::format("{}: what is seen is up to {:.1f} s old, near the deck guidance climbs "
                     "after {:g} s",
                     measured, AgeOfSight(camera), use.sight_s),
-        "fewer lost packets, key frames more often; " + advice);
+        "fewer lost packets, key frames more often, fly.guidance.sight_s up to 1; " + advice);
   }
   if (!use.target_mps) return Good(check, measured);
   const double error_m = *use.target_mps * camera.delay->sigma_s;
