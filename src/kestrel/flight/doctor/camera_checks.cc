@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/flight/doctor/statistics.h"
+#include "kestrel/flight/guidance/guidance.h"
 
 namespace kestrel {
 namespace {
@@ -27,10 +28,12 @@ std::vector<double> Intervals(const CameraObservations& camera) {
   return intervals;
 }
 
-// Age of what is seen just before the next image, as it is in one of fifty images, s.
+// Age of what is seen just before the next image, as guidance counts it, as it is in one of fifty
+// images, s.
 double AgeOfSight(const CameraObservations& camera) {
   constexpr double kMostOf = 0.98;
-  return QuantileOf(Intervals(camera), kMostOf) - camera.delay->offset_s;
+  const double more_s = -camera.delay->offset_s - GuidanceInput::kMostVideoDelay_s;
+  return QuantileOf(Intervals(camera), kMostOf) + std::max(more_s, 0.0);
 }
 
 double MedianOfQualities(const CameraObservations& camera, double ImageQuality::*value) {
@@ -218,8 +221,8 @@ Finding CheckVideoDelay(const CameraObservations& camera, const DoctorUse& use) 
   if (use.guides && !HasTooFew(camera) && AgeOfSight(camera) > use.sight_s) {
     return Doubtful(
         check,
-        fmt::format("{}: what is seen is up to {:.1f} s old, near the deck guidance climbs "
-                    "after {:g} s",
+        fmt::format("{}: {:.1f} s from one image to the next beyond that, near the deck "
+                    "guidance climbs after {:g} s",
                     measured, AgeOfSight(camera), use.sight_s),
         "fewer lost packets, key frames more often, fly.guidance.sight_s up to 1; " + advice);
   }

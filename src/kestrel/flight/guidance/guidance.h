@@ -49,7 +49,9 @@ struct GuidanceInput {
   // False: without a pose the autopilot's own position is a guess, which it cannot hold.
   bool can_hold = true;
   std::optional<TargetEstimate> target;  // predicted to now; nothing while there is none, or lost
-  // Time since the newest frame that showed the target was taken, s.
+  // Time since the newest frame that showed the target was taken, s; without the delay of late
+  // video where that is known, at most kMostVideoDelay_s of it, as far as a track predicts well.
+  static constexpr double kMostVideoDelay_s = 0.3;
   double target_age_s = std::numeric_limits<double>::infinity();
   std::optional<DeckSighting> deck;  // the newest frame that showed it
   int mark = 0;       // number of the person's mark that the target is of; 0: nothing is marked

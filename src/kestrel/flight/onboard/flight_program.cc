@@ -366,9 +366,19 @@ void FlightProgram::SendTarget(Time now) {
   }
   if (!guided_) return;
   guided_->Take(order_);
+  guided_->set_video_delay(VideoDelay());
   if (guided_->Fly(now, track, poses_)) latency_.step(kSetPoint).Add(Now() - track.captured);
   guidance_phase_ = guided_->phase();
   set_points_ = guided_->set_points();
+}
+
+// The largest delay that is known of a late camera.
+Duration FlightProgram::VideoDelay() const {
+  double late_s = 0;
+  for (const LateCamera& late : parts_.late) {
+    if (const auto offset = late.video->offset()) late_s = std::max(late_s, -offset->offset_s);
+  }
+  return DurationFromSeconds(late_s);
 }
 
 // A position that comes from the pad ends with its sight: the autopilot's own guess goes on for

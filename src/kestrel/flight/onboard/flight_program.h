@@ -140,6 +140,7 @@ class FlightProgram {
   void ShowAutopilot(Time now);
   void ReportWhatItWaitsFor(Time now);
   std::string SourceTrouble() const;
+  Duration VideoDelay() const;
   void End(const FlightEnd& end);
   void EndByLanding(FlightEnd end);
   void ReportEnd();

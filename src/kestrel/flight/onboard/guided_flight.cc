@@ -155,7 +155,8 @@ GuidanceInput GuidedFlight::Input(Time now, const TrackSnapshot& track,
     input.deck = DeckSighting{track.sighting->time, track.sighting->position_in_world.z(),
                               track.sighting->normal_in_world};
   }
-  if (track.seen) input.target_age_s = ToSeconds(now - *track.seen);
+  const double delay_s = std::min(ToSeconds(video_delay_), GuidanceInput::kMostVideoDelay_s);
+  if (track.seen) input.target_age_s = ToSeconds(now - *track.seen) - delay_s;
   input.mark = track.mark;
   input.order = order_;
   input.can_hold = !is_position_by_pad_;

@@ -42,6 +42,8 @@ class GuidedFlight {
   // The autopilot's position comes from the pad, and is a guess without it.
   void set_position_by_pad() { is_position_by_pad_ = true; }
   bool is_position_by_pad() const { return is_position_by_pad_; }
+  // The images come late by this time, which is known. See GuidanceInput::target_age_s.
+  void set_video_delay(Duration delay) { video_delay_ = delay; }
   // True when the autopilot's pose was known at the last set-point that was due.
   bool has_pose() const { return has_pose_; }
 
@@ -81,6 +83,7 @@ class GuidedFlight {
   GuidanceMaker make_;
   std::unique_ptr<Guidance> guidance_;  // for this autopilot, once its parameters are known
   bool is_position_by_pad_ = false;
+  Duration video_delay_{};
   bool has_pose_ = false;
   FollowOrder order_;  // the newest one
   AutopilotKind kind_ = AutopilotKind::kUnknown;

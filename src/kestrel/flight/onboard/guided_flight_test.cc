@@ -23,11 +23,35 @@ namespace {
 using std::chrono_literals::operator""ms;
 using testing::HasSubstr;
 
+// Stands still and notes how old the sight is.
+class StandingGuidance : public Guidance {
+ public:
+  StandingGuidance(const GuidanceOptions& options, double* age_s)
+      : Guidance(options, std::nullopt), age_s_(age_s) {}
+
+ protected:
+  void Begin(const GuidanceInput& /*input*/) override {}
+  Wish Choose(const GuidanceInput& input) override {
+    *age_s_ = input.target_age_s;
+    return {};
+  }
+  const char* WhyGiveUp(const GuidanceInput& /*input*/) override { return nullptr; }
+  bool IsBehind(const GuidanceInput& /*input*/) const override { return false; }
+
+ private:
+  double* age_s_;
+};
+
 // An autopilot that reports what it is set to, and a UAV that hovers at (3, 1, 8) m. Time is
 // simulated.
 class GuidedFlightTest : public testing::Test {
  protected:
   void Start(std::uint8_t autopilot, const FlightOptions& options = {}) {
+    Start(autopilot, options, [](const GuidanceOptions& guidance) {
+      return std::make_unique<LandingGuidance>(guidance);
+    });
+  }
+  void Start(std::uint8_t autopilot, const FlightOptions& options, const GuidanceMaker& make) {
     heartbeat_.autopilot = autopilot;
     connection_ = std::make_unique<Connection>(
         "udpout://127.0.0.1:9", ConnectionOptions(), [this](auto frame, Time) {
@@ -36,9 +60,7 @@ class GuidedFlightTest : public testing::Test {
     autopilot_ =
         std::make_unique<Autopilot>(AutopilotOptions(), connection_.get(), AutopilotListener());
     guided_ = std::make_unique<GuidedFlight>(
-        options, TargetTrackerOptions(),
-        [](const GuidanceOptions& guidance) { return std::make_unique<LandingGuidance>(guidance); },
-        true, autopilot_.get(), connection_.get(),
+        options, TargetTrackerOptions(), make, true, autopilot_.get(), connection_.get(),
         [this](const std::string& text) { reported_ += text + "\n"; });
   }
 
@@ -89,11 +111,11 @@ class GuidedFlightTest : public testing::Test {
     }
   }
   void SeeTarget() {
-    track_.captured = now_;
-    track_.seen = now_;
+    track_.captured = now_ - lateness_;
+    track_.seen = track_.captured;
     track_.state = TrackState::kTracking;
     track_.target.emplace();
-    track_.target->time = now_;
+    track_.target->time = track_.captured;
     track_.target->motion.mean.head<3>() << 3, 1, 0;
     track_.target->motion.covariance.setIdentity();
     track_.target->motion.covariance *= 1e-4;
@@ -119,6 +141,7 @@ class GuidedFlightTest : public testing::Test {
   bool has_home_ = true;
   bool has_poses_ = true;
   double height_m_ = 8;
+  Duration lateness_{};  // of the images
   mavlink::HomePosition home_{.latitude = 473977420, .longitude = 85455940, .altitude = 488000};
   float limit_ = 50;  // value of all limits of the autopilot
   std::map<std::string, float> parameters_ = {{"GUID_TIMEOUT", 0.3f}, {"COM_OF_LOSS_T", 0.3f},
@@ -164,6 +187,23 @@ TEST_F(GuidedFlightTest, StreamsForPx4UntilModeIsLeft) {
   heartbeat_.base_mode = 0;
   Pass(0.5);
   EXPECT_GT(SetPointsDuring(1), 30) << "a new flight";
+}
+
+TEST_F(GuidedFlightTest, KnownDelayOfVideoIsNoAgeOfSight) {
+  double age_s = 0;
+  Start(mavlink::kAutopilotArduPilot, {}, [&](const GuidanceOptions& guidance) {
+    return std::make_unique<StandingGuidance>(guidance, &age_s);
+  });
+  heartbeat_.custom_mode = kGuided;
+  lateness_ = 400ms;
+  Pass(2);
+  EXPECT_NEAR(age_s, 0.4, 0.06);
+  guided_->set_video_delay(200ms);
+  Pass(0.5);
+  EXPECT_NEAR(age_s, 0.2, 0.06);
+  guided_->set_video_delay(std::chrono::seconds(2));
+  Pass(0.5);
+  EXPECT_NEAR(age_s, 0.1, 0.06) << "no more than a track is predicted well";
 }
 
 TEST_F(GuidedFlightTest, SendsNothingDuringTakeOff) {
