@@ -11,6 +11,12 @@
 namespace kestrel {
 namespace {
 
+// PX4 reports a transmitter that is lost as healthy, but not as present; ArduPilot the other way.
+bool IsReceiving(const mavlink::SysStatus& status) {
+  return (status.onboard_control_sensors_present & status.onboard_control_sensors_health &
+          mavlink::kSensorReceiver) != 0;
+}
+
 bool IsThrottleCentred(const mavlink::RcChannels& channels) {
   constexpr int kMiddle_us = 1500, kMargin_us = 100;
   return std::abs(channels.chan3_raw - kMiddle_us) < kMargin_us;
@@ -30,7 +36,7 @@ void TakePacket(const mavlink::Packet& packet, const GuardLife& life, Time now,
   } else if (const auto attitude = packet.As<mavlink::AttitudeQuaternion>()) {
     guard->TakeHeading(2 * std::atan2(attitude->q4, attitude->q1));
   } else if (const auto status = packet.As<mavlink::SysStatus>()) {
-    guard->TakeReceiver((status->onboard_control_sensors_health & mavlink::kSensorReceiver) != 0);
+    guard->TakeReceiver(IsReceiving(*status));
   } else if (const auto channels = packet.As<mavlink::RcChannels>()) {
     guard->TakeThrottle(IsThrottleCentred(*channels), now);
   } else if (const auto ack = packet.As<mavlink::CommandAck>()) {

@@ -48,7 +48,7 @@ constexpr std::array<ListedCheck, 36> kOfArduPilot = {{
     {"EK3_SRC1_YAW", "--pad-position: 1, or 6 where the compass is disturbed"},
     {"GPS1_TYPE", "--pad-position: 0"},
     {"FS_EKF_ACTION", "--pad-position: 1, land"},
-    {"FS_THR_ENABLE", "--pad-position: 3, land, or 0; a return needs another position"},
+    {"FS_THR_ENABLE", "--pad-position: 3, land, 7 or 0; a return climbs"},
     {"FENCE_ENABLE", "--pad-position: 0, else it arms with a position only"},
     {"MNT1_TYPE", "with a gimbal: its type; 1, servos, reports the set-point"},
     {"MNT1_DEFLT_MODE", "with a gimbal: not 0, retracted"},
@@ -75,7 +75,7 @@ constexpr std::array<ListedCheck, 29> kOfPx4 = {{
     {"EKF2_EV_CTRL", "--pad-position: 11, place, height and heading; at least bit 0"},
     {"EKF2_NOAID_TOUT", "--pad-position: at most 1 s: so long it flies by a guess"},
     {"EKF2_GPS_CTRL", "--pad-position: 0"},
-    {"SYS_HAS_GPS", "--pad-position: 0, else it does not arm without GNSS"},
+    {"SYS_HAS_GPS", "--pad-position: 0, there is no GNSS"},
     {"COM_RC_OVERRIDE", "--guide: bit 1, the sticks end OFFBOARD"},
     {"MAN_OVERRIDE_SPD", "--guide: 0 or more, the sticks end OFFBOARD"},
     {"LNDMC_XY_VEL_MAX", "--guide: above the target's speed, else it does not disarm"},
@@ -251,30 +251,30 @@ void CheckDelayOfArduPilot(ParameterRules* rules) {
 
 // What lets it use the pad as its position, and keeps it from flying home by it.
 void CheckPadPositionOfArduPilot(ParameterRules* rules) {
-  constexpr double kOdometry = 1, kExternal = 6, kGnss = 3, kCompass = 1, kLand = 3;
+  constexpr double kOdometry = 1, kExternal = 6, kGnss = 3, kCompass = 1, kLand = 3, kBrake = 7;
   constexpr double kLandWithoutStation = 5;
   rules->WantAtLeast("VISO_TYPE", Verdict::kWrong, kOdometry,
                      {kOdometry, "ODOMETRY is ignored", true});
   rules->WantExactly("EK3_SRC1_POSXY", Verdict::kWrong,
                      {kExternal, "its estimator does not take the pad's position"});
   for (const std::string_view name : {"EK3_SRC1_VELXY", "EK3_SRC1_VELZ"}) {
-    rules->Want(name, Verdict::kWrong, {0, "it does not arm: speed by GNSS or flow is wanted"},
+    rules->Want(name, Verdict::kDoubtful,
+                {0, "it arms in no mode that holds its place: speed by GNSS or flow is wanted"},
                 [](double source) { return source == 0 || source == kExternal; });
   }
-  rules->Want("EK3_SRC1_POSZ", Verdict::kWrong, {1, "it does not arm: height by GNSS is wanted"},
+  rules->Want("EK3_SRC1_POSZ", Verdict::kWrong, {1, "its height would be by GNSS"},
               [](double source) { return source != kGnss; });
-  rules->Want("EK3_SRC1_YAW", Verdict::kWrong,
-              {kCompass, "it does not arm: the heading by GNSS is wanted"},
+  rules->Want("EK3_SRC1_YAW", Verdict::kWrong, {kCompass, "its heading would be by GNSS"},
               [](double source) { return source == kCompass || source == kExternal; });
   rules->WantExactly("GPS1_TYPE", Verdict::kDoubtful,
-                     {0, "it waits for GNSS before it arms, and jumps where a fix comes", true});
+                     {0, "modes that hold their place wait for a fix before they arm", true});
   rules->WantExactly("FS_EKF_ACTION", Verdict::kDoubtful,
                      {1, "it drifts when the pad is lost and Kestrel is gone"});
   rules->WantExactly("FENCE_ENABLE", Verdict::kDoubtful,
                      {0, "it arms with a position only, and there is none before the pad is seen"});
   rules->Want("FS_THR_ENABLE", Verdict::kDoubtful,
               {kLand, "when the transmitter is lost it climbs and returns, by the pad's position"},
-              [](double action) { return action == 0 || action == kLand; });
+              [](double action) { return action == 0 || action == kLand || action == kBrake; });
   rules->Want("FS_GCS_ENABLE", Verdict::kDoubtful,
               {kLandWithoutStation,
                "when the ground station is lost it climbs and returns, by the pad's position"},
@@ -501,7 +501,8 @@ void CheckPadPositionOfPx4(ParameterRules* rules) {
               [](double us) { return us <= kLongest_us; });
   rules->WantExactly("EKF2_GPS_CTRL", Verdict::kDoubtful,
                      {0, "it jumps where a fix of GNSS comes"});
-  rules->WantExactly("SYS_HAS_GPS", Verdict::kDoubtful, {0, "it does not arm without GNSS", true});
+  rules->WantExactly("SYS_HAS_GPS", Verdict::kDoubtful,
+                     {0, "it warns without GNSS, or does not arm (COM_ARM_WO_GPS)", true});
   rules->Want("NAV_RCL_ACT", Verdict::kDoubtful,
               {kLand, "when the transmitter is lost it climbs and returns, by the pad's position"},
               [](double action) { return action != kReturn; });

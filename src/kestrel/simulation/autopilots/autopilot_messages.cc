@@ -205,10 +205,11 @@ mavlink::HomePosition HomePositionOf(const GlobalOrigin& origin, std::int64_t bo
 mavlink::SysStatus SysStatusOf(bool has_low_battery, bool has_receiver) {
   // Gyros, accelerometers, compass, barometer, GNSS, attitude and position control, motors.
   constexpr std::uint32_t kSensors = 0x0001 | 0x0002 | 0x0004 | 0x0008 | 0x0020 | 0x4000 | 0x8000;
+  const std::uint32_t sensors = kSensors | (has_receiver ? mavlink::kSensorReceiver : 0);
   mavlink::SysStatus message;
-  message.onboard_control_sensors_present = kSensors;
-  message.onboard_control_sensors_enabled = kSensors;
-  message.onboard_control_sensors_health = kSensors | (has_receiver ? mavlink::kSensorReceiver : 0);
+  message.onboard_control_sensors_present = sensors;
+  message.onboard_control_sensors_enabled = sensors;
+  message.onboard_control_sensors_health = sensors;
   message.voltage_battery = has_low_battery ? 13600 : 15400;
   message.current_battery = 1800;
   message.battery_remaining = has_low_battery ? 10 : 80;
