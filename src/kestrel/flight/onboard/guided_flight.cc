@@ -156,6 +156,7 @@ GuidanceInput GuidedFlight::Input(Time now, const TrackSnapshot& track,
   if (track.seen) input.target_age_s = ToSeconds(now - *track.seen);
   input.mark = track.mark;
   input.order = order_;
+  input.gripper = {autopilot_.gripper_answers(), autopilot_.is_gripper_accepted()};
   input.can_hold = can_hold_;
   input.is_armed = autopilot_.is_armed();
   input.is_landed = autopilot_.landed_state() == LandedState::kOnGround;
@@ -176,6 +177,12 @@ std::optional<TargetEstimate> GuidedFlight::Target(Time now, const TrackSnapshot
 }
 
 void GuidedFlight::Request(Time now, GuidanceRequest request) {
+  if (request == GuidanceRequest::kGrab || request == GuidanceRequest::kRelease) {
+    if (!autopilot_.is_gripper_pending()) {
+      autopilot_.OperateGripper(request == GuidanceRequest::kGrab);
+    }
+    return;
+  }
   if (request == GuidanceRequest::kNone || now < requested_ + kRequestPeriod) return;
   if (autopilot_.is_request_pending()) return;
   requested_ = now;
@@ -192,6 +199,9 @@ void GuidedFlight::Request(Time now, GuidanceRequest request) {
       Notify(mavlink::kSeverityWarning, "disarming by force, in contact");
       autopilot_.DisarmByForce();
       return;
+    case GuidanceRequest::kGrab:
+    case GuidanceRequest::kRelease:
+      return;  // above
   }
 }
 
