@@ -18,9 +18,7 @@ TargetTrackerOptions TrackerOf(const ObjectModel& model, const std::string& name
   const bool may_move = std::ranges::any_of(
       model.classes, [&](const ObjectClass& one) { return one.name == name && one.may_move; });
   TargetTrackerOptions options;
-  // What wanders, and stops, turns on the spot: a turn rate says nothing of its next motion.
-  options.turn_noise = options.start_turn_sigma_radps = 0;
-  options.acceleration_noise = may_move ? 0.4 : 0.03;
+  options.acceleration_noise = may_move ? 0.3 : 0.03;
   options.sway_sigma_m = 0;
   options.max_speed_mps = 5;
   return options;
