@@ -209,7 +209,8 @@ void GoGuidance::ChooseCommit(const GuidanceInput& input, const Situation& now) 
   if (now.off_m > kCommitCones * Cone(now.height_m)) return TryAgain("beside the object");
   if (HasReached(input, now)) {
     gripped_.reset();
-    return Enter(GuidancePhase::kAct, job_.grips() ? "uses the gripper" : "hovers above the object");
+    return Enter(GuidancePhase::kAct,
+                 job_.grips() ? "uses the gripper" : "hovers above the object");
   }
   if (ToSeconds(input.now - entered()) > kAimWait_s) TryAgain("does not come to the object");
 }
@@ -217,8 +218,8 @@ void GoGuidance::ChooseCommit(const GuidanceInput& input, const Situation& now) 
 bool GoGuidance::HasReached(const GuidanceInput& input, const Situation& now) {
   const bool rests = now.velocity.z() - input.target->motion.velocity().z() > -kStandstill_mps;
   Remember(rests && now.height_m > job_.height_m + kReach_m, input.now, &rests_since_);
-  const bool is_down = now.height_m <= job_.height_m + kReach_m ||
-                       IsLongerThan(kRests_s, rests_since_, input.now);
+  const bool is_down =
+      now.height_m <= job_.height_m + kReach_m || IsLongerThan(kRests_s, rests_since_, input.now);
   return is_down && IsAbove(now, kGrip_m);
 }
 

@@ -61,12 +61,12 @@ class GoGuidance : public DescentGuidance {
   bool has_gripped_ = false;  // in this descent
   bool is_open_ = false;      // the gripper, before a pick
   bool is_done_ = false;
-  double unseen_s_ = 0;                // while it looks whether the object is gone
-  const char* fault_ = nullptr;        // why it gives up, once it has climbed
-  const char* give_up_ = nullptr;      // why it gives up now
-  std::optional<Time> waits_since_;    // near the object, until it is above it
-  std::optional<Time> rests_since_;    // does not sink any more, although it should
-  std::optional<Time> gripped_;        // when the autopilot accepted the gripper's motion
+  double unseen_s_ = 0;              // while it looks whether the object is gone
+  const char* fault_ = nullptr;      // why it gives up, once it has climbed
+  const char* give_up_ = nullptr;    // why it gives up now
+  std::optional<Time> waits_since_;  // near the object, until it is above it
+  std::optional<Time> rests_since_;  // does not sink any more, although it should
+  std::optional<Time> gripped_;      // when the autopilot accepted the gripper's motion
   GuidanceRequest motion_ = GuidanceRequest::kNone;  // that is requested of the gripper
   int answers_before_ = 0;                           // number of answers when that began
 };

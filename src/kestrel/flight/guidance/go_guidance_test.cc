@@ -70,8 +70,8 @@ struct GoFlight {
   }
 
   void Answer() {
-    const bool is_grip = output.request == GuidanceRequest::kGrab ||
-                         output.request == GuidanceRequest::kRelease;
+    const bool is_grip =
+        output.request == GuidanceRequest::kGrab || output.request == GuidanceRequest::kRelease;
     if (!is_grip) return;
     ++gripper.number;
     gripper.is_accepted = has_gripper;

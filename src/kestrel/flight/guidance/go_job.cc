@@ -54,10 +54,10 @@ GoJob ParseGoJob(std::string_view text) {
                          ReadPart(&rest, 0, kLongestJob_s, &job.seconds);
     if (is_read && rest.empty()) return job;
   }
-  throw InputError(
-      fmt::format("--then '{}': expected hover, look, drop or pick, with a height ({:g} to {:g} m) and a "
-                  "time ({:g} s at most) if they are not the usual ones, as hover,3,20",
-                  text, kLeastHeight_m, kMostHeight_m, kLongestJob_s));
+  throw InputError(fmt::format(
+      "--then '{}': expected hover, look, drop or pick, with a height ({:g} to {:g} m) and a "
+      "time ({:g} s at most) if they are not the usual ones, as hover,3,20",
+      text, kLeastHeight_m, kMostHeight_m, kLongestJob_s));
 }
 
 }  // namespace kestrel

@@ -19,9 +19,15 @@ GoFlightSetup SetupOf(AutopilotFirmware firmware, const std::string& class_name)
   GoFlightSetup setup;
   setup.firmware = firmware;
   setup.class_name = class_name;
-  setup.field = {"field.length_m=12",       "field.width_m=8",         "field.objects.red=3",
-                 "field.objects.green=0",   "field.objects.blue=0",    "field.objects.yellow=3",
-                 "field.objects.yellow_path=straight", "field.objects.yellow_speed_mps=1.4", "ground.map_px=256"};
+  setup.field = {"field.length_m=12",
+                 "field.width_m=8",
+                 "field.objects.red=3",
+                 "field.objects.green=0",
+                 "field.objects.blue=0",
+                 "field.objects.yellow=3",
+                 "field.objects.yellow_path=straight",
+                 "field.objects.yellow_speed_mps=1.4",
+                 "ground.map_px=256"};
   setup.model.pilot.guide_after_s = 5;
   setup.model.pilot.land_after_s = -1;
   setup.model.pilot.start_altitude_m = 6;

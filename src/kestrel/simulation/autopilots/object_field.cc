@@ -12,8 +12,8 @@ using Eigen::Vector3d;
 // Each object's surfaces are on a body of its own, which is far below the ground once it is taken.
 void ObjectField::Draw(const ObjectFieldOptions& options, Random* random, World* world) {
   constexpr double kDeep_m = 1000;
-  objects_ = AddHuntObjects(options.objects,
-                            0.5 * Vector2d(options.length_m, options.width_m), random, world);
+  objects_ = AddHuntObjects(options.objects, 0.5 * Vector2d(options.length_m, options.width_m),
+                            random, world);
   for (const HuntObject& object : objects_) {
     const std::atomic<bool>& is_taken = is_taken_.emplace_back(false);
     const Motion there = world->bodies[world->surfaces[object.first_surface].body];

@@ -39,7 +39,7 @@ class ObjectField {
 
   // A gripper's try. Distances are those of the nearest object that is there.
   struct Grab {
-    int object = 0;      // its number
+    int object = 0;       // its number
     double offset_m = 0;  // horizontal distance of its middle
     double height_m = 0;  // height of the gripper above it
     bool is_taken = false;

@@ -208,9 +208,8 @@ class SightedGoFlight : public GoFlight {
       ObjectMeasurement seen;
       seen.position = world_from_camera * (sight.in_camera + sigmas.cwiseProduct(noise));
       const Eigen::Matrix3d rotation = world_from_camera.rotation.toRotationMatrix();
-      seen.covariance =
-          rotation * sigmas.cwiseAbs2().asDiagonal() * rotation.transpose() +
-          kPose_m * kPose_m * Eigen::Matrix3d::Identity();
+      seen.covariance = rotation * sigmas.cwiseAbs2().asDiagonal() * rotation.transpose() +
+                        kPose_m * kPose_m * Eigen::Matrix3d::Identity();
       seen.color_probabilities[objects_.classes[sight.class_index].color] = 0.95;
       sightings.push_back({image.captured, sight.class_index, seen.position, seen.covariance});
       if (sight.is_whole) measurements.push_back(seen);
@@ -227,7 +226,8 @@ class SightedGoFlight : public GoFlight {
 
   std::size_t ClassOfColor(const std::string& color) const {
     std::size_t i = 0;
-    while (objects_.classes[i].name != color || objects_.classes[i].shape != ObjectShape::kDisc) ++i;
+    while (objects_.classes[i].name != color || objects_.classes[i].shape != ObjectShape::kDisc)
+      ++i;
     return i;
   }
 

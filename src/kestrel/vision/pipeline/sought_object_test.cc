@@ -96,8 +96,8 @@ TEST(SoughtObjectTest, AnotherOneIsSoughtWhenItIsGone) {
 
 TEST(SoughtObjectTest, UnknownClassIsRefused) {
   EXPECT_THAT([] { Search("purple"); },
-              ThrowsMessage<InputError>(HasSubstr(
-                  "no class 'purple', expected red, green, blue, yellow, orange")));
+              ThrowsMessage<InputError>(
+                  HasSubstr("no class 'purple', expected red, green, blue, yellow, orange")));
 }
 
 }  // namespace
