@@ -110,13 +110,25 @@ void FlyArguments::AddTo(CLI::App* command) {
       ->type_name("FILE")
       ->needs(hunt_flag);
   CLI::Option* follow_flag = command->get_option("--follow");
-  guide_flag->excludes(hunt_flag);
+  CLI::Option* go_flag =
+      command
+          ->add_option("--go", go,
+                       "Fly to the best object of this class in the map, and down on it")
+          ->type_name("CLASS")
+          ->needs(hunt_flag)
+          ->needs(guide_flag);
+  command
+      ->add_option("--then", job,
+                   "There: hover, look (keeps pictures), drop or pick (the gripper), also with the "
+                   "height in m and the time in s, as hover,3,20 (hover)")
+      ->type_name("JOB")
+      ->needs(go_flag);
   point_flag->excludes(hunt_flag);
   for (CLI::Option* other : {hunt_flag, follow_flag}) {
     position_flag->excludes(other);
     other->excludes("--target")->excludes("--target-id")->excludes("--target-size");
   }
-  team.AddTo(command)->needs(hunt_flag);
+  team.AddTo(command)->needs(hunt_flag)->excludes(go_flag);
   command->add_flag("--loop", loop, "Play a recording in a loop");
 }
 
@@ -152,6 +164,9 @@ KestrelOptions FlyArguments::ReadOptions() {
   }
   if (guide && task.name == "follow" && !console) {
     throw InputError("--follow --guide: expected --console, on which a person confirms the flight");
+  }
+  if (guide && task.name == "hunt" && go.empty()) {
+    throw InputError("--hunt --guide: expected --go CLASS, the objects to fly to");
   }
   if (no_guard) options.fly.guard.enabled = false;
   if (console && !console->empty()) {

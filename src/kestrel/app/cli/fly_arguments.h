@@ -30,7 +30,9 @@ struct FlyArguments {
   bool pad_position = false;
   bool no_guard = false;
   TaskArgument task;
-  std::string model;  // file with the model of the objects
+  std::string model;          // file with the model of the objects
+  std::string go;             // class of the objects to one of which the UAV goes; empty: to none
+  std::string job = "hover";  // what it does there, as ParseGoJob reads it
   TeamArguments team;
   bool loop = false;
   // Options that the command line sets over the configuration file, as "key=value"; by ReadOptions.

@@ -36,6 +36,7 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/flight/onboard/camera_automatics.h"
 #include "kestrel/flight/onboard/flight_keeper.h"
+#include "kestrel/flight/onboard/look_pictures.h"
 #include "kestrel/flight/onboard/session.h"
 #include "kestrel/flight/onboard/video_server.h"
 #include "kestrel/flight/onboard/video_sink.h"
@@ -90,7 +91,8 @@ class FlightLog : public ObservationSink {
 };
 
 std::shared_ptr<const Task> TaskOf(const FlyArguments& arguments, const KestrelOptions& options) {
-  return MakeTask(arguments.task.name, options, {.model = ReadModel(arguments.model)});
+  return MakeTask(arguments.task.name, options,
+                  {.model = ReadModel(arguments.model), .go = arguments.go});
 }
 
 // A flight: its sinks and its team around a session.
@@ -111,6 +113,7 @@ class Flight {
     OpenTeam();
     OpenMcap();
     OpenDds();
+    OpenPictures();
     autopilot_ = MakeFlyAutopilot(arguments.autopilot, options_.fly, arguments.guide, &source_);
     session_ = MakeSession(source_.live, *task_, Options());
     session_->sinks().Add(std::move(own_sinks_));
@@ -277,6 +280,15 @@ class Flight {
         [this](const std::string& text) { Notify(text, EventLevel::kWarning); }));
   }
 
+  // In the folder of the tables, or else in that of what is kept.
+  void OpenPictures() {
+    if (arguments_.go.empty() || ParseGoJob(arguments_.job).action != GoAction::kLook) return;
+    const std::string& output = arguments_.source.output;
+    const std::string folder = output.empty() ? options_.fly.keep_folder : output;
+    sinks_.Add(MakeLookPictures(PathOfNow(folder, "look_"),
+                                [this](const std::string& text) { Notify(text); }));
+  }
+
   // Called before anything is written.
   void OpenTeam() {
     if (arguments_.team.team.empty()) return;
@@ -293,6 +305,7 @@ class Flight {
     SessionOptions options = SessionOptionsFor(autopilot_, options_.fly, arguments_.guide);
     if (arguments_.profile != "auto") options.profile = ParseLinkProfile(arguments_.profile);
     options.points = arguments_.point;
+    options.job = ParseGoJob(arguments_.job);
     options.sends_pad_position = arguments_.pad_position;
     options.output = arguments_.source.output;
     options.record = arguments_.record;

@@ -199,6 +199,23 @@ TEST_F(FlyCommandTest, ReadsSourceFromConfiguration) {
   EXPECT_THAT(none.err, HasSubstr("SOURCE, or fly.source in --config FILE, is required"));
 }
 
+TEST_F(FlyCommandTest, RefusesFlightToObjectBeforeItBegins) {
+  const std::string fly = "fly sim:hunt --autopilot sim:ardupilot --hunt --guide";
+  ExpectInputError(fly, "expected --go CLASS");
+  ExpectInputError(fly + " --go purple",
+                   "no class 'purple', expected red, green, blue, yellow, orange");
+  ExpectInputError(fly + " --go red --then dance", "expected hover, look, drop");
+  ExpectInputError(fly + " --go red --set fly.guidance.search_radius_m=200",
+                   "expected at most 100 (limits.geofence_radius_m)");
+  for (const char* wrong :
+       {"fly sim:hunt --autopilot sim:ardupilot --hunt --go red",
+        "fly sim:hunt --autopilot sim:ardupilot --guide --go red",
+        "fly sim:hunt --autopilot sim:ardupilot --hunt --follow --guide --go red",
+        "fly sim:hunt --autopilot sim:ardupilot --hunt --guide --go red --team a"}) {
+    EXPECT_EQ(Run(wrong).status, 2) << wrong;
+  }
+}
+
 TEST_F(FlyCommandTest, ReportsFaults) {
   const std::string source = "fly sim:standing --autopilot ";
   ExpectInputError(source + "udp://127.0.0.1:14550", "udp");

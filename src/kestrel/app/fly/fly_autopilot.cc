@@ -40,6 +40,12 @@ void PrepareFollow(PilotOptions* pilot) {
   replace(&PilotOptions::start_altitude_m, 8);
 }
 
+// The pilot begins above the middle of the field.
+void PrepareHunt(PilotOptions* pilot) {
+  const PilotOptions usual;
+  if (pilot->start_altitude_m == usual.start_altitude_m) pilot->start_altitude_m = 6;
+}
+
 }  // namespace
 
 FlyAutopilot MakeFlyAutopilot(const std::string& name, const FlyOptions& options, bool guides,
@@ -64,6 +70,9 @@ FlyAutopilot MakeFlyAutopilot(const std::string& name, const FlyOptions& options
   simulated.model.zoomed_lens = source->simulated.lens();
   if (guides) PrepareGuidance(name, &simulated);
   if (source->simulated.World()->options().thing.is_there()) PrepareFollow(&simulated.model.pilot);
+  if (source->simulated.World()->options().field.is_there()) {
+    PrepareHunt(&simulated.model.pilot);
+  }
   const auto seed = static_cast<std::uint64_t>(options.sim_seed);
   const int port = FreeLoopbackPort();
   auto uav = std::make_unique<SimulatedAutopilot>(

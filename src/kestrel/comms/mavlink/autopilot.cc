@@ -532,6 +532,14 @@ void Autopilot::DisarmByForce() {
   commands_.Want(MakeCommand(mavlink::kCommandArmDisarm, 0, mavlink::kArmByForce));
 }
 
+void Autopilot::OperateGripper(bool grabs) {
+  constexpr float kFirst = 1;
+  commands_.Want(MakeCommand(mavlink::kCommandGripper, kFirst,
+                             grabs ? mavlink::kGripperGrab : mavlink::kGripperRelease));
+}
+
+bool Autopilot::is_gripper_pending() const { return commands_.IsWanted(mavlink::kCommandGripper); }
+
 bool Autopilot::is_request_pending() const {
   return commands_.IsWanted(mavlink::kCommandDoSetMode) ||
          commands_.IsWanted(mavlink::kCommandLand) ||
@@ -545,9 +553,15 @@ void Autopilot::SendCommands(Time now) {
 }
 
 void Autopilot::ReportEnding(const CommandRequests::Ending& ending) {
-  const bool is_mode = IsModeCommand(ending.command.command);
-  const std::string what =
-      is_mode ? "mode " + ModeName(kind_, requested_mode_) : std::string("disarming");
+  std::string what = "disarming";
+  if (IsModeCommand(ending.command.command)) {
+    what = "mode " + ModeName(kind_, requested_mode_);
+  } else if (ending.command.command == mavlink::kCommandGripper) {
+    ++gripper_answers_;
+    is_gripper_accepted_ = ending.result && ending.is_accepted();
+    what = ending.command.param2 == mavlink::kGripperGrab ? "closing the gripper"
+                                                          : "opening the gripper";
+  }
   if (!ending.result) {
     Notify(AutopilotEventKind::kCommandUnanswered,
            fmt::format("the autopilot does not answer the request for {}", what));

@@ -179,6 +179,13 @@ class Autopilot {
   void DisarmByForce();
   // True while the answer to one of the two is awaited.
   bool is_request_pending() const;
+  // Closes or opens the first gripper.
+  void OperateGripper(bool grabs);
+  bool is_gripper_pending() const;  // the answer is awaited
+  // Number of answers so far, and whether the newest one is that the autopilot does it. One that
+  // never answers has refused.
+  int gripper_answers() const { return gripper_answers_; }
+  bool is_gripper_accepted() const { return is_gripper_accepted_; }
 
   // Sets a parameter by its first name and in that name's unit (parameter_names.h). Repeats it
   // until the autopilot reports the value back: parameter_writes() has the outcome.
@@ -254,6 +261,8 @@ class Autopilot {
   StreamRequests streams_;
   CommandRequests commands_;
   std::uint32_t requested_mode_ = 0;
+  int gripper_answers_ = 0;
+  bool is_gripper_accepted_ = false;
   ParameterReader parameters_;
   ParameterWriter writes_;
 

@@ -79,6 +79,7 @@ inline constexpr std::uint32_t kSensorReceiver = 0x10000;
 inline constexpr std::uint16_t kCommandLand = 21;
 inline constexpr std::uint16_t kCommandTakeOff = 22;
 inline constexpr std::uint16_t kCommandDoSetMode = 176;
+inline constexpr std::uint16_t kCommandGripper = 211;
 inline constexpr std::uint16_t kCommandArmDisarm = 400;
 inline constexpr std::uint16_t kCommandGetMessageInterval = 510;
 inline constexpr std::uint16_t kCommandSetMessageInterval = 511;
@@ -102,6 +103,9 @@ inline constexpr std::uint8_t kResultDenied = 2;
 inline constexpr std::uint8_t kResultUnsupported = 3;
 inline constexpr std::uint8_t kResultFailed = 4;
 inline constexpr std::uint8_t kResultInProgress = 5;
+
+// Parameter 2 of kCommandGripper.
+inline constexpr float kGripperRelease = 0, kGripperGrab = 1;
 
 // Parameter 2 of kCommandArmDisarm: at once, also in flight.
 inline constexpr float kArmByForce = 21196;

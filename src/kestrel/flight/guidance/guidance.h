@@ -42,6 +42,12 @@ struct alignas(8) FollowOrder {
   int mark = 0;    // the mark to which the UAV is to fly; 0: to none
 };
 
+// The autopilot's answers to requests of the gripper.
+struct GripperAnswers {
+  int number = 0;            // so far
+  bool is_accepted = false;  // the newest one; false as well when none came
+};
+
 // All inputs of guidance at an instant.
 struct GuidanceInput {
   Time now;                     // never earlier than the one before
@@ -54,8 +60,10 @@ struct GuidanceInput {
   static constexpr double kMostVideoDelay_s = 0.3;
   double target_age_s = std::numeric_limits<double>::infinity();
   std::optional<DeckSighting> deck;  // the newest frame that showed it
-  int mark = 0;       // number of the person's mark that the target is of; 0: nothing is marked
+  // Number of the person's mark, or of the object, that the target is of; 0: of none.
+  int mark = 0;
   FollowOrder order;  // the newest one
+  GripperAnswers gripper;
   bool is_guided = false;  // the mode in which the autopilot obeys set-points, by its heartbeat
   bool is_armed = false;
   bool is_landed = false;    // the autopilot reports that it is on the ground
@@ -146,6 +154,7 @@ class Guidance {
   const std::optional<SetPoint>& sent() const { return sent_; }
 
   const GuidanceOptions& options() const { return options_; }
+  const FlightLimits& limits() const { return limits_; }
   const StaleSafety& stale() const { return stale_; }
   FlightModel& flight_model() { return model_; }
   TargetPursuit& pursuit() { return pursuit_; }

@@ -23,6 +23,8 @@ const char* ToString(GuidancePhase phase) {
       return "landed";
     case GuidancePhase::kLook:
       return "look";
+    case GuidancePhase::kAct:
+      return "act";
   }
   return "";
 }

@@ -13,9 +13,10 @@ enum class GuidancePhase {
   kCommit,    // the last bit of the descent
   kGoAround,  // climbs again
   kLanded,    // in contact with the deck; stays so until guidance begins anew
-  kLook,      // stands still and looks at what a person has marked
+  kLook,      // stands still and looks at what a person has marked, or whether an object is gone
+  kAct,       // hovers above an object, or uses the gripper there
 };
-// "idle", "search", "approach", "follow", "descend", "commit", "go-around", "landed", "look"
+// "idle", "search", "approach", "follow", "descend", "commit", "go-around", "landed", "look", "act"
 const char* ToString(GuidancePhase phase);
 
 }  // namespace kestrel

@@ -13,6 +13,10 @@ const char* ToString(GuidanceRequest request) {
       return "hold";
     case GuidanceRequest::kDisarm:
       return "disarm";
+    case GuidanceRequest::kGrab:
+      return "grab";
+    case GuidanceRequest::kRelease:
+      return "release";
   }
   return "";
 }

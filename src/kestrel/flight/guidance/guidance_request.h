@@ -10,7 +10,10 @@ enum class GuidanceRequest {
   kLand,    // its LAND mode, in contact
   kHold,    // LOITER or HOLD: guidance has given up
   kDisarm,  // by force, in contact
+  kGrab,    // the gripper closes
+  kRelease  // the gripper opens
 };
-const char* ToString(GuidanceRequest request);  // "none", "land", "hold", "disarm"
+// "none", "land", "hold", "disarm", "grab", "release"
+const char* ToString(GuidanceRequest request);
 
 }  // namespace kestrel

@@ -16,18 +16,14 @@ using Eigen::Vector3d;
 constexpr double kResting_mps =
     0.25;  // a UAV that sinks more slowly than this on command to descend rests
 constexpr double kCommandedDown_mps = 0.3;
-constexpr double kMaxClosing_mps = 1;  // if it moves faster over the target it does not descend
-// Offset, in cones, at which following ends, and at which the last bit ends.
-constexpr double kFollowCones = 4;
-constexpr double kCommitCones = 3;
+constexpr double kFollowCones = 4;           // offset, in cones, at which following ends
 constexpr double kCommitAcceleration = 0.2;  // m/s^2, downwards
 
 }  // namespace
 
 LandingGuidance::LandingGuidance(const GuidanceOptions& options,
                                  const std::optional<Vector2d>& place)
-    : Guidance(options, place),
-      search_(options),
+    : DescentGuidance(options, place),
       contact_(options.contact),
       stay_(options),
       heading_(options) {}
@@ -37,10 +33,8 @@ void LandingGuidance::Begin(const GuidanceInput& input) {
   go_arounds_ = 0;
   contact_.Reset();
   contact_since_.reset();
-  road_.Reset();
   timing_.Reset();
-  search_.Start(place());
-  Enter(GuidancePhase::kSearch, "the pilot has given the mode");
+  StartSearch();
 }
 
 void LandingGuidance::ResumeAfterLink() {
@@ -58,15 +52,10 @@ const char* LandingGuidance::WhyGiveUp(const GuidanceInput& input) {
     return heading_.is_known() ? "the nose does not come to the heading over the pad: gave up"
                                : "the pad's heading is not known: gave up";
   }
-  if (phase() == GuidancePhase::kSearch && search_.IsOver(input.now)) {
+  if (phase() == GuidancePhase::kSearch && IsSearchOver(input.now)) {
     return "the target was not found again: gave up";
   }
   return nullptr;
-}
-
-bool LandingGuidance::IsBehind(const GuidanceInput& input) const {
-  const Situation now = Look(input);
-  return now.off_m > 2 * Cone(now.height_m) || now.slip_mps > 2 * kMaxClosing_mps;
 }
 
 Guidance::Wish LandingGuidance::Choose(const GuidanceInput& input) {
@@ -95,40 +84,14 @@ Guidance::Wish LandingGuidance::Choose(const GuidanceInput& input) {
   return wish;
 }
 
-LandingGuidance::Situation LandingGuidance::Look(const GuidanceInput& input) const {
-  Situation now;
-  now.feet = input.uav->world_from_body * Vector3d(0, 0, -options().leg_m);
-  now.velocity = input.uav->velocity_in_world;
-  if (!input.target) return now;
-  const TurnState& target = input.target->motion;
-  const Vector3d from_target = now.feet - target.position();
-  now.height_m = from_target.z();
-  now.off_m = from_target.head<2>().norm();
-  now.slip_mps = (target.velocity() - now.velocity).head<2>().norm();
-  now.is_in_sight = input.is_camera_up && input.target_age_s <= options().sight_s;
-  now.is_known = input.target->position_sigma_m() <= options().max_sigma_m;
-  const double climb_sigma = std::sqrt(std::max(target.covariance(5, 5), 0.0));
-  now.is_credible =
-      std::abs(target.velocity().z()) <= GuidanceOptions::kMaxTargetClimb_mps + 2 * climb_sigma;
-  return now;
-}
-
 void LandingGuidance::ChoosePhase(const GuidanceInput& input, const Situation& now) {
   if (FindContact(input, now)) return;
   if (!input.target) {
     if (IsLow()) ++go_arounds_;
-    if (phase() != GuidancePhase::kSearch) {
-      search_.StartAfterLoss(input.now, road_, place());
-      pursuit().Reset();
-      Enter(GuidancePhase::kSearch, search_.step());
-    }
+    if (phase() != GuidancePhase::kSearch) SearchAfterLoss(input.now);
     return;
   }
-  const TurnState& target = input.target->motion;
-  set_place(target.position().head<2>());
-  if (now.is_in_sight) {
-    road_.Add(input.now, place(), target.velocity().head<2>(), target.turn_rate());
-  }
+  KeepPlace(input, now);
   if (phase() == GuidancePhase::kSearch) Enter(GuidancePhase::kApproach, "the target is found");
   if (phase() == GuidancePhase::kGoAround && now.height_m >= options().sight_height_m) {
     Enter(GuidancePhase::kApproach, "high enough to come again");
@@ -153,10 +116,6 @@ void LandingGuidance::ChooseAbove(const Situation& now) {
       Enter(GuidancePhase::kDescend, "above the target, which is in sight");
     }
   }
-}
-
-bool LandingGuidance::MayDescend(const Situation& now) const {
-  return now.is_known && now.is_credible && now.is_in_sight && now.slip_mps < kMaxClosing_mps;
 }
 
 // Chooses within the descent: on down to the deck, or up again.
@@ -212,16 +171,6 @@ bool LandingGuidance::FindContact(const GuidanceInput& input, const Situation& n
   return false;
 }
 
-SetPoint LandingGuidance::Search(const GuidanceInput& input, const Situation& now) {
-  const double seconds = SecondsSinceLast(input.now);
-  const Vector2d place = search_.Advance(input.now, road_, now.feet.head<2>(), seconds);
-  if (*search_.step() != '\0') set_reason(search_.step());
-  SetPoint command = pursuit().To(place, {now.feet.head<2>(), now.velocity.head<2>()},
-                                  &flight_model(), options().limits.max_speed_mps);
-  command.velocity.z() = kHeightGain * (options().search_altitude_m - now.feet.z());
-  return command;
-}
-
 SetPoint LandingGuidance::Pursue(const GuidanceInput& input, const Situation& now) {
   SetPoint command =
       pursuit().Above(*input.target, {now.feet.head<2>(), now.velocity.head<2>()}, &flight_model());
@@ -274,10 +223,6 @@ void LandingGuidance::GoAround(const char* reason) {
   ++go_arounds_;
   timing_.Reset();
   Enter(GuidancePhase::kGoAround, reason);
-}
-
-double LandingGuidance::Cone(double height_m) const {
-  return options().cone_m + GuidanceOptions::kConeSlope * std::max(height_m, 0.0);
 }
 
 bool LandingGuidance::IsLow() const {

@@ -159,6 +159,7 @@ GuidanceInput GuidedFlight::Input(Time now, const TrackSnapshot& track,
   if (track.seen) input.target_age_s = ToSeconds(now - *track.seen) - delay_s;
   input.mark = track.mark;
   input.order = order_;
+  input.gripper = {autopilot_.gripper_answers(), autopilot_.is_gripper_accepted()};
   input.can_hold = !is_position_by_pad_;
   input.is_armed = autopilot_.is_armed();
   input.is_landed = autopilot_.landed_state() == LandedState::kOnGround;
@@ -179,6 +180,12 @@ std::optional<TargetEstimate> GuidedFlight::Target(Time now, const TrackSnapshot
 }
 
 void GuidedFlight::Request(Time now, GuidanceRequest request) {
+  if (request == GuidanceRequest::kGrab || request == GuidanceRequest::kRelease) {
+    if (!autopilot_.is_gripper_pending()) {
+      autopilot_.OperateGripper(request == GuidanceRequest::kGrab);
+    }
+    return;
+  }
   if (request == GuidanceRequest::kNone || now < requested_ + kRequestPeriod) return;
   if (autopilot_.is_request_pending()) return;
   requested_ = now;
@@ -195,6 +202,9 @@ void GuidedFlight::Request(Time now, GuidanceRequest request) {
       Notify(mavlink::kSeverityWarning, "disarming by force, in contact");
       autopilot_.DisarmByForce();
       return;
+    case GuidanceRequest::kGrab:
+    case GuidanceRequest::kRelease:
+      return;  // above
   }
 }
 

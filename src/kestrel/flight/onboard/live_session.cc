@@ -13,6 +13,7 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/write_file.h"
 #include "kestrel/flight/guidance/follow_guidance.h"
+#include "kestrel/flight/guidance/go_guidance.h"
 #include "kestrel/flight/guidance/landing_guidance.h"
 #include "kestrel/flight/guidance/view_limits.h"
 #include "kestrel/flight/onboard/exposure_drive.h"
@@ -189,6 +190,11 @@ bool Flight::Points() const {
 // Returns the guidance of the task; null: nobody is guided.
 GuidanceMaker Flight::Guide() const {
   if (!options_.guides) return nullptr;
+  if (vision().seeks_object()) {
+    return [job = options_.job](const GuidanceOptions& options) {
+      return std::make_unique<GoGuidance>(options, job);
+    };
+  }
   if (!vision().marked()) {
     return
         [](const GuidanceOptions& options) { return std::make_unique<LandingGuidance>(options); };

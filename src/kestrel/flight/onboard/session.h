@@ -11,6 +11,7 @@
 #include <opencv2/core.hpp>
 
 #include "kestrel/comms/mavlink/target_profile.h"
+#include "kestrel/flight/guidance/go_job.h"
 #include "kestrel/flight/onboard/camera_stream.h"
 #include "kestrel/flight/onboard/flight_options.h"
 #include "kestrel/flight/onboard/open_live_source.h"
@@ -45,6 +46,8 @@ struct SessionOptions {
   // Flies by set-points when the pilot gives the mode. A guard, a process of its own, then has the
   // line (docs/guard.md), unless flight.guard.enabled is false.
   bool guides = false;
+  // What 'guides' does at the object of the task that the UAV goes to.
+  GoJob job = {};
   // Points the camera's gimbal at the target; 'guides' does so, too. Needs a calibration with a
   // gimbal.
   bool points = false;

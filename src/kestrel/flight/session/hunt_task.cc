@@ -13,6 +13,7 @@
 #include "kestrel/io/recording/tables/object_map_files.h"
 #include "kestrel/vision/pipeline/ground_height.h"
 #include "kestrel/vision/pipeline/require_altitude.h"
+#include "kestrel/vision/pipeline/sought_object.h"
 
 namespace kestrel {
 namespace {
@@ -77,16 +78,18 @@ class HuntFiles : public ObservationSink {
 // The pipeline of coloured objects in a session.
 class HuntVision : public Vision {
  public:
-  // 'origin': latitude and longitude (degrees) of the world's origin, for the map; or empty. Throws
-  // InputError when camera, model or options are not valid.
+  // 'origin': latitude and longitude (degrees) of the world's origin, for the map; or empty. 'go':
+  // as of HuntTask. Throws InputError when camera, model or options are not valid, or the model has
+  // no such class.
   HuntVision(const SessionCamera& camera, const ObjectModel& model, const ColorGrid& grid,
-             const HuntPipelineOptions& options, std::vector<double> origin = {});
+             const HuntPipelineOptions& options, std::vector<double> origin, const std::string& go);
 
   void AddPose(const PoseSample& pose) override { pipeline_.AddPose(pose); }
   void AddGimbal(const GimbalSample& sample) override { pipeline_.AddGimbal(sample); }
   Duration pose_lead() const override;
   Observation Process(const Frame& frame) override;
   TrackSnapshot snapshot() const override { return snapshot_; }
+  bool seeks_object() const override { return pipeline_.sought() != nullptr; }
   const ObjectMap* map() const override { return &pipeline_.map(); }
   bool has_world() const override { return has_world_ && !pipeline_.options().still; }
   void Change(const TaskOptions& options, std::optional<double> altitude_m) override;
@@ -101,6 +104,7 @@ class HuntVision : public Vision {
 
  private:
   void RequireColor(const Frame& frame);
+  void ShowSought(Time time);
 
   HuntPipeline pipeline_;
   Duration clock_offset_;
@@ -115,7 +119,8 @@ class HuntVision : public Vision {
 };
 
 HuntVision::HuntVision(const SessionCamera& camera, const ObjectModel& model, const ColorGrid& grid,
-                       const HuntPipelineOptions& options, std::vector<double> origin)
+                       const HuntPipelineOptions& options, std::vector<double> origin,
+                       const std::string& go)
     : pipeline_(camera.calibration, model, grid, InFlight(options, camera.is_live)),
       clock_offset_(camera.calibration.clock_offset.value_or(Duration::zero())),
       altitude_m_(camera.altitude_m),
@@ -124,6 +129,7 @@ HuntVision::HuntVision(const SessionCamera& camera, const ObjectModel& model, co
       origin_(std::move(origin)) {
   RequireAltitude(altitude_m_);
   pipeline_.SetAltitude(altitude_m_);
+  if (!go.empty()) pipeline_.Seek(go);
 }
 
 // The last row of a rolling shutter is exposed later than the frame's time.
@@ -141,7 +147,19 @@ Observation HuntVision::Process(const Frame& frame) {
   detections_ += seen.report.detections.size();
   for (std::size_t i = 0; i < kObjectStageCount; ++i) passed_[i] += seen.report.passed[i];
   has_pose_ = seen.world_from_camera.has_value();
+  ShowSought(frame.time);
   return {frame, seen};
+}
+
+// To guidance; nothing where no object is sought.
+void HuntVision::ShowSought(Time time) {
+  const SoughtObject* sought = pipeline_.sought();
+  if (sought == nullptr) return;
+  snapshot_.mark = sought->number();
+  snapshot_.state = sought->StateAt(time);
+  snapshot_.target = sought->At(time);
+  snapshot_.seen = sought->seen();
+  if (snapshot_.seen) *snapshot_.seen += clock_offset_;
 }
 
 void HuntVision::RequireColor(const Frame& frame) {
@@ -206,14 +224,15 @@ std::string HuntVision::Remarks() const {
 }  // namespace
 
 HuntTask::HuntTask(HuntPipelineOptions options, ObjectModel model, std::optional<ColorGrid> grid,
-                   std::vector<double> origin)
+                   std::vector<double> origin, std::string go)
     : options_(std::move(options)),
       model_(std::move(model)),
       grid_(grid ? *std::move(grid) : ColorGrid(model_.colors)),
-      origin_(std::move(origin)) {}
+      origin_(std::move(origin)),
+      go_(std::move(go)) {}
 
 std::unique_ptr<Vision> HuntTask::MakeVision(const SessionCamera& camera) const {
-  return std::make_unique<HuntVision>(camera, model_, grid_, options_, origin_);
+  return std::make_unique<HuntVision>(camera, model_, grid_, options_, origin_, go_);
 }
 
 }  // namespace kestrel

@@ -19,9 +19,11 @@ namespace kestrel {
 class HuntTask : public Task {
  public:
   // 'grid': of the objects' colours; nothing: the model's own. 'origin': latitude and longitude
-  // (degrees) of the world's origin, for the map; or empty.
+  // (degrees) of the world's origin, for the map; or empty. 'go': class of the objects to one of
+  // which the UAV goes; empty: to none.
   HuntTask(HuntPipelineOptions options, ObjectModel model,
-           std::optional<ColorGrid> grid = std::nullopt, std::vector<double> origin = {});
+           std::optional<ColorGrid> grid = std::nullopt, std::vector<double> origin = {},
+           std::string go = {});
 
   PixelFormat format() const override { return PixelFormat::kBgr; }
   std::string_view table() const override { return kObjectTable; }
@@ -36,6 +38,7 @@ class HuntTask : public Task {
   ObjectModel model_;
   ColorGrid grid_;
   std::vector<double> origin_;
+  std::string go_;
 };
 
 }  // namespace kestrel

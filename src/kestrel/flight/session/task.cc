@@ -19,7 +19,8 @@ std::unique_ptr<Task> MakeLand(const TaskOptions& options, const TaskChoice& cho
 }
 
 std::unique_ptr<Task> MakeHunt(const TaskOptions& options, const TaskChoice& choice) {
-  return std::make_unique<HuntTask>(options.hunt, choice.model, choice.grid, choice.origin);
+  return std::make_unique<HuntTask>(options.hunt, choice.model, choice.grid, choice.origin,
+                                    choice.go);
 }
 
 std::unique_ptr<Task> MakeFollow(const TaskOptions& options, const TaskChoice& choice) {

@@ -88,6 +88,8 @@ struct TaskChoice {
   std::optional<ColorGrid> grid = {};   // nothing: the model's own
   std::vector<double> origin = {};      // as HuntTask's
   std::optional<FollowMark> mark = {};  // what to follow
+  // Class of the objects to one of which the UAV goes; empty: it goes to none.
+  std::string go = {};
 };
 
 // A kind of task. The first one is what a flight does without a flag.

@@ -33,7 +33,8 @@ struct TrackSnapshot {
     int heading_symmetry = 1;    // turns after which the target looks the same; 0: any
   };
   std::optional<Sight> sight;
-  int mark = 0;        // number of the person's mark that the target is of; 0: of none
+  // Number of the person's mark, or of the object, that the target is of; 0: of none.
+  int mark = 0;
   cv::Rect area = {};  // area of the target in this frame; empty: it was not found
   Duration detect_time{};
   int frames = 0;                          // so far

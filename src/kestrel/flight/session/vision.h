@@ -53,6 +53,8 @@ class Vision {
   virtual std::optional<PadInSight> pad() const { return std::nullopt; }
   // Options of the track of what a person marks; nothing: this task follows nothing.
   virtual std::optional<TargetTrackerOptions> marked() const { return std::nullopt; }
+  // True when it seeks an object for the UAV to go to.
+  virtual bool seeks_object() const { return false; }
   // The map of the objects; null: none. Changes with the next frame.
   virtual const ObjectMap* map() const { return nullptr; }
   // True when results have places in the world, which are kept from frame to frame.

@@ -155,6 +155,8 @@ std::uint8_t AutopilotModel::Execute(const mavlink::CommandLong& command, Time n
       return Arm(command.param1 == 1, command.param2 == mavlink::kArmByForce);
     case mavlink::kCommandTakeOff:
       return TakeOff(command.param7, now);
+    case mavlink::kCommandGripper:
+      return OperateGripper(command.param2);
     case mavlink::kCommandGimbalConfigure:
     case mavlink::kCommandGimbalPitchyaw:
       return mount_ ? mount_->Execute(command, {peer_system_, peer_component_}, now)
@@ -201,6 +203,19 @@ std::uint8_t AutopilotModel::Arm(bool arm, bool by_force) {
     result_.was_forced = by_force;
     SendText(Severity::kInfo, "Disarming motors");
   }
+  return mavlink::kResultAccepted;
+}
+
+std::uint8_t AutopilotModel::OperateGripper(float motion) {
+  if (!options_.has_gripper) return mavlink::kResultUnsupported;
+  const Eigen::Vector3d feet = truth().world_from_body * Eigen::Vector3d(0, 0, -options_.uav.leg_m);
+  if (motion == mavlink::kGripperRelease) {
+    result_.released_at = feet;
+    return mavlink::kResultAccepted;
+  }
+  if (motion != mavlink::kGripperGrab) return mavlink::kResultDenied;
+  ++result_.grabs;
+  result_.grab = world_.field().Close(world_.SceneTime(truth().time), feet);
   return mavlink::kResultAccepted;
 }
 

@@ -141,6 +141,7 @@ class AutopilotModel {
   std::uint8_t Execute(const mavlink::CommandLong& command, Time now);
   std::uint8_t SetModeBy(const mavlink::CommandLong& command, Time now);
   std::uint8_t Arm(bool arm, bool by_force);
+  std::uint8_t OperateGripper(float motion);
   std::uint8_t TakeOff(double altitude, Time now);
 
   AutopilotFirmware firmware_;

@@ -56,6 +56,7 @@ struct AutopilotModelOptions {
   EstimateFaultOptions estimate;
   GlobalOrigin origin;
   PilotOptions pilot;
+  bool has_gripper = true;  // at the middle of its feet
   bool has_gimbal = false;  // set where the camera is on one
   SimulatedMountOptions gimbal;
   ZoomOptions zoom;              // set where the camera zooms
@@ -74,6 +75,7 @@ struct AutopilotModelOptions {
     visit.Group("estimate", self.estimate);
     visit.Group("origin", self.origin);
     visit.Group("pilot", self.pilot);
+    visit("has_gripper", self.has_gripper, "it has a gripper between its feet");
     visit.Group("gimbal", self.gimbal);
   }
 };

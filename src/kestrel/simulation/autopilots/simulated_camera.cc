@@ -40,11 +40,14 @@ CameraCalibration Scaled(CameraCalibration calibration, double scale) {
   return calibration;
 }
 
-// Returns the paper's camera, or the one for a thing to follow; on a gimbal if there is one.
+// Returns the paper's camera, or the one for a thing to follow or for a field of objects; on a
+// gimbal if there is one.
 CameraCalibration FirstCalibration(const VehicleWorld& world, double scale,
                                    const std::optional<GimbalMount>& gimbal) {
-  const bool follows = world.options().thing.is_there();
-  CameraCalibration calibration = Scaled(follows ? FollowCalibration() : PaperCalibration(), scale);
+  CameraCalibration calibration = PaperCalibration();
+  if (world.options().thing.is_there()) calibration = FollowCalibration();
+  if (world.options().field.is_there()) calibration = HuntCalibration();
+  calibration = Scaled(calibration, scale);
   if (gimbal) {
     calibration.gimbal = gimbal;
     calibration.body_from_camera = gimbal->body_from_pivot * gimbal->platform_from_camera;

@@ -93,7 +93,7 @@ OpenedLiveSource SimulatedSource::Open(const LiveSourceChoice& choice) {
   opened.true_pose = [this](const PoseSample& pose) { TakeTruePose(pose); };
   if (options_.second.is_there()) {
     AddSecond(start, &opened);
-  } else if (!world_->options().thing.is_there()) {
+  } else if (!world_->options().thing.is_there() && !world_->options().field.is_there()) {
     opened.truth = [this](const Frame& frame) { return cameras_[0]->Truth(frame); };
   }
   return opened;

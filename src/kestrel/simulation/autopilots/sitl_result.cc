@@ -36,10 +36,18 @@ std::string GuidingInWords(const SitlResult& result) {
   return words + "\n";
 }
 
+std::string GrabbingInWords(const SitlResult& result) {
+  if (!result.grab) return "";
+  return fmt::format("the gripper closed {}: {} object {}, {:.3f} m from its middle (true)\n",
+                     result.grabs == 1 ? "once" : fmt::format("{} times", result.grabs),
+                     result.grab->is_taken ? "took" : "missed", result.grab->object,
+                     result.grab->offset_m);
+}
+
 }  // namespace
 
 std::string InWords(const SitlResult& result) {
-  return LandingInWords(result) + GuidingInWords(result);
+  return LandingInWords(result) + GuidingInWords(result) + GrabbingInWords(result);
 }
 
 }  // namespace kestrel

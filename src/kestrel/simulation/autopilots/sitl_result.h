@@ -4,11 +4,12 @@
 #include <optional>
 #include <string>
 
+#include "kestrel/simulation/autopilots/object_field.h"
 #include "kestrel/simulation/autopilots/simulated_uav.h"
 
 namespace kestrel {
 
-// The outcome of a landing.
+// The outcome of a landing, or of a flight to an object.
 struct SitlResult {
   std::optional<Contact> contact;  // in a landing mode, or in the guided mode
   double landing_s = 0;            // from the switch to the first such mode until contact
@@ -26,12 +27,17 @@ struct SitlResult {
   int set_points_after_take_back = 0;
   double last_set_point_after_s = 0;
 
+  // These are about the gripper.
+  int grabs = 0;                               // number of times that it was closed
+  std::optional<ObjectField::Grab> grab;       // the last one; nothing: there were no objects
+  std::optional<Eigen::Vector3d> released_at;  // where it was opened last, m in the world
+
   // Distance of the feet's middle from the pattern's centre, m; only with a contact.
   double offset_m() const { return contact->feet_in_pattern.head<2>().norm(); }
 };
 
 // Returns lines: "came down on the board, 0.03 m from the centre, after 18.2 s; disarmed 2.1 s
-// later", and a summary of the guidance, if there was any.
+// later", and summaries of the guidance and the gripper, if there was any.
 std::string InWords(const SitlResult& result);
 
 }  // namespace kestrel

@@ -47,7 +47,11 @@ class TestAutopilot {
  public:
   TestAutopilot(AutopilotFirmware firmware, const AutopilotModelOptions& options,
                 const VehicleWorldOptions& vehicle, std::uint64_t seed = 1)
-      : world(TestWorld(vehicle)),
+      : TestAutopilot(firmware, options, &TestWorld(vehicle), seed) {}
+  // The world must outlive this.
+  TestAutopilot(AutopilotFirmware firmware, const AutopilotModelOptions& options,
+                VehicleWorld* own_world, std::uint64_t seed)
+      : world(*own_world),
         model(firmware, options, &world, kTestStart, seed,
               [this](const AutopilotMessage& message) { sent.push_back(message); }) {}
 

@@ -61,7 +61,10 @@ class LinkedFlight : public TestAutopilot {
   LinkedFlight(AutopilotFirmware firmware, const AutopilotModelOptions& options,
                const VehicleWorldOptions& vehicle, std::uint64_t seed,
                const CameraCalibration& camera)
-      : TestAutopilot(firmware, options, vehicle, seed),
+      : LinkedFlight(firmware, options, &TestWorld(vehicle), seed, camera) {}
+  LinkedFlight(AutopilotFirmware firmware, const AutopilotModelOptions& options,
+               VehicleWorld* own_world, std::uint64_t seed, const CameraCalibration& camera)
+      : TestAutopilot(firmware, options, own_world, seed),
         camera_(camera),
         connection_("udpout://127.0.0.1:9", {},
                     [this](std::span<const std::uint8_t> frame, Time) { Carry(frame); }),

@@ -34,6 +34,12 @@ std::vector<VehicleScenario> MakeSitlScenarios() {
        "a person to follow, who waits until the UAV has been 5 m high, then walks, stops and turns",
        {"thing.kind=person", "vehicle.path=stops", "vehicle.speed_mps=1.6", "drive_altitude_m=5",
         "drive_delay_s=15", "surroundings.landing_legs=false"}},
+      {"hunt",
+       "the contest's field: ten discs that stand and ten that move at up to 5 km/h",
+       {"field.length_m=30", "field.width_m=20", "field.objects.red=4", "field.objects.green=3",
+        "field.objects.blue=3", "field.objects.yellow=10", "field.objects.yellow_speed_mps=0.9",
+        "field.objects.orange=0", "field.objects.orange_bars=0", "field.objects.distractors=5",
+        "surroundings.landing_legs=false"}},
       {"figure8",
        "the contest: 15 km/h on a figure of eight through the origin",
        {"vehicle.path=figure8", "vehicle.speed_mps=4.2"}},
@@ -57,8 +63,28 @@ const VehicleScenario& FindSitlScenario(const std::string& name) {
       fmt::format("there is no scenario 'sim:{}', expected {}", name, fmt::join(names, ", ")));
 }
 
+// The field is around the origin, where the pilot begins.
+LandingScene MakeFieldScene(const VehicleWorldOptions& options, std::uint64_t seed,
+                            ObjectField* field) {
+  LandingScene scene;
+  scene.world_from_pattern = [](double) { return RigidTransform(); };
+  scene.target = [](double) { return Eigen::Vector3d(0, 0, 0); };
+  scene.print = PrintOfTarget(options.target, scene.pattern);
+  World& world = scene.world;
+  world.channels = 3;
+  Random ground_random = RandomOf(seed, LandingPart::kGround);
+  world.ground = MakeGround(options.ground, {}, world.channels, &ground_random);
+  Random light_random = RandomOf(seed, LandingPart::kLight);
+  world.light = MakeLighting(options.light, &light_random);
+  world.skyline = MakeSkyline(&light_random);
+  Random field_random = RandomOf(seed, LandingPart::kSurroundings);
+  field->Draw(options.field, &field_random, &world);
+  return scene;
+}
+
 // A thing stands where the pad would be.
-LandingScene MakeScene(const VehicleWorldOptions& options, std::uint64_t seed) {
+LandingScene MakeScene(const VehicleWorldOptions& options, std::uint64_t seed, ObjectField* field) {
+  if (options.field.is_there()) return MakeFieldScene(options, seed, field);
   if (!options.thing.is_there()) {
     return MakeLandingScene(options, kTrackDuration_s, /*channels=*/1, seed);
   }
@@ -108,7 +134,7 @@ VehicleWorld::VehicleWorld(const VehicleWorldOptions& options, Time start, std::
     : options_(Checked(options)),
       start_(options.start_s > 0 ? Time(DurationFromSeconds(options.start_s)) : start),
       departure_s_(kWaiting),
-      scene_(MakeScene(options, seed)) {
+      scene_(MakeScene(options, seed, &field_)) {
   const auto delayed = [this](const auto& motion) {
     return [this, motion](double time_s) { return motion(DrivenTime(time_s)); };
   };
@@ -127,7 +153,7 @@ Eigen::Vector3d VehicleWorld::VelocityAt(Time time) const {
 }
 
 bool VehicleWorld::IsOnBoard(const Eigen::Vector3d& point_in_pattern) const {
-  if (options_.thing.is_there()) return false;
+  if (options_.thing.is_there() || options_.field.is_there()) return false;
   const double half = 0.5 * scene_.print.board_size_m + options_.board.border_m;
   return ReachOnBoard(scene_.print, point_in_pattern.head<2>()) <= half;
 }

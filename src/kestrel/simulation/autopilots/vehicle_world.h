@@ -16,6 +16,7 @@
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/geometry/rigid_transform.h"
 #include "kestrel/core/poses/pose_history.h"
+#include "kestrel/simulation/autopilots/object_field.h"
 #include "kestrel/simulation/scene/follow_scene.h"
 #include "kestrel/simulation/scene/landing_scene.h"
 #include "kestrel/simulation/scene/vehicle_scenarios.h"
@@ -24,11 +25,12 @@
 namespace kestrel {
 
 // The vehicle with the pattern in the autopilot's local frame (ENU), driving in real time; or a
-// thing to follow, which has the vehicle's motion, and no pad.
+// thing to follow, which has the vehicle's motion, and no pad; or a field of objects.
 struct VehicleWorldOptions : LandingSceneOptions {
   VehicleWorldOptions();
 
   FollowedThingOptions thing;
+  ObjectFieldOptions field;
   double drive_altitude_m = 0;
   double drive_delay_s = 0;
   double drive_acceleration = 1;
@@ -36,6 +38,7 @@ struct VehicleWorldOptions : LandingSceneOptions {
 
   static void Visit(auto& self, auto&& visit) {
     visit.Group("thing", self.thing);
+    visit.Group("field", self.field);
     visit("drive_altitude_m", self.drive_altitude_m, Range{0, 1000},
           "height of the UAV that the vehicle waits for; 0: it drives all the time");
     visit("drive_delay_s", self.drive_delay_s, Range{0, 1000},
@@ -88,6 +91,7 @@ class VehicleWorld {
   void ReportPose(const PoseSample& pose, const PlatformAttitude& platform = std::nullopt);
 
   const LandingScene& scene() const { return scene_; }
+  ObjectField& field() { return field_; }  // without objects where there is none
   const VehicleWorldOptions& options() const { return options_; }
 
  private:
@@ -96,6 +100,7 @@ class VehicleWorld {
   VehicleWorldOptions options_;
   Time start_;
   std::atomic<double> departure_s_;  // scene time; infinite while it waits
+  ObjectField field_;
   LandingScene scene_;
   std::mutex listener_mutex_;
   std::map<const void*, PoseListener> listeners_;

@@ -71,6 +71,7 @@ class Placer {
   void AddDisc(const std::string& color, double diameter_m) {
     const Vector2d place = places_.Next();
     Vector3d center(place.x(), place.y(), kDiscHeight_m);
+    BeginObject();
     AddRoundPlate(0, center, 0.5 * diameter_m, color);
     AddObject({.color = color,
                .shape = "disc",
@@ -91,6 +92,7 @@ class Placer {
     const auto dark = PlainPaint(Gray(0.05), world_->channels);
     AddBox(body, {{0, 0, 0.06}, {0.06, 0.05, 0.06}}, dark, dark, world_);
     const Vector3d top(0, 0, kPostHeight_m);
+    BeginObject();
     AddRoundPlate(body, top, 0.5 * options_.size_m, "yellow");
     AddObject({.color = "yellow",
                .shape = "disc",
@@ -106,6 +108,7 @@ class Placer {
     const auto paint =
         FadedPaint(random_->Uniform(0, options_.fading), "orange", world_->channels, random_);
     const double height = 0.08;
+    BeginObject();
     AddBox(body, {{0, 0, 0.5 * height}, {0.5 * kBarLength_m, 0.5 * kBarWidth_m, 0.5 * height}},
            paint, paint, world_);
     Vector3d center(place.x(), place.y(), height);
@@ -142,6 +145,7 @@ class Placer {
     const double fading = random_->Uniform(0, options_.fading);
     const auto side = FadedPaint(fading, color, world_->channels, random_);
     const auto top = DigitPaint(fading, color, digit, world_->channels, random_);
+    BeginObject();
     AddBox(body, {{0, 0, half}, {half, half, half}}, top, side, world_);
     Vector3d center(place.x(), place.y(), options_.size_m);
     AddObject({.color = color,
@@ -187,7 +191,12 @@ class Placer {
     surface->gloss_width = static_cast<float>(random_->Uniform(0.2, 0.5));
   }
 
+  // Called before its surfaces are added.
+  void BeginObject() { first_surface_ = world_->surfaces.size(); }
+
   void AddObject(HuntObject object) {
+    object.first_surface = first_surface_;
+    object.last_surface = world_->surfaces.size();
     object.id = static_cast<int>(objects.size()) + 1;
     objects.push_back(std::move(object));
   }
@@ -196,6 +205,7 @@ class Placer {
   Random* random_;
   World* world_;
   Places places_;
+  std::size_t first_surface_ = 0;
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -61,6 +62,9 @@ struct HuntObject {
   Path center;        // centre of its upper face, in the world
   // Half the sides of its upper face, in the world; for a disc, of the square around it.
   Eigen::Vector2d half_size;
+  // Its own surfaces in the world, from the first one to before the last one: without the robot
+  // that carries it.
+  std::size_t first_surface = 0, last_surface = 0;
 };
 
 // Places everything in the rectangle 'half_area' around the middle. Returns what is to be found.

@@ -77,6 +77,7 @@ class ObjectMap::Impl {
   Impl(const ObjectModel& model, const ObjectMapOptions& options);
 
   void Update(Time time, std::span<const ObjectMeasurement> measurements, const FieldOfView& view);
+  void VisitConfirmed(const std::function<void(const MappedObject&)>& visit) const;
   std::vector<MappedObject> Confirmed() const;
   std::vector<MappedObject> objects() const;
 
@@ -148,13 +149,15 @@ void ObjectMap::Impl::Update(Time time, std::span<const ObjectMeasurement> measu
   RemoveSurplus();
 }
 
+void ObjectMap::Impl::VisitConfirmed(const std::function<void(const MappedObject&)>& visit) const {
+  for (const auto& [object, motion] : entries_) {
+    if (object.detections >= options_.confirm_count && object.log_odds > 0) visit(object);
+  }
+}
+
 std::vector<MappedObject> ObjectMap::Impl::Confirmed() const {
   std::vector<MappedObject> confirmed;
-  for (const auto& [object, motion] : entries_) {
-    if (object.detections >= options_.confirm_count && object.log_odds > 0) {
-      confirmed.push_back(object);
-    }
-  }
+  VisitConfirmed([&](const MappedObject& object) { confirmed.push_back(object); });
   std::sort(confirmed.begin(), confirmed.end(),
             [](const MappedObject& a, const MappedObject& b) { return a.id < b.id; });
   return confirmed;
@@ -297,6 +300,9 @@ ObjectMap& ObjectMap::operator=(ObjectMap&&) noexcept = default;
 void ObjectMap::Update(Time time, std::span<const ObjectMeasurement> measurements,
                        const FieldOfView& view) {
   impl_->Update(time, measurements, view);
+}
+void ObjectMap::VisitConfirmed(const std::function<void(const MappedObject&)>& visit) const {
+  impl_->VisitConfirmed(visit);
 }
 std::vector<MappedObject> ObjectMap::Confirmed() const { return impl_->Confirmed(); }
 std::vector<MappedObject> ObjectMap::objects() const { return impl_->objects(); }

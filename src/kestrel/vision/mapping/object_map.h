@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -92,6 +93,9 @@ class ObjectMap {
   // Returns the objects that were seen often enough, ordered by id, each at the time when it was
   // last seen. PredictObject predicts where a moving object is since then.
   std::vector<MappedObject> Confirmed() const;
+
+  // Calls 'visit' with each of them, in no order; does not allocate.
+  void VisitConfirmed(const std::function<void(const MappedObject&)>& visit) const;
 
   // Returns all objects, including those that were seen only once.
   std::vector<MappedObject> objects() const;

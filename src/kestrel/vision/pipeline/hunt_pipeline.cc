@@ -11,6 +11,7 @@
 #include "kestrel/vision/pipeline/camera_poses.h"
 #include "kestrel/vision/pipeline/ground_height.h"
 #include "kestrel/vision/pipeline/object_view.h"
+#include "kestrel/vision/pipeline/sought_object.h"
 
 namespace kestrel {
 namespace {
@@ -44,8 +45,12 @@ class HuntPipeline::Impl {
   PoseStatus AddGimbal(const GimbalSample& sample) { return poses_.Add(sample); }
   void SetAltitude(std::optional<double> altitude_m) { altitude_m_ = altitude_m; }
   void ChangeOptions(const HuntPipelineOptions& options);
+  void Seek(const std::string& class_name) {
+    sought_.emplace(detector_.model(), class_name, options_.map);
+  }
   const HuntObservation& Process(const cv::Mat& image, Time time);
 
+  const SoughtObject* sought() const { return sought_ ? &*sought_ : nullptr; }
   const ObjectDetector& detector() const { return detector_; }
   const ObjectMap& map() const { return map_; }
   const HuntPipelineOptions& options() const { return options_; }
@@ -60,10 +65,13 @@ class HuntPipeline::Impl {
   };
   std::optional<GivenHeights> FindGivenHeights() const;
 
+  void TrackSought();
   void Detect(const cv::Mat& image);
   void UpdateGround(const GivenHeights& given);
   void LocateInWorld();
+  Eigen::Matrix3d CovarianceOf(std::size_t index) const;
   void UpdateMap();
+  void UpdateSought();
   void RememberForTracking();
   Eigen::Vector3d ClockShift(const ObjectDetection& detection) const;
   Time TimeOfRow(double v_px) const;
@@ -80,6 +88,8 @@ class HuntPipeline::Impl {
   bool saw_all_ = true;  // the last frame was searched completely
   ObjectMap map_;
   std::vector<ObjectMeasurement> measurements_;
+  std::optional<SoughtObject> sought_;
+  std::vector<ObjectSighting> sightings_;  // those of the current frame
 };
 
 HuntPipeline::Impl::Impl(const CameraCalibration& calibration, const ObjectModel& model,
@@ -108,11 +118,32 @@ const HuntObservation& HuntPipeline::Impl::Process(const cv::Mat& image, Time ti
     observation_.world_from_camera = camera->world_from_camera;
     observation_.camera_from_body = camera->camera_from_body;
   }
+  if (sought_) TrackSought();
   Detect(image);
   LocateInWorld();
   UpdateMap();
-  RememberForTracking();
+  if (sought_) {
+    UpdateSought();
+  } else {
+    RememberForTracking();
+  }
   return observation_;
+}
+
+// Further away the whole image is searched: the map still grows.
+void HuntPipeline::Impl::TrackSought() {
+  constexpr double kNear_m = 4;
+  track_.clear();
+  const auto& world_from_camera = observation_.world_from_camera;
+  const auto object = sought_->At(observation_.time);
+  if (!world_from_camera || !object) return;
+  const Eigen::Vector3d in_camera = world_from_camera->Inverse() * object->motion.position();
+  Eigen::Vector2d pixel;
+  if (in_camera.norm() > kNear_m ||
+      detector_.camera().Project(in_camera, &pixel) != ProjectionStatus::kOk) {
+    return;
+  }
+  track_.push_back({pixel, sought_->class_index()});
 }
 
 std::optional<HuntPipeline::Impl::GivenHeights> HuntPipeline::Impl::FindGivenHeights() const {
@@ -199,6 +230,16 @@ void HuntPipeline::Impl::LocateInWorld() {
   }
 }
 
+// Of a detection with a place in the world, with the errors of the navigation.
+Eigen::Matrix3d HuntPipeline::Impl::CovarianceOf(std::size_t index) const {
+  const ObjectDetection& detection = observation_.report.detections[index];
+  const double swing_m = Radians(options_.attitude_sigma_deg) * detection.location->position.norm();
+  Eigen::Matrix3d covariance = observation_.in_world[index]->covariance;
+  covariance.diagonal().array() +=
+      options_.pose_sigma_m * options_.pose_sigma_m + swing_m * swing_m;
+  return covariance;
+}
+
 void HuntPipeline::Impl::UpdateMap() {
   if (options_.still || !observation_.world_from_camera) return;
   measurements_.clear();
@@ -210,11 +251,7 @@ void HuntPipeline::Impl::UpdateMap() {
     ObjectMeasurement& measurement = measurements_.emplace_back();
     measurement.delay_s = ToSeconds(TimeOfRow(detection.center_px.y()) - observation_.time);
     measurement.position = in_world->position;
-    const double swing_m =
-        Radians(options_.attitude_sigma_deg) * detection.location->position.norm();
-    measurement.covariance = in_world->covariance;
-    measurement.covariance.diagonal().array() +=
-        options_.pose_sigma_m * options_.pose_sigma_m + swing_m * swing_m;
+    measurement.covariance = CovarianceOf(i);
     measurement.clock_shift = ClockShift(detection);
     measurement.shape = detector_.model().classes[detection.class_index].shape;
     measurement.color = detection.mean_color;
@@ -224,6 +261,18 @@ void HuntPipeline::Impl::UpdateMap() {
   map_.Update(
       observation_.time, measurements_,
       ObjectView(detector_, observation_.report, *observation_.world_from_camera, saw_all_));
+}
+
+// One that the image border cuts off counts, too: from near by none is whole.
+void HuntPipeline::Impl::UpdateSought() {
+  sightings_.clear();
+  for (std::size_t i = 0; i < observation_.in_world.size(); ++i) {
+    if (!observation_.in_world[i]) continue;
+    const ObjectDetection& detection = observation_.report.detections[i];
+    sightings_.push_back({TimeOfRow(detection.center_px.y()), detection.class_index,
+                          observation_.in_world[i]->position, CovarianceOf(i)});
+  }
+  sought_->Update(observation_.time, sightings_, map_);
 }
 
 // See ObjectMeasurement.
@@ -272,6 +321,8 @@ void HuntPipeline::ChangeOptions(const HuntPipelineOptions& options) {
 const HuntObservation& HuntPipeline::Process(const cv::Mat& image, Time time) {
   return impl_->Process(image, time);
 }
+void HuntPipeline::Seek(const std::string& class_name) { impl_->Seek(class_name); }
+const SoughtObject* HuntPipeline::sought() const { return impl_->sought(); }
 const ObjectDetector& HuntPipeline::detector() const { return impl_->detector(); }
 const ObjectMap& HuntPipeline::map() const { return impl_->map(); }
 const HuntPipelineOptions& HuntPipeline::options() const { return impl_->options(); }

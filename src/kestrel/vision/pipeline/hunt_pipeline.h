@@ -21,6 +21,7 @@
 namespace kestrel {
 
 struct GroundHeight;
+class SoughtObject;
 
 struct HuntPipelineOptions {
   static constexpr int kPoseCapacity = 1000;  // poses that are kept
@@ -111,6 +112,13 @@ class HuntPipeline {
   // result is valid until the next call. Does not throw, and does not allocate once it has warmed
   // up.
   const HuntObservation& Process(const cv::Mat& image, Time time);
+
+  // Seeks an object of this class from now on, see sought(). Near it the images are searched for
+  // that one alone (the paper's tracking mode), and completely only where it is not found. Throws
+  // InputError when the model has no such class.
+  void Seek(const std::string& class_name);
+  // The object that is sought, after the last frame; null: none is.
+  const SoughtObject* sought() const;
 
   const ObjectDetector& detector() const;
   // The objects in the world; empty without poses and with independent frames.

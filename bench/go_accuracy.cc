@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Flies simulated autopilots to discs of 0.2 m over MAVLink, in simulated time, and prints how near
+// to their middle the gripper closes. Usage: go_accuracy [--flights N] [--first-seed N]
+// [--case TEXT] [--rendered] [--log]
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "kestrel/simulation/autopilots/test_go_flight.h"
+#include "report_main.h"
+
+namespace kestrel {
+namespace {
+
+struct Arguments {
+  int flights = 20;
+  std::uint64_t first_seed = 1;
+  std::string only;
+  bool is_rendered = false;
+  bool logs = false;
+};
+
+struct Case {
+  const char* name;
+  const char* class_name;
+  const char* path;  // of discs that move
+  double wind_mps;   // steady; gusts are 0.5 of it
+};
+constexpr Case kCases[] = {
+    {"stands, no wind", "red", "wander", 0},
+    {"stands, gusts of 8 m/s", "red", "wander", 5.3},
+    {"1.4 m/s, straight on, no wind", "yellow", "straight", 0},
+    {"1.4 m/s, straight on, gusts of 8 m/s", "yellow", "straight", 5.3},
+    {"0.6 m/s (RMS), wanders, no wind", "yellow", "wander", 0},
+    {"0.6 m/s (RMS), wanders, gusts of 8 m/s", "yellow", "wander", 5.3},
+};
+
+AutopilotModelOptions ModelOf(const Case& flown) {
+  AutopilotModelOptions options;
+  options.pilot.guide_after_s = 5;
+  options.pilot.land_after_s = -1;
+  options.pilot.start_altitude_m = 6;
+  options.uav.wind = {.min_mps = flown.wind_mps, .max_mps = flown.wind_mps, .gusts = 0.5};
+  return options;
+}
+
+FlightOptions FlightOf() {
+  FlightOptions options;
+  options.guidance.search_altitude_m = 6;
+  options.guidance.search_wait_s = 3;
+  options.guidance.search_radius_m = 10;
+  options.guidance.limits.geofence_radius_m = 500;
+  return options;
+}
+
+struct Row {
+  int taken = 0, within_5 = 0, within_10 = 0, tries = 0;
+  std::vector<double> offsets_m, times_s;
+};
+
+std::vector<std::string> FieldOf(const Case& flown) {
+  return {"ground.map_px=256",
+          "field.length_m=14",
+          "field.width_m=10",
+          "field.objects.red=3",
+          "field.objects.green=0",
+          "field.objects.blue=0",
+          "field.objects.yellow=3",
+          std::string("field.objects.yellow_path=") + flown.path,
+          flown.path == std::string("wander") ? "field.objects.yellow_speed_mps=0.6"
+                                              : "field.objects.yellow_speed_mps=1.4"};
+}
+
+std::unique_ptr<GoFlight> MakeFlight(const GoFlightSetup& setup, bool is_rendered) {
+  if (is_rendered) return std::make_unique<RenderedGoFlight>(setup);
+  return std::make_unique<SightedGoFlight>(setup);
+}
+
+Row Fly(const Case& flown, AutopilotFirmware firmware, const Arguments& arguments) {
+  constexpr double kLongest_s = 240;
+  Row row;
+  for (int i = 0; i < arguments.flights; ++i) {
+    const std::uint64_t seed = arguments.first_seed + static_cast<std::uint64_t>(i);
+    const auto flight = MakeFlight({.firmware = firmware,
+                                    .model = ModelOf(flown),
+                                    .field = FieldOf(flown),
+                                    .class_name = flown.class_name,
+                                    .flight = FlightOf(),
+                                    .seed = seed},
+                                   arguments.is_rendered);
+    const bool is_done = flight->FlyUntilDone(kLongest_s);
+    const SitlResult& result = flight->model.result();
+    if (arguments.logs || !is_done) {
+      fmt::print(stderr, "{}, seed {}:\n{}{}", flown.name, seed, flight->reported, InWords(result));
+    }
+    if (!result.grab) continue;
+    row.tries += result.grabs;
+    row.taken += is_done && result.grab->is_taken ? 1 : 0;
+    row.offsets_m.push_back(result.grab->offset_m);
+    row.within_5 += result.grab->offset_m <= 0.05 ? 1 : 0;
+    row.within_10 += result.grab->offset_m <= 0.1 ? 1 : 0;
+    row.times_s.push_back(ToSeconds(flight->now - kTestStart));
+  }
+  std::sort(row.offsets_m.begin(), row.offsets_m.end());
+  std::sort(row.times_s.begin(), row.times_s.end());
+  return row;
+}
+
+void Run(const Arguments& arguments) {
+  fmt::print(
+      "| disc | autopilot | taken | grabs | within 0.05 m | within 0.10 m | offset, median, m | "
+      "largest | time, median, s |\n|---|---|---|---|---|---|---|---|---|\n");
+  for (const Case& flown : kCases) {
+    if (std::string(flown.name).find(arguments.only) == std::string::npos) continue;
+    for (const auto firmware : {AutopilotFirmware::kArduPilot, AutopilotFirmware::kPx4}) {
+      const Row row = Fly(flown, firmware, arguments);
+      const auto median = [](const std::vector<double>& sorted) {
+        return sorted.empty() ? 0 : sorted[sorted.size() / 2];
+      };
+      fmt::print("| {} | {} | {} of {} | {} | {} | {} | {:.3f} | {:.3f} | {:.0f} |\n", flown.name,
+                 firmware == AutopilotFirmware::kPx4 ? "sim:px4" : "sim:ardupilot", row.taken,
+                 arguments.flights, row.tries, row.within_5, row.within_10, median(row.offsets_m),
+                 row.offsets_m.empty() ? 0 : row.offsets_m.back(), median(row.times_s));
+      std::fflush(stdout);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace kestrel
+
+int main(int argc, char** argv) {
+  CLI::App app{"Flights to discs, and how near to their middle the gripper closes"};
+  kestrel::Arguments arguments;
+  app.add_option("--flights", arguments.flights, "Of each case, each with the next seed (20)")
+      ->check(CLI::Range(1, 1000));
+  app.add_option("--first-seed", arguments.first_seed, "Seed of the first flight (1)");
+  app.add_option("--case", arguments.only, "Only the cases with this text in their name");
+  app.add_flag("--rendered", arguments.is_rendered, "With rendered images, which takes minutes");
+  app.add_flag("--log", arguments.logs, "Print what each flight reports");
+  CLI11_PARSE(app, argc, argv);
+  return kestrel::ReportMain([&] {
+    kestrel::Run(arguments);
+    return 0;
+  });
+}

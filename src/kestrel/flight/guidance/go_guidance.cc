@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/guidance/go_guidance.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/geometry/angles.h"
+#include "kestrel/flight/guidance/since.h"
+
+namespace kestrel {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+// Part of the cone in which the UAV sinks: the camera of a hunt sees less to the sides than that of
+// a landing.
+constexpr double kConePart = 0.4;
+// Above the height of the job: where the UAV waits until it is above the object, and where the job
+// may begin.
+constexpr double kWait_m = 0.8;
+constexpr double kReach_m = 0.05;
+// Largest offset of a gripper and its speed relative to the object, above it and at it, and the
+// time for which the UAV waits for them.
+constexpr double kAim_m = 0.03;
+constexpr double kGrip_m = 0.05;
+constexpr double kAim_mps = 0.3;
+constexpr double kAimWait_s = 20;
+constexpr double kLastSink_mps = 0.4;  // at least: near by the camera does not see the object
+// A UAV that sinks more slowly for so long on command to descend rests on something.
+constexpr double kStandstill_mps = 0.05;
+constexpr double kRests_s = 1;
+constexpr double kBelow_m = 1;  // from the UAV to the object, while it looks whether that is gone
+// What stands is where it was: near it the UAV goes on for so long without seeing it.
+constexpr double kStands_mps = 0.2;
+constexpr double kStandsSight_s = 3;
+constexpr double kGone_s = 2;  // an object that is not seen for so long from above is gone
+
+// False when the object is out of sight for too long to go on near it.
+bool IsSureOf(const GuidanceInput& input) {
+  const bool stands = input.target->motion.velocity().norm() < kStands_mps;
+  return input.target_age_s <= (stands ? kStandsSight_s : GuidanceOptions::kCommitSight_s);
+}
+
+const char* InWords(GoAction action) {
+  switch (action) {
+    case GoAction::kHover:
+      return "done: has hovered above the object";
+    case GoAction::kLook:
+      return "done: has looked at the object";
+    case GoAction::kDrop:
+      return "done: the gripper is open";
+    case GoAction::kPick:
+      return "done: the object is gone from the ground";
+  }
+  return "";
+}
+
+void RequireAtMost(double value, double most, const char* key, const char* limit) {
+  if (value <= most) return;
+  throw InputError(fmt::format("{} is {:g}, expected at most {:g} ({})", key, value, most, limit));
+}
+
+}  // namespace
+
+GoGuidance::GoGuidance(const GuidanceOptions& options, const GoJob& job)
+    : DescentGuidance(options, std::nullopt), job_(job) {
+  RequireAtMost(options.search_radius_m, options.limits.geofence_radius_m,
+                "guidance.search_radius_m", "limits.geofence_radius_m");
+  RequireAtMost(job.height_m, options.search_altitude_m, "the height above the object",
+                "guidance.search_altitude_m");
+}
+
+void GoGuidance::Begin(const GuidanceInput& input) {
+  yaw_ = HeadingOf(input.uav->world_from_body.rotation);
+  mark_ = failures_ = 0;
+  has_gripped_ = is_open_ = is_done_ = false;
+  fault_ = give_up_ = nullptr;
+  motion_ = GuidanceRequest::kNone;
+  StartSearch();
+}
+
+void GoGuidance::ResumeAfterLink() {
+  if (IsLow()) TryAgain("the link was gone");
+}
+
+void GoGuidance::ResumeAfterPoses() {
+  if (IsLow()) TryAgain("the poses had stopped");
+}
+
+// Near the ground it climbs before it gives up.
+const char* GoGuidance::WhyGiveUp(const GuidanceInput& input) {
+  if (give_up_ != nullptr) return give_up_;
+  if (phase() == GuidancePhase::kSearch && IsSearchOver(input.now)) {
+    return "the object was not found again: gave up";
+  }
+  if (phase() != GuidancePhase::kApproach || !input.target) return nullptr;
+  Vector3d above = input.uav->world_from_body.translation;
+  above.head<2>() = input.target->motion.position().head<2>();
+  return limits().Contains(above) ? nullptr : "the object is outside of the geofence: gave up";
+}
+
+Guidance::Wish GoGuidance::Choose(const GuidanceInput& input) {
+  // Near the object the view of another one is that of none; but what is seen below may have got
+  // another number.
+  const bool is_elsewhere = phase() != GuidancePhase::kLook || Look(input).off_m > kBelow_m;
+  if (input.target && input.mark != mark_ && is_elsewhere && phase() != GuidancePhase::kSearch &&
+      phase() != GuidancePhase::kApproach) {
+    GuidanceInput without = input;
+    without.target.reset();
+    return Choose(without);
+  }
+  if (input.is_landed && !IsLow()) {
+    End("the UAV is on the ground");
+    return {};
+  }
+  const Situation now = Look(input);
+  ChoosePhase(input, now);
+  Wish wish;
+  wish.follows_target = input.target.has_value();
+  if (input.gripper.number == answers_before_) wish.request = motion_;
+  if (phase() == GuidancePhase::kSearch) {
+    wish.set_point = Search(input, now);
+  } else {
+    wish.set_point = input.target && !is_done_ ? Pursue(input, now) : Stay(now);
+  }
+  wish.set_point.yaw = yaw_;
+  return wish;
+}
+
+void GoGuidance::ChoosePhase(const GuidanceInput& input, const Situation& now) {
+  if (is_done_) return;
+  if (input.target) KeepPlace(input, now);
+  if (phase() == GuidancePhase::kAct) return Act(input);
+  if (phase() == GuidancePhase::kGoAround) return ChooseClimb(input, now);
+  if (phase() == GuidancePhase::kLook) return LookWhetherGone(input);
+  if (!FindObject(input)) return;
+  if (phase() == GuidancePhase::kApproach && now.off_m < kConePart * Cone(now.height_m)) {
+    if (MayDescend(now)) {
+      Enter(GuidancePhase::kDescend, "above the object, which is in sight");
+    } else {
+      set_reason("waits above the object: it is not in sight, or not known well enough");
+    }
+  }
+  if (phase() == GuidancePhase::kDescend) ChooseDescent(input, now);
+  if (phase() == GuidancePhase::kCommit) ChooseCommit(input, now);
+}
+
+// False when there is none.
+bool GoGuidance::FindObject(const GuidanceInput& input) {
+  if (!input.target) {
+    if (IsLow()) {
+      TryAgain("the object is lost");
+    } else if (phase() != GuidancePhase::kSearch) {
+      SearchAfterLoss(input.now);
+    }
+    return false;
+  }
+  object_z_m_ = input.target->motion.position().z();
+  if (phase() == GuidancePhase::kSearch || input.mark != mark_) {
+    mark_ = input.mark;
+    pursuit().Reset();
+    Enter(GuidancePhase::kApproach, "flies to the object");
+  }
+  return true;
+}
+
+void GoGuidance::ChooseDescent(const GuidanceInput& input, const Situation& now) {
+  const double cone_m = Cone(now.height_m);
+  const bool is_near_ground = now.height_m < options().sight_height_m;
+  if (!now.is_known) return TryAgain("the object's place is not known well enough");
+  if (now.off_m > 2 * cone_m) {
+    if (is_near_ground) return TryAgain("too far beside the object");
+    return Enter(GuidancePhase::kApproach, "too far beside the object");
+  }
+  if (is_near_ground && !IsSureOf(input)) {
+    return TryAgain("low, and the object is not in sight");
+  }
+  if (job_.action == GoAction::kPick && !is_open_) {
+    is_open_ = Operate(input, GuidanceRequest::kRelease);
+    if (fault_ != nullptr) give_up_ = fault_;
+    if (!is_open_) return;
+  }
+  if (now.height_m > job_.height_m + kWait_m + kReach_m) {
+    waits_since_.reset();
+    return;
+  }
+  Remember(true, input.now, &waits_since_);
+  if (now.is_in_sight && IsAbove(now, kAim_m)) {
+    rests_since_.reset();
+    Enter(GuidancePhase::kCommit, "near the object, and above it");
+  } else if (IsLongerThan(kAimWait_s, waits_since_, input.now)) {
+    TryAgain("does not come to above the object");
+  }
+}
+
+// A gripper must be nearer than a view from above.
+bool GoGuidance::IsAbove(const Situation& now, double grip_m) const {
+  if (!job_.grips()) return now.off_m < kConePart * Cone(now.height_m);
+  return now.off_m < grip_m && now.slip_mps < kAim_mps;
+}
+
+void GoGuidance::ChooseCommit(const GuidanceInput& input, const Situation& now) {
+  if (!IsSureOf(input)) {
+    return TryAgain("near the object, and it was not in sight for too long");
+  }
+  if (now.off_m > kCommitCones * Cone(now.height_m)) return TryAgain("beside the object");
+  if (HasReached(input, now)) {
+    gripped_.reset();
+    return Enter(GuidancePhase::kAct,
+                 job_.grips() ? "uses the gripper" : "hovers above the object");
+  }
+  if (ToSeconds(input.now - entered()) > kAimWait_s) TryAgain("does not come to the object");
+}
+
+bool GoGuidance::HasReached(const GuidanceInput& input, const Situation& now) {
+  const bool rests = now.velocity.z() - input.target->motion.velocity().z() > -kStandstill_mps;
+  Remember(rests && now.height_m > job_.height_m + kReach_m, input.now, &rests_since_);
+  const bool is_down =
+      now.height_m <= job_.height_m + kReach_m || IsLongerThan(kRests_s, rests_since_, input.now);
+  return is_down && IsAbove(now, kGrip_m);
+}
+
+void GoGuidance::Act(const GuidanceInput& input) {
+  if (job_.grips()) return Grip(input);
+  if (!input.target || !IsSureOf(input)) {
+    return TryAgain("the object is not in sight any more");
+  }
+  if (ToSeconds(input.now - entered()) >= job_.seconds) Finish();
+}
+
+void GoGuidance::Grip(const GuidanceInput& input) {
+  const bool picks = job_.action == GoAction::kPick;
+  if (!gripped_) {
+    if (Operate(input, picks ? GuidanceRequest::kGrab : GuidanceRequest::kRelease)) {
+      gripped_ = input.now;
+    }
+    if (fault_ != nullptr) Enter(GuidancePhase::kGoAround, "the autopilot refuses the gripper");
+    return;
+  }
+  if (!IsLongerThan(job_.seconds, gripped_, input.now)) return;
+  has_gripped_ = true;
+  is_open_ = !picks;
+  Enter(GuidancePhase::kGoAround, "climbs with the gripper used");
+}
+
+void GoGuidance::ChooseClimb(const GuidanceInput& input, const Situation& now) {
+  if (now.feet.z() - object_z_m_ < options().sight_height_m) return;
+  if (fault_ != nullptr) {
+    give_up_ = fault_;
+  } else if (has_gripped_ && job_.action == GoAction::kPick) {
+    unseen_s_ = 0;
+    Enter(GuidancePhase::kLook, "looks whether the object is gone");
+  } else if (has_gripped_) {
+    Finish();
+  } else if (input.target) {
+    Enter(GuidancePhase::kApproach, "high enough to come again");
+  } else {
+    SearchAfterLoss(input.now);
+  }
+}
+
+// Images without the object count only while images come.
+void GoGuidance::LookWhetherGone(const GuidanceInput& input) {
+  const double looked_s = ToSeconds(input.now - entered());
+  if (input.target && input.target_age_s < looked_s) return TryAgain("the object is still there");
+  if (input.is_camera_up) unseen_s_ += SecondsSinceLast(input.now);
+  if (unseen_s_ >= kGone_s) Finish();
+}
+
+void GoGuidance::TryAgain(const char* reason) {
+  if (++failures_ >= kTries) {
+    fault_ = has_gripped_ ? "the object is still there after all tries: gave up"
+                          : "does not come down on the object: gave up";
+  }
+  has_gripped_ = false;
+  Enter(GuidancePhase::kGoAround, reason);
+}
+
+void GoGuidance::Finish() {
+  is_done_ = true;
+  Enter(GuidancePhase::kLook, InWords(job_.action));
+}
+
+bool GoGuidance::IsLow() const {
+  return phase() == GuidancePhase::kDescend || phase() == GuidancePhase::kCommit ||
+         phase() == GuidancePhase::kAct;
+}
+
+bool GoGuidance::Operate(const GuidanceInput& input, GuidanceRequest motion) {
+  if (motion_ != motion) {
+    motion_ = motion;
+    answers_before_ = input.gripper.number;
+    return false;
+  }
+  if (input.gripper.number == answers_before_) return false;
+  motion_ = GuidanceRequest::kNone;
+  if (!input.gripper.is_accepted) fault_ = "the autopilot does not operate the gripper: gave up";
+  return input.gripper.is_accepted;
+}
+
+SetPoint GoGuidance::Pursue(const GuidanceInput& input, const Situation& now) {
+  SetPoint command =
+      pursuit().Above(*input.target, {now.feet.head<2>(), now.velocity.head<2>()}, &flight_model());
+  double climb = ClimbRate(now);
+  if (phase() == GuidancePhase::kDescend) {
+    climb = std::max(climb, -stale().MaxSink(now.height_m, input.link_delay_s));
+    if (!now.is_in_sight) climb = std::max(climb, 0.0);
+  }
+  command.velocity.z() = climb;
+  return command;
+}
+
+// Rises to the height of the search where it is.
+SetPoint GoGuidance::Stay(const Situation& now) {
+  SetPoint command = pursuit().To(place(), {now.feet.head<2>(), now.velocity.head<2>()},
+                                  &flight_model(), options().limits.max_speed_mps);
+  command.velocity.z() = kHeightGain * (options().search_altitude_m - now.feet.z());
+  return command;
+}
+
+double GoGuidance::ClimbRate(const Situation& now) const {
+  if (!IsLow()) return kHeightGain * (options().search_altitude_m - now.feet.z());
+  const double left_m = now.height_m - job_.height_m;
+  if (phase() == GuidancePhase::kAct) return -kHeightGain * left_m;
+  if (phase() == GuidancePhase::kCommit) {
+    if (left_m <= kReach_m) return -kHeightGain * left_m;
+    return -std::max(GuidanceOptions::kSinkGain * left_m, kLastSink_mps);
+  }
+  if (now.off_m >= kConePart * Cone(now.height_m)) return 0;
+  return -GuidanceOptions::kSinkGain * (left_m - kWait_m);
+}
+
+}  // namespace kestrel

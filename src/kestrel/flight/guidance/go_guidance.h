@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include "kestrel/core/base/time.h"
+#include "kestrel/core/poses/set_point.h"
+#include "kestrel/flight/guidance/descent_guidance.h"  // IWYU pragma: export
+#include "kestrel/flight/guidance/go_job.h"
+#include "kestrel/flight/guidance/guidance_options.h"
+
+namespace kestrel {
+
+// Flies a multicopter at the height of the search to an object, which may move, and down on it;
+// does a job there, climbs, and stands still. A descent that failed is tried again, and so is a
+// pick after which the object is still seen on the ground. docs/go.md describes it.
+class GoGuidance : public DescentGuidance {
+ public:
+  static constexpr int kTries = 5;
+
+  // Throws InputError when the options are not valid, or job and search are beyond the limits.
+  GoGuidance(const GuidanceOptions& options, const GoJob& job);
+
+  // True once the job is done: the UAV stands still until the mode is left.
+  bool is_done() const { return is_done_; }
+
+ private:
+  void Begin(const GuidanceInput& input) override;
+  Wish Choose(const GuidanceInput& input) override;
+  const char* WhyGiveUp(const GuidanceInput& input) override;
+  void ResumeAfterLink() override;
+  void ResumeAfterPoses() override;
+
+  // Choice of the phase.
+  void ChoosePhase(const GuidanceInput& input, const Situation& now);
+  bool FindObject(const GuidanceInput& input);
+  void ChooseDescent(const GuidanceInput& input, const Situation& now);
+  void ChooseCommit(const GuidanceInput& input, const Situation& now);
+  bool IsAbove(const Situation& now, double grip_m) const;
+  bool HasReached(const GuidanceInput& input, const Situation& now);
+  void Act(const GuidanceInput& input);
+  void Grip(const GuidanceInput& input);
+  void ChooseClimb(const GuidanceInput& input, const Situation& now);
+  void LookWhetherGone(const GuidanceInput& input);
+  void TryAgain(const char* reason);
+  void Finish();
+  bool IsLow() const;  // in a phase near the object
+  // Requests a motion of the gripper; true once the autopilot has accepted it.
+  bool Operate(const GuidanceInput& input, GuidanceRequest motion);
+
+  // Set-points.
+  SetPoint Pursue(const GuidanceInput& input, const Situation& now);
+  SetPoint Stay(const Situation& now);
+  double ClimbRate(const Situation& now) const;
+
+  GoJob job_;
+  double yaw_ = 0;            // of the nose, rad
+  int mark_ = 0;              // number of the object; 0: none yet
+  double object_z_m_ = 0;     // its height in the world
+  int failures_ = 0;          // descents and picks
+  bool has_gripped_ = false;  // in this descent
+  bool is_open_ = false;      // the gripper, before a pick
+  bool is_done_ = false;
+  double unseen_s_ = 0;              // while it looks whether the object is gone
+  const char* fault_ = nullptr;      // why it gives up, once it has climbed
+  const char* give_up_ = nullptr;    // why it gives up now
+  std::optional<Time> waits_since_;  // near the object, until it is above it
+  std::optional<Time> rests_since_;  // does not sink any more, although it should
+  std::optional<Time> gripped_;      // when the autopilot accepted the gripper's motion
+  GuidanceRequest motion_ = GuidanceRequest::kNone;  // that is requested of the gripper
+  int answers_before_ = 0;                           // number of answers when that began
+};
+
+}  // namespace kestrel

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/guidance/go_guidance.h"
+
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kestrel/core/base/error.h"
+#include "kestrel/flight/guidance/test_flight.h"
+
+namespace kestrel {
+namespace {
+
+using Phase = GuidancePhase;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+const VehicleMotionOptions kAtRest{.path = "standing"};
+
+// Go guidance, a multicopter, an object, the wind, and a gripper that answers after a moment.
+struct GoFlight {
+  explicit GoFlight(const std::string& job, const VehicleMotionOptions& motion = kAtRest,
+                    const GuidanceOptions& options = {})
+      : guidance(options, ParseGoJob(job)), uav({}, {6, -3, 10}), object(motion, 1) {
+    Random random(3);
+    wind = MakeWind({}, &random);
+  }
+
+  GuidanceInput Input() const {
+    GuidanceInput input;
+    input.now = TimeFromNanoseconds(0) + DurationFromSeconds(100 + time_s);
+    input.uav = uav.State();
+    input.target = object.Estimate(input.now, time_s);
+    input.target_age_s = is_gone ? 1e3 : 0.05;
+    if (is_gone) input.target.reset();
+    input.mark = is_gone ? 0 : 7;
+    input.gripper = gripper;
+    input.is_guided = time_s > 0;
+    input.is_armed = true;
+    return input;
+  }
+
+  template <class Change>
+  void Step(const Change& change) {
+    GuidanceInput input = Input();
+    change(input);
+    output = guidance.Update(input);
+    Answer();
+    uav.Step(output.set_point, wind(time_s));
+    time_s += kTestStep_s;
+  }
+  template <class Until, class Change>
+  bool FlyUntil(const Until& until, double longest_s, const Change& change) {
+    for (const double end_s = time_s + longest_s; time_s < end_s;) {
+      Step(change);
+      if (until()) return true;
+    }
+    return false;
+  }
+  template <class Until>
+  bool FlyUntil(const Until& until, double longest_s = 60) {
+    return FlyUntil(until, longest_s, [](GuidanceInput&) {});
+  }
+  bool FlyUntilPhase(Phase phase, double longest_s = 60) {
+    return FlyUntil([&] { return output.phase == phase; }, longest_s);
+  }
+  bool FlyUntilDone(double longest_s = 90) {
+    return FlyUntil([&] { return guidance.is_done(); }, longest_s);
+  }
+
+  void Answer() {
+    const bool is_grip =
+        output.request == GuidanceRequest::kGrab || output.request == GuidanceRequest::kRelease;
+    if (!is_grip) return;
+    ++gripper.number;
+    gripper.is_accepted = has_gripper;
+    if (output.request == GuidanceRequest::kRelease) return;
+    ++grabs;
+    grab_off_m = FromObject().head<2>().norm();
+    grab_height_m = FromObject().z();
+    if (grabs > misses) is_gone = true;
+  }
+
+  Eigen::Vector3d FromObject() const {
+    return uav.State().world_from_body * Eigen::Vector3d(0, 0, -0.35) - object.Position(time_s);
+  }
+
+  GoGuidance guidance;
+  TestUav uav;
+  TestTarget object;
+  Path wind;
+  GuidanceOutput output;
+  GripperAnswers gripper;
+  bool has_gripper = true;
+  bool is_gone = false;
+  int misses = 0;  // so many grabs leave the object where it is
+  int grabs = 0;
+  double grab_off_m = 1, grab_height_m = 1;
+  double time_s = 0;
+};
+
+TEST(GoGuidanceTest, PicksObjectThatStands) {
+  GoFlight flight("pick");
+  ASSERT_TRUE(flight.FlyUntilDone()) << flight.output.reason;
+  EXPECT_EQ(flight.grabs, 1);
+  EXPECT_LT(flight.grab_off_m, 0.08);
+  EXPECT_NEAR(flight.grab_height_m, 0.05, 0.06);
+  EXPECT_THAT(flight.output.reason, HasSubstr("gone from the ground"));
+  flight.FlyUntil([] { return false; }, 10);
+  EXPECT_GT(flight.uav.position().z(), 9);  // at the height of the search again
+}
+
+TEST(GoGuidanceTest, PicksObjectThatMoves) {
+  GoFlight flight("pick", {.path = "circle", .speed_mps = 1.4});
+  ASSERT_TRUE(flight.FlyUntilDone()) << flight.output.reason;
+  EXPECT_LT(flight.grab_off_m, 0.1);
+  EXPECT_NEAR(flight.grab_height_m, 0.05, 0.08);
+}
+
+TEST(GoGuidanceTest, HoversAtTheHeightForTheTime) {
+  GoFlight flight("hover,3,4");
+  ASSERT_TRUE(flight.FlyUntilPhase(Phase::kAct));
+  const double began_s = flight.time_s;
+  double lowest_m = 10;
+  ASSERT_TRUE(flight.FlyUntil([&] {
+    lowest_m = std::min(lowest_m, flight.FromObject().z());
+    return flight.guidance.is_done();
+  }));
+  EXPECT_NEAR(flight.time_s - began_s, 4, 0.1);
+  EXPECT_NEAR(lowest_m, 3, 0.3);
+}
+
+TEST(GoGuidanceTest, DropsFromTheHeightOfTheJob) {
+  GoFlight flight("drop,1");
+  double released_m = 0;
+  ASSERT_TRUE(flight.FlyUntil([&] {
+    if (flight.output.request == GuidanceRequest::kRelease) released_m = flight.FromObject().z();
+    return flight.guidance.is_done();
+  }));
+  EXPECT_NEAR(released_m, 1, 0.1);
+}
+
+TEST(GoGuidanceTest, TriesAgainWhenObjectIsStillThere) {
+  GoFlight flight("pick");
+  flight.misses = 2;
+  ASSERT_TRUE(flight.FlyUntilDone(200)) << flight.output.reason;
+  EXPECT_EQ(flight.grabs, 3);
+}
+
+TEST(GoGuidanceTest, GivesUpAfterAllTriesAndHigh) {
+  GoFlight flight("pick");
+  flight.misses = 100;
+  ASSERT_TRUE(flight.FlyUntil([&] { return flight.guidance.has_given_up(); }, 400));
+  EXPECT_EQ(flight.grabs, GoGuidance::kTries);
+  EXPECT_THAT(flight.output.reason, HasSubstr("still there after all tries: gave up"));
+  EXPECT_EQ(flight.output.request, GuidanceRequest::kHold);
+  EXPECT_GT(flight.FromObject().z(), 1.9);
+}
+
+TEST(GoGuidanceTest, GivesUpHighAboveWhenThereIsNoGripper) {
+  GoFlight flight("pick");
+  flight.has_gripper = false;
+  ASSERT_TRUE(flight.FlyUntil([&] { return flight.guidance.has_given_up(); }));
+  EXPECT_THAT(flight.output.reason, HasSubstr("does not operate the gripper"));
+  EXPECT_GT(flight.FromObject().z(), 5);
+  EXPECT_EQ(flight.grabs, 0);
+}
+
+TEST(GoGuidanceTest, ClimbsAndSearchesWhenObjectIsLostNearTheGround) {
+  GoFlight flight("pick");
+  ASSERT_TRUE(flight.FlyUntil([&] { return flight.FromObject().z() < 1; }));
+  flight.is_gone = true;
+  flight.Step([](GuidanceInput&) {});
+  EXPECT_EQ(flight.output.phase, Phase::kGoAround);
+  EXPECT_TRUE(flight.FlyUntilPhase(Phase::kSearch, 10));
+  EXPECT_GT(flight.FromObject().z(), 1.9);
+  EXPECT_EQ(flight.grabs, 0);
+}
+
+TEST(GoGuidanceTest, AnotherObjectDoesNotDrawItAwayNearTheGround) {
+  GoFlight flight("pick");
+  ASSERT_TRUE(flight.FlyUntil([&] { return flight.FromObject().z() < 1; }));
+  flight.Step([](GuidanceInput& input) { input.mark = 8; });
+  EXPECT_EQ(flight.output.phase, Phase::kGoAround);
+}
+
+TEST(GoGuidanceTest, UnseenObjectIsNotGoneWhileNoImagesCome) {
+  GoFlight flight("pick");
+  ASSERT_TRUE(flight.FlyUntilPhase(Phase::kLook)) << flight.output.reason;
+  const auto blind = [](GuidanceInput& input) { input.is_camera_up = false; };
+  EXPECT_FALSE(flight.FlyUntil([&] { return flight.guidance.is_done(); }, 5, blind));
+}
+
+TEST(GoGuidanceTest, EndsAtOnceWhenPilotTakesBack) {
+  GoFlight flight("pick");
+  ASSERT_TRUE(flight.FlyUntilPhase(Phase::kDescend));
+  flight.Step([](GuidanceInput& input) { input.is_guided = false; });
+  EXPECT_FALSE(flight.output.set_point);
+  EXPECT_EQ(flight.output.phase, Phase::kIdle);
+}
+
+TEST(GoGuidanceTest, ObjectOutsideOfGeofenceIsGivenUp) {
+  GuidanceOptions options;
+  options.limits.geofence_radius_m = 4;
+  GoFlight flight("pick", kAtRest, options);
+  ASSERT_TRUE(flight.FlyUntil([&] { return flight.guidance.has_given_up(); }, 5));
+  EXPECT_THAT(flight.output.reason, HasSubstr("outside of the geofence"));
+}
+
+TEST(GoGuidanceTest, SearchBeyondTheLimitsIsRefused) {
+  GuidanceOptions options;
+  options.search_radius_m = 200;
+  EXPECT_THAT([&] { GoGuidance(options, {}); },
+              ThrowsMessage<InputError>(HasSubstr("expected at most 100 (limits.geofence")));
+  EXPECT_THAT([&] { GoGuidance({}, ParseGoJob("hover,12")); },
+              ThrowsMessage<InputError>(HasSubstr("expected at most 10")));
+}
+
+TEST(GoJobTest, IsReadWithHeightAndTime) {
+  EXPECT_EQ(ParseGoJob("pick").action, GoAction::kPick);
+  const GoJob job = ParseGoJob("look,4.5,30");
+  EXPECT_EQ(job.action, GoAction::kLook);
+  EXPECT_EQ(job.height_m, 4.5);
+  EXPECT_EQ(job.seconds, 30);
+  for (const char* wrong : {"", "dance", "hover,x", "hover,-1", "hover,1,2,3", "pick,nan"}) {
+    EXPECT_THAT([&] { ParseGoJob(wrong); },
+                ThrowsMessage<InputError>(HasSubstr("expected hover, look, drop or pick")))
+        << wrong;
+  }
+}
+
+}  // namespace
+}  // namespace kestrel

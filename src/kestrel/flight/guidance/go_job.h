@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace kestrel {
+
+// What the UAV does at an object.
+enum class GoAction {
+  kHover,  // stays above it
+  kLook,   // as well, while pictures are kept
+  kDrop,   // opens the gripper
+  kPick,   // closes the gripper, and looks whether the object is gone
+};
+
+// An action, the height of the feet above the object at which it is done, and how long it takes
+// there (of a gripper: after the autopilot's answer).
+struct GoJob {
+  GoAction action = GoAction::kHover;
+  double height_m = 2.5;
+  double seconds = 10;
+
+  bool grips() const { return action == GoAction::kDrop || action == GoAction::kPick; }
+};
+
+// Reads "ACTION[,HEIGHT[,SECONDS]]", as "pick" or "hover,3,20". Throws InputError for another text.
+GoJob ParseGoJob(std::string_view text);
+
+}  // namespace kestrel
