@@ -10,7 +10,7 @@
 namespace kestrel {
 namespace {
 
-constexpr std::array<ListedCheck, 43> kChecks = {{
+constexpr std::array<ListedCheck, 44> kChecks = {{
     {"image size", "images have the size of the calibration"},
     {"lens model", "every pixel has a ray: the distortion does not bend back before the rim"},
     {"principal point, pixels", "the optical axis is near the middle, and pixels are square"},
