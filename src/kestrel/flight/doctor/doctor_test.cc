@@ -86,7 +86,7 @@ TEST(DoctorTest, VideoWithGapsIsTooOldForGuidance) {
   setup.camera.delay = ClockEstimate{-0.2, 0.004};
   EXPECT_EQ(CheckVideoDelay(setup.camera, setup.use).verdict, Verdict::kGood);
   std::erase_if(setup.camera.frames, [](const FrameSample& frame) {
-    return (frame.stamp - FrameTime(0)) % std::chrono::seconds(1) > std::chrono::milliseconds(500);
+    return (frame.stamp - FrameTime(0)) % std::chrono::seconds(1) > std::chrono::milliseconds(400);
   });
   const Finding finding = CheckVideoDelay(setup.camera, setup.use);
   EXPECT_EQ(finding.verdict, Verdict::kDoubtful);

@@ -72,6 +72,9 @@ class GuidedFlightTest : public testing::Test {
       requested_modes_.insert(static_cast<std::uint32_t>(command->param2) << 16 |
                               static_cast<std::uint32_t>(command->param3) << 24);
     }
+    if (command && command->command == mavlink::kCommandLand) {
+      requested_modes_.insert(CustomModeOf(AutopilotKind::kPx4, FlightMode::kLand));
+    }
     if (const auto question = packet.As<mavlink::ParamRequestRead>()) {
       mavlink::ParamValue value;
       value.param_id = question->param_id;
@@ -194,6 +197,7 @@ TEST_F(GuidedFlightTest, KnownDelayOfVideoIsNoAgeOfSight) {
   Start(mavlink::kAutopilotArduPilot, {}, [&](const GuidanceOptions& guidance) {
     return std::make_unique<StandingGuidance>(guidance, &age_s);
   });
+  Pass(2);
   heartbeat_.custom_mode = kGuided;
   lateness_ = 400ms;
   Pass(2);
