@@ -11,6 +11,7 @@
 namespace kestrel {
 namespace {
 
+constexpr double kToleranceRingPx = 3.5;  // paper, section 2.3
 // Axes (diameters) below which strokes are hardly wider than the blur, everywhere or in places.
 constexpr double kSmallRingPx = 30;
 constexpr double kThinRingPx = 13;
@@ -190,7 +191,8 @@ std::optional<RingFit> RingFinder::FitToBorder(const Outline& outline, const Bor
   }
   const double scale = region.scale();
   const double radius_px = outline.outer_edge.semi_major * scale;
-  const double tolerance_px = std::max(0.05 * radius_px + 0.6 * scale, scale);
+  const double tolerance_px =
+      std::max(std::min(kToleranceRingPx, 0.05 * radius_px + 0.6 * scale), scale);
   const LandingPattern& pattern = models_.options.pattern;
   const double radius_m =
       outline.edge == RingEdge::kOuter ? pattern.outer_radius_m() : pattern.inner_radius_m();

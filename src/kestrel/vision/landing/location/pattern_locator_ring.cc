@@ -2,6 +2,7 @@
 // The pose of a ring by its edges alone.
 #include <algorithm>
 #include <span>
+#include <utility>
 
 #include "kestrel/vision/landing/location/pattern_locator_equations.h"
 #include "kestrel/vision/landing/print_places.h"
@@ -9,7 +10,9 @@
 namespace kestrel {
 namespace {
 
+constexpr double kRingSettledPx = 0.2;
 constexpr double kMaxRingScatterPx = 1.5;  // standard deviation, after two iterations
+constexpr double kGathering = 0.6;  // edges still gather when a step scales their scatter by less
 
 }  // namespace
 
@@ -47,10 +50,13 @@ std::optional<RingLocation> PatternLocator::LocateRing(
     for (int k = kPoseRotation; k < kPoseUnknowns; ++k) h(k, k) += weight;
     const Vector step = WithPrior(linearized, state, prior).PoseStep();
     if (!state.Move(step)) return std::nullopt;
-    scale = std::clamp(linearized.RobustScale(), EdgeFit::kLeastScalePx, scale);
+    const double before =
+        std::exchange(scale, std::clamp(linearized.RobustScale(), EdgeFit::kLeastScalePx, scale));
     reach = std::clamp(3 * scale, 1.5, reach);
     // Edges of anything but a ring stay scattered.
-    if (i > 0 && scale > kMaxRingScatterPx) return std::nullopt;
+    const bool gathers = scale < kGathering * before && i + 1 < iterations;
+    if (i > 0 && scale > kMaxRingScatterPx && !gathers) return std::nullopt;
+    if (i > 0 && linearized.Movement(step) < kRingSettledPx) break;
   }
   return RingLocation{state.pose, is_whole};
 }

@@ -23,7 +23,7 @@ constexpr double kSameSign = 0.12;
 // Search reach for the edges of a ring without a cross, times the usual reach. Where much of the
 // ring is cut off or hidden, the rest hardly constrains its far side.
 constexpr std::array<double, 2> kRefinedReaches{1.5, 2.5};
-constexpr int kRefinements = 2;
+constexpr int kRefinements = 4;
 constexpr double kPredictedReach = 0.12;  // share of the diameter, for a predicted ring
 constexpr double kCrossReach = 0.03;      // the same, for a ring that follows from the cross
 constexpr double kMinStep = 0.12;  // least step of an edge, share of the print's contrast per pixel
@@ -87,7 +87,7 @@ void NearPrintVerifier::Test(const RingCandidate& ring) {
     if (has_cross && !is_doubtful) return;
     bool is_whole = false;
     for (const int pose : order.poses) {
-      const auto refined = RefineRing(ring.poses[pose], farther * ring.reach_px);
+      const auto refined = RefineRing(ring.poses[pose], farther * ring.reach_px, kRefinements);
       if (!refined) continue;
       is_whole |= refined->is_whole;
       const auto print = FindCross(refined->camera_from_target, diameter_px);
@@ -105,7 +105,8 @@ void NearPrintVerifier::Test(const RingCandidate& ring) {
 
 void NearPrintVerifier::TestPredicted(const CirclePose& predicted,
                                       const Eigen::Vector2d& predicted_px) {
-  const auto refined = RefineRing(predicted, kPredictedReach * predicted_px.x());
+  constexpr int kIterations = 3;
+  const auto refined = RefineRing(predicted, kPredictedReach * predicted_px.x(), kIterations);
   if (!refined) return;
   const RigidTransform& pose = refined->camera_from_target;
   const CirclePose ring{pose.translation, pose.rotation * Eigen::Vector3d::UnitZ()};
@@ -152,10 +153,11 @@ std::optional<NearPrintVerifier::Hypothesis> NearPrintVerifier::FindCross(
 
 // Fits a ring to the edges of both of its circles before its inside is examined: where the ring is
 // cut off or broken, its first estimate hardly constrains the far side.
-std::optional<RingLocation> NearPrintVerifier::RefineRing(const CirclePose& ring, double reach_px) {
+std::optional<RingLocation> NearPrintVerifier::RefineRing(const CirclePose& ring, double reach_px,
+                                                          int iterations) {
   const SearchLog::Timer timer = search_.log.Time(LandingStage::kRing);
   return search_.models.locator.LocateRing(search_.image.whole(), PatternPose(ring, 0), reach_px,
-                                           GrayContrast::kLeastRing / 2, kRefinements,
+                                           GrayContrast::kLeastRing / 2, iterations,
                                            search_.prior.LevelPrior(ring.normal));
 }
 

@@ -44,7 +44,7 @@ class NearPrintVerifier {
   };
 
   std::optional<Hypothesis> FindCross(const RigidTransform& ring, double diameter_px);
-  std::optional<RingLocation> RefineRing(const CirclePose& ring, double reach_px);
+  std::optional<RingLocation> RefineRing(const CirclePose& ring, double reach_px, int iterations);
   bool TestPrint(const Hypothesis& print, const Eigen::Vector2d& diameters_px, double reach_px,
                  std::span<const CirclePose> rings, const PriorKnowledge::Order& order);
   RigidTransform WithArmOf(const PrintAlignment& alignment, const CirclePose& ring) const;
