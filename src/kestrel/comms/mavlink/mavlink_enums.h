@@ -72,10 +72,10 @@ inline constexpr std::uint8_t kStateActive = 4;
 inline constexpr std::uint8_t kStateCritical = 5;
 inline constexpr std::uint8_t kStateEmergency = 6;
 
-// MAV_CMD
-// SYS_STATUS: of a transmitter.
+// MAV_SYS_STATUS_SENSOR: the receiver of a transmitter
 inline constexpr std::uint32_t kSensorReceiver = 0x10000;
 
+// MAV_CMD
 inline constexpr std::uint16_t kCommandLand = 21;
 inline constexpr std::uint16_t kCommandTakeOff = 22;
 inline constexpr std::uint16_t kCommandDoSetMode = 176;

@@ -12,7 +12,6 @@
 namespace kestrel {
 namespace {
 
-using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 // Part of the cone in which the UAV sinks: the camera of a hunt sees less to the sides than that of
@@ -79,6 +78,9 @@ void GoGuidance::Begin(const GuidanceInput& input) {
   has_gripped_ = is_open_ = is_done_ = false;
   fault_ = give_up_ = nullptr;
   motion_ = GuidanceRequest::kNone;
+  waits_since_.reset();
+  rests_since_.reset();
+  gripped_.reset();
   StartSearch();
 }
 
@@ -112,7 +114,8 @@ Guidance::Wish GoGuidance::Choose(const GuidanceInput& input) {
     without.target.reset();
     return Choose(without);
   }
-  if (input.is_landed && !IsLow()) {
+  // A gripper may rest on the object: the climb takes the UAV off again.
+  if (input.is_landed && !IsLow() && phase() != GuidancePhase::kGoAround) {
     End("the UAV is on the ground");
     return {};
   }
@@ -139,6 +142,7 @@ void GoGuidance::ChoosePhase(const GuidanceInput& input, const Situation& now) {
   if (!FindObject(input)) return;
   if (phase() == GuidancePhase::kApproach && now.off_m < kConePart * Cone(now.height_m)) {
     if (MayDescend(now)) {
+      waits_since_.reset();
       Enter(GuidancePhase::kDescend, "above the object, which is in sight");
     } else {
       set_reason("waits above the object: it is not in sight, or not known well enough");
@@ -234,6 +238,7 @@ void GoGuidance::Act(const GuidanceInput& input) {
 void GoGuidance::Grip(const GuidanceInput& input) {
   const bool picks = job_.action == GoAction::kPick;
   if (!gripped_) {
+    if (picks) is_open_ = false;
     if (Operate(input, picks ? GuidanceRequest::kGrab : GuidanceRequest::kRelease)) {
       gripped_ = input.now;
     }
@@ -242,12 +247,12 @@ void GoGuidance::Grip(const GuidanceInput& input) {
   }
   if (!IsLongerThan(job_.seconds, gripped_, input.now)) return;
   has_gripped_ = true;
-  is_open_ = !picks;
   Enter(GuidancePhase::kGoAround, "climbs with the gripper used");
 }
 
 void GoGuidance::ChooseClimb(const GuidanceInput& input, const Situation& now) {
-  if (now.feet.z() - object_z_m_ < options().sight_height_m) return;
+  const double highest_m = options().search_altitude_m - object_z_m_ - kReach_m;
+  if (now.feet.z() - object_z_m_ < std::min(options().sight_height_m, highest_m)) return;
   if (fault_ != nullptr) {
     give_up_ = fault_;
   } else if (has_gripped_ && job_.action == GoAction::kPick) {
@@ -265,7 +270,8 @@ void GoGuidance::ChooseClimb(const GuidanceInput& input, const Situation& now) {
 // Images without the object count only while images come.
 void GoGuidance::LookWhetherGone(const GuidanceInput& input) {
   const double looked_s = ToSeconds(input.now - entered());
-  if (input.target && input.target_age_s < looked_s) return TryAgain("the object is still there");
+  const double seen_s = input.target_age_s + GuidanceInput::kMostVideoDelay_s;
+  if (input.target && seen_s < looked_s) return TryAgain("the object is still there");
   if (input.is_camera_up) unseen_s_ += SecondsSinceLast(input.now);
   if (unseen_s_ >= kGone_s) Finish();
 }
@@ -282,6 +288,11 @@ void GoGuidance::TryAgain(const char* reason) {
 void GoGuidance::Finish() {
   is_done_ = true;
   Enter(GuidancePhase::kLook, InWords(job_.action));
+}
+
+bool GoGuidance::is_at_deck() const {
+  return (phase() == GuidancePhase::kCommit || phase() == GuidancePhase::kAct) &&
+         job_.height_m < options().commit_height_m;
 }
 
 bool GoGuidance::IsLow() const {
@@ -324,7 +335,7 @@ SetPoint GoGuidance::Stay(const Situation& now) {
 double GoGuidance::ClimbRate(const Situation& now) const {
   if (!IsLow()) return kHeightGain * (options().search_altitude_m - now.feet.z());
   const double left_m = now.height_m - job_.height_m;
-  if (phase() == GuidancePhase::kAct) return -kHeightGain * left_m;
+  if (phase() == GuidancePhase::kAct) return rests_since_ ? 0 : -kHeightGain * left_m;
   if (phase() == GuidancePhase::kCommit) {
     if (left_m <= kReach_m) return -kHeightGain * left_m;
     return -std::max(GuidanceOptions::kSinkGain * left_m, kLastSink_mps);

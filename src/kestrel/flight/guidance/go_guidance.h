@@ -23,6 +23,8 @@ class GoGuidance : public DescentGuidance {
 
   // True once the job is done: the UAV stands still until the mode is left.
   bool is_done() const { return is_done_; }
+  // Only a gripper's job takes the UAV down that far.
+  bool is_at_deck() const override;
 
  private:
   void Begin(const GuidanceInput& input) override;

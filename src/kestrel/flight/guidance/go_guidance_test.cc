@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/flight/guidance/go_guidance.h"
 
+#include <algorithm>
 #include <string>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -190,6 +192,35 @@ TEST(GoGuidanceTest, UnseenObjectIsNotGoneWhileNoImagesCome) {
   ASSERT_TRUE(flight.FlyUntilPhase(Phase::kLook)) << flight.output.reason;
   const auto blind = [](GuidanceInput& input) { input.is_camera_up = false; };
   EXPECT_FALSE(flight.FlyUntil([&] { return flight.guidance.is_done(); }, 5, blind));
+}
+
+TEST(GoGuidanceTest, OnlyGrippersComeDownToTheDeck) {
+  for (const auto& [job, comes_down] :
+       {std::pair("hover", false), {"look", false}, {"drop,1", false}, {"pick", true}}) {
+    GoFlight flight(job);
+    ASSERT_TRUE(flight.FlyUntilPhase(Phase::kCommit)) << job;
+    EXPECT_EQ(flight.guidance.is_at_deck(), comes_down) << job;
+    ASSERT_TRUE(flight.FlyUntilPhase(Phase::kAct)) << job;
+    EXPECT_EQ(flight.guidance.is_at_deck(), comes_down) << job;
+  }
+}
+
+TEST(GoGuidanceTest, ClimbsWithObjectAlthoughAutopilotReportsGround) {
+  GoFlight flight("pick");
+  ASSERT_TRUE(flight.FlyUntil([&] { return flight.grabs == 1; })) << flight.output.reason;
+  const auto landed = [](GuidanceInput& input) { input.is_landed = true; };
+  EXPECT_TRUE(flight.FlyUntil([&] { return flight.output.phase == Phase::kGoAround; }, 3, landed));
+  flight.Step(landed);
+  EXPECT_EQ(flight.output.phase, Phase::kGoAround) << flight.output.reason;
+  EXPECT_TRUE(flight.FlyUntilDone()) << flight.output.reason;
+}
+
+TEST(GoGuidanceTest, EachTryFromAHighJobHasItsTime) {
+  GoFlight flight("drop,1.5");
+  ASSERT_TRUE(flight.FlyUntil([&] { return flight.FromObject().z() < 2.3; }));
+  const auto hardly_seen = [](GuidanceInput& input) { input.target_age_s = 1; };
+  ASSERT_FALSE(flight.FlyUntil([&] { return flight.guidance.has_given_up(); }, 22, hardly_seen));
+  EXPECT_TRUE(flight.FlyUntilDone()) << flight.output.reason;
 }
 
 TEST(GoGuidanceTest, EndsAtOnceWhenPilotTakesBack) {

@@ -104,6 +104,10 @@ class Guidance {
   void SetFenceCenter(const Eigen::Vector2d& center);
 
   GuidancePhase phase() const { return phase_; }
+  // True where a stop would end on the deck or the ground, with the motors on.
+  virtual bool is_at_deck() const {
+    return phase_ == GuidancePhase::kLanded || phase_ == GuidancePhase::kCommit;
+  }
   // True from when it gives up, or refuses to begin in the air, until the mode is left.
   bool has_given_up() const { return has_given_up_; }
   // Part of the limits that following the target takes, the largest of the last seconds.

@@ -7,11 +7,11 @@ namespace kestrel {
 // caller limits how often it is sent.
 enum class GuidanceRequest {
   kNone,
-  kLand,    // its LAND mode, in contact
-  kHold,    // LOITER or HOLD: guidance has given up
-  kDisarm,  // by force, in contact
-  kGrab,    // the gripper closes
-  kRelease  // the gripper opens
+  kLand,     // its LAND mode, in contact
+  kHold,     // LOITER or HOLD: guidance has given up
+  kDisarm,   // by force, in contact
+  kGrab,     // the gripper closes
+  kRelease,  // the gripper opens
 };
 // "none", "land", "hold", "disarm", "grab", "release"
 const char* ToString(GuidanceRequest request);

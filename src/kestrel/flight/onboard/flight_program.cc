@@ -372,13 +372,12 @@ void FlightProgram::SendTarget(Time now) {
   set_points_ = guided_->set_points();
 }
 
-// The largest delay that is known of a late camera.
+// The delay that all cameras have, as far as it is known.
 Duration FlightProgram::VideoDelay() const {
-  double late_s = 0;
-  for (const LateCamera& late : parts_.late) {
-    if (const auto offset = late.video->offset()) late_s = std::max(late_s, -offset->offset_s);
-  }
-  return DurationFromSeconds(late_s);
+  if (parts_.late.empty() || parts_.late.size() < parts_.cameras) return {};
+  Duration delay = Duration::max();
+  for (const LateCamera& late : parts_.late) delay = std::min(delay, late.video->known_delay());
+  return delay;
 }
 
 // A position that comes from the pad ends with its sight: the autopilot's own guess goes on for

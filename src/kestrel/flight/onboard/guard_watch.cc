@@ -11,11 +11,7 @@
 namespace kestrel {
 
 GuardTask TaskOfGuard(const GuidedFlight& guided, const Autopilot& autopilot, Time now) {
-  const GuidancePhase phase = guided.phase();
-  // In the last decimetres a stop ends on the deck anyway, with the motors on.
-  const bool is_at_deck =
-      phase == GuidancePhase::kLanded || (guided.is_flying() && phase == GuidancePhase::kCommit);
-  if (is_at_deck && autopilot.is_guided_mode()) return GuardTask::kLand;
+  if (guided.is_at_deck() && autopilot.is_guided_mode()) return GuardTask::kLand;
   if (!guided.is_flying()) return GuardTask::kNothing;
   const bool is_lost = !guided.has_pose() && !autopilot.is_position_good(now).value_or(true);
   return guided.is_position_by_pad() || is_lost ? GuardTask::kLower : GuardTask::kStop;

@@ -156,7 +156,7 @@ GuidanceInput GuidedFlight::Input(Time now, const TrackSnapshot& track,
                               track.sighting->normal_in_world};
   }
   const double delay_s = std::min(ToSeconds(video_delay_), GuidanceInput::kMostVideoDelay_s);
-  if (track.seen) input.target_age_s = ToSeconds(now - *track.seen) - delay_s;
+  if (track.seen) input.target_age_s = std::max(ToSeconds(now - *track.seen) - delay_s, 0.0);
   input.mark = track.mark;
   input.order = order_;
   input.gripper = {autopilot_.gripper_answers(), autopilot_.is_gripper_accepted()};
@@ -180,17 +180,14 @@ std::optional<TargetEstimate> GuidedFlight::Target(Time now, const TrackSnapshot
 }
 
 void GuidedFlight::Request(Time now, GuidanceRequest request) {
-  if (request == GuidanceRequest::kGrab || request == GuidanceRequest::kRelease) {
-    if (!autopilot_.is_gripper_pending()) {
-      autopilot_.OperateGripper(request == GuidanceRequest::kGrab);
-    }
-    return;
-  }
+  if (RequestGripper(request)) return;
   if (request == GuidanceRequest::kNone || now < requested_ + kRequestPeriod) return;
   if (autopilot_.is_request_pending()) return;
   requested_ = now;
   switch (request) {
     case GuidanceRequest::kNone:
+    case GuidanceRequest::kGrab:
+    case GuidanceRequest::kRelease:
       return;
     case GuidanceRequest::kLand:
       autopilot_.RequestMode(FlightMode::kLand);
@@ -202,10 +199,15 @@ void GuidedFlight::Request(Time now, GuidanceRequest request) {
       Notify(mavlink::kSeverityWarning, "disarming by force, in contact");
       autopilot_.DisarmByForce();
       return;
-    case GuidanceRequest::kGrab:
-    case GuidanceRequest::kRelease:
-      return;  // above
   }
+}
+
+// False when it is another request. The gripper is moved at once.
+bool GuidedFlight::RequestGripper(GuidanceRequest request) {
+  const bool grabs = request == GuidanceRequest::kGrab;
+  if (!grabs && request != GuidanceRequest::kRelease) return false;
+  if (!autopilot_.is_gripper_pending()) autopilot_.OperateGripper(grabs);
+  return true;
 }
 
 // An autopilot without a position leaves the mode by itself, and may hold its place on the deck

@@ -48,6 +48,9 @@ class GuidedFlight {
   bool has_pose() const { return has_pose_; }
 
   // True while guidance flies the UAV and it has not landed.
+  bool is_at_deck() const {
+    return guidance_->is_at_deck() && (is_begun_ || phase() == GuidancePhase::kLanded);
+  }
   bool is_flying() const { return is_begun_ && phase() != GuidancePhase::kLanded; }
   GuidancePhase phase() const { return guidance_->phase(); }
   // Angle of the nose off the wanted heading, rad; nothing: any heading will do, or the pad's is
@@ -68,6 +71,7 @@ class GuidedFlight {
   GuidanceInput Input(Time now, const TrackSnapshot& track, const PoseHistory& poses) const;
   std::optional<TargetEstimate> Target(Time now, const TrackSnapshot& track) const;
   void Request(Time now, GuidanceRequest request);
+  bool RequestGripper(GuidanceRequest request);
   void ReportPhase(const GuidanceOutput& output);
   void ReportWhetherItKeepsUp(const GuidanceOutput& output);
   void ReportWhenContactIsUnseen(const GuidanceInput& input);

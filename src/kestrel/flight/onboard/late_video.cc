@@ -137,6 +137,7 @@ void LateVideo::Update(Time now) {
 }
 
 void LateVideo::Set(const std::optional<ClockEstimate>& estimate, const std::string& words) {
+  known_delay_ = DurationFromSeconds(estimate ? std::max(-estimate->offset_s, 0.0) : 0.0);
   const std::lock_guard lock(mutex_);
   offset_ = estimate;
   words_ = words;

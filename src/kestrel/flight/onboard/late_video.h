@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -39,6 +40,8 @@ class LateVideo : public LiveSource {
   std::string InWords() const;
   // The clock offset of the images as they come; nothing as long as it is not known. By any thread.
   std::optional<ClockEstimate> offset() const;
+  // Returns by how much the images come late; 0 as long as it is not known. By any thread.
+  Duration known_delay() const { return known_delay_; }
 
  private:
   void TakeAttitudes();
@@ -63,6 +66,8 @@ class LateVideo : public LiveSource {
   int contradictions_ = 0;         // updates in a row whose newest images show another delay
   Duration correction_{};
   Time last_time_ = Time::min();
+
+  std::atomic<Duration> known_delay_{Duration::zero()};
 
   mutable std::mutex mutex_;  // guards what follows
   std::vector<PoseSample> poses_;

@@ -56,7 +56,7 @@ TEST_P(GoFlightTest, PicksDiscThatMoves) {
   EXPECT_TRUE(flight.model.result().grab->is_taken);
 }
 
-TEST_P(GoFlightTest, GivesUpBeforeTheDescentWithoutGripper) {
+TEST_P(GoFlightTest, GivesUpWithoutGripper) {
   GoFlightSetup setup = SetupOf(GetParam(), "red");
   setup.model.has_gripper = false;
   SightedGoFlight flight(setup);

@@ -2,6 +2,7 @@
 #include "kestrel/vision/pipeline/sought_object.h"
 
 #include <algorithm>
+#include <functional>
 #include <vector>
 
 #include <fmt/format.h>
@@ -71,13 +72,14 @@ bool SoughtObject::IsTracked(Time time) const {
 void SoughtObject::Choose(Time time, const ObjectMap& map) {
   std::optional<MappedObject> best;
   mapped_.reset();
-  map.VisitConfirmed([&](MappedObject object) {
+  const auto choose = [&](MappedObject object) {
     if (!IsSought(ClassOf(object, model_))) return;
     PredictObject(time, motion_, &object);
     if (object.sigma_m() > kMostSigma_m) return;
     if (object.id == id_) mapped_ = object;
     if (!best || ScoreOf(object, model_) > ScoreOf(*best, model_)) best = object;
-  });
+  };
+  map.VisitConfirmed(std::ref(choose));  // a reference fits into std::function
   if (id_ != 0 && (mapped_ || IsTracked(time))) return;
   id_ = 0;
   tracker_ = no_track_;
