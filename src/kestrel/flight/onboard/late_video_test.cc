@@ -145,9 +145,11 @@ TEST(NetworkCameraTest, TimesHaveIntervalsOfSender) {
   });
   ASSERT_GT(steps_s.size(), 50u);
   const double period_s = ToSeconds(kImagePeriod);
-  for (const double step_s : steps_s) {
-    EXPECT_NEAR(step_s, period_s * std::round(step_s / period_s), 0.003);
-  }
+  const auto even = std::ranges::count_if(steps_s, [&](double step_s) {
+    return std::abs(step_s - period_s * std::round(step_s / period_s)) < 0.003;
+  });
+  // A sender on a loaded computer stamps some of its images late.
+  EXPECT_GT(even, 0.9 * static_cast<double>(steps_s.size()));
   EXPECT_EQ(camera->counters().untimed, 0u);
 }
 
