@@ -37,7 +37,7 @@ std::optional<Vector3d> PlaceAt(const CameraSetup& setup, Time time) {
   return *setup.calibration.body_from_camera * in_camera;
 }
 
-// How far apart two cameras show the pattern.
+// The distance between the places at which two cameras show the pattern.
 struct Apart {
   std::size_t images = 0;
   Vector3d mean = Vector3d::Zero();  // m, in the body

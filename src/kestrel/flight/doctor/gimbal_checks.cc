@@ -95,7 +95,7 @@ double FastestTurn(const std::vector<GimbalObservation>& reports) {
   return fastest;
 }
 
-// What the reports of a gimbal may mean instead.
+// Returns the other meanings that a gimbal's reports may have.
 std::vector<Reading> OtherReadings(YawFrame frame) {
   constexpr int kLongest = 8, kHalfTurn = 18;  // steps
   constexpr double kStep_s = 0.05, kStep = Radians(10.0);

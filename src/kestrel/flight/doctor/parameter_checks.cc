@@ -249,7 +249,7 @@ void CheckDelayOfArduPilot(ParameterRules* rules) {
       [&](double ms) { return std::abs(ms - latency_ms) <= kGood_ms; });
 }
 
-// What lets it use the pad as its position, and keeps it from flying home by it.
+// Checks that ArduPilot uses the pad as its position, and does not fly home by it.
 void CheckPadPositionOfArduPilot(ParameterRules* rules) {
   constexpr double kOdometry = 1, kExternal = 6, kGnss = 3, kCompass = 1, kLand = 3, kBrake = 7;
   constexpr double kLandWithoutStation = 5;

@@ -32,7 +32,7 @@ constexpr double kLastSink_mps = 0.4;  // at least: near by the camera does not 
 constexpr double kStandstill_mps = 0.05;
 constexpr double kRests_s = 1;
 constexpr double kBelow_m = 1;  // from the UAV to the object, while it looks whether that is gone
-// What stands is where it was: near it the UAV goes on for so long without seeing it.
+// An object that stands is where it was: near it the UAV flies on for this long without a sight.
 constexpr double kStands_mps = 0.2;
 constexpr double kStandsSight_s = 3;
 constexpr double kGone_s = 2;  // an object that is not seen for so long from above is gone

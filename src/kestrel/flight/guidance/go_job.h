@@ -6,7 +6,7 @@
 
 namespace kestrel {
 
-// What the UAV does at an object.
+// The UAV's action at an object.
 enum class GoAction {
   kHover,  // stays above it
   kLook,   // as well, while pictures are kept

@@ -46,7 +46,7 @@ struct SessionOptions {
   // Flies by set-points when the pilot gives the mode. A guard, a process of its own, then has the
   // line (docs/guard.md), unless flight.guard.enabled is false.
   bool guides = false;
-  // What 'guides' does at the object of the task that the UAV goes to.
+  // The job at the object of the task, where the UAV flies to one; needs 'guides'.
   GoJob job = {};
   // Points the camera's gimbal at the target; 'guides' does so, too. Needs a calibration with a
   // gimbal.

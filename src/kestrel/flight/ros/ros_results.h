@@ -48,7 +48,8 @@ class RosResults {
   // Waits until somebody subscribes, at most 'timeout': subscribers are found only after a moment.
   void WaitForSubscribers(Duration timeout) const;
 
-  // Of a further camera only the track, which is that of all: the topics are the first camera's.
+  // The other topics are the first camera's: a further camera publishes the track alone, which all
+  // cameras share.
   void Publish(const Frame& frame, const LandingObservation& observation);
   void Publish(const Frame& frame, const HuntObservation& observation);
   void Publish(const Frame& frame, const FollowObservation& observation);

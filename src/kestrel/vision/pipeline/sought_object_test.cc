@@ -54,7 +54,7 @@ struct Search {
 Search::Disc Red(const Vector3d& position) { return {position, kRed, kRedDisc}; }
 Search::Disc Yellow(const Vector3d& position) { return {position, kYellow, kYellowDisc}; }
 
-TEST(SoughtObjectTest, IsOneOfItsClassOnceTheMapIsSure) {
+TEST(SoughtObjectTest, FindsObjectOfItsClassInConfirmedMap) {
   Search search("yellow");
   search.See({Red({0, 0, 0}), Yellow({5, 2, 0})});
   EXPECT_EQ(search.sought.number(), 0);
