@@ -35,7 +35,7 @@ class GuardExchangeTest : public ::testing::Test {
     Hear(status);
     Hear(mavlink::RcChannels{.chancount = 8, .chan3_raw = 1520});
   }
-  // The guard's packets once the program is gone.
+  // Returns the guard's action once the program is gone.
   GuardAction Abandon() {
     guard_.TakeEnd();
     return guard_.Update(now_);
