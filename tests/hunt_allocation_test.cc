@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // HuntPipeline does not allocate once it has warmed up.
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include "count_allocations.h"
@@ -19,7 +21,7 @@ cv::Mat DrawFrame(int index) {
   return scene.Image();
 }
 
-void ExpectNoneAfterWarmUp(const HuntPipelineOptions& options) {
+void ExpectNoneAfterWarmUp(const HuntPipelineOptions& options, const std::string& sought = {}) {
   constexpr int kWarmUpFrames = 5;
   constexpr int kFrames = 15;
   CameraCalibration calibration;
@@ -29,6 +31,7 @@ void ExpectNoneAfterWarmUp(const HuntPipelineOptions& options) {
       Eigen::Quaterniond(Eigen::AngleAxisd(3.141592653589793, Eigen::Vector3d::UnitX())),
       Eigen::Vector3d::Zero()};
   HuntPipeline pipeline(calibration, DefaultObjectModel(), options);
+  if (!sought.empty()) pipeline.Seek(sought);
   for (int i = 0; i < kFrames; ++i) {
     const Time time(DurationFromSeconds(0.1 * i));
     pipeline.AddPose({time, {Eigen::Quaterniond::Identity(), {0, 0, 4}}});
@@ -49,6 +52,10 @@ TEST(HuntAllocationTest, AllocatesNothingWhenTracking) {
   HuntPipelineOptions options;
   options.track_count = 2;
   ExpectNoneAfterWarmUp(options);
+}
+
+TEST(HuntAllocationTest, AllocatesNothingWhileAnObjectIsSought) {
+  ExpectNoneAfterWarmUp({}, "red");
 }
 
 }  // namespace

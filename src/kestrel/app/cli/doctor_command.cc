@@ -150,6 +150,7 @@ class DoctorVisit {
       ReadCameraFile();
     } catch (const InputError& error) {
       camera.open_error = error.what();
+      if (!observations_.unopened.empty()) observations_.unopened.pop_back();  // the same fault
       ReadCameraFile();
     }
   }

@@ -118,7 +118,7 @@ void FlyArguments::AddTo(CLI::App* command) {
           ->needs(hunt_flag)
           ->needs(guide_flag);
   command
-      ->add_option("--then", job,
+      ->add_option("--then", then,
                    "There: hover, look (keeps pictures), drop or pick (the gripper), also with the "
                    "height in m and the time in s, as hover,3,20 (hover)")
       ->type_name("JOB")
@@ -168,6 +168,7 @@ KestrelOptions FlyArguments::ReadOptions() {
   if (guide && task.name == "hunt" && go.empty()) {
     throw InputError("--hunt --guide: expected --go CLASS, the objects to fly to");
   }
+  job = ParseGoJob(then);
   if (no_guard) options.fly.guard.enabled = false;
   if (console && !console->empty()) {
     options.console = WithAddress(options.console, *console, "--console");

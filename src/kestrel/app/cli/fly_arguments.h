@@ -11,6 +11,7 @@
 #include "kestrel/app/cli/task_argument.h"
 #include "kestrel/app/cli/team_arguments.h"
 #include "kestrel/app/options/kestrel_options.h"
+#include "kestrel/flight/guidance/go_job.h"
 
 namespace kestrel {
 
@@ -30,9 +31,10 @@ struct FlyArguments {
   bool pad_position = false;
   bool no_guard = false;
   TaskArgument task;
-  std::string model;          // file with the model of the objects
-  std::string go;             // class of the objects to one of which the UAV goes; empty: to none
-  std::string job = "hover";  // what it does there, as ParseGoJob reads it
+  std::string model;           // file with the model of the objects
+  std::string go;              // class of the objects to one of which the UAV goes; empty: to none
+  std::string then = "hover";  // its job there, as ParseGoJob reads it
+  GoJob job;                   // the same; by ReadOptions
   TeamArguments team;
   bool loop = false;
   // Options that the command line sets over the configuration file, as "key=value"; by ReadOptions.

@@ -282,7 +282,7 @@ class Flight {
 
   // In the folder of the tables, or else in that of what is kept.
   void OpenPictures() {
-    if (arguments_.go.empty() || ParseGoJob(arguments_.job).action != GoAction::kLook) return;
+    if (arguments_.go.empty() || arguments_.job.action != GoAction::kLook) return;
     const std::string& output = arguments_.source.output;
     const std::string folder = output.empty() ? options_.fly.keep_folder : output;
     sinks_.Add(MakeLookPictures(PathOfNow(folder, "look_"),
@@ -305,7 +305,7 @@ class Flight {
     SessionOptions options = SessionOptionsFor(autopilot_, options_.fly, arguments_.guide);
     if (arguments_.profile != "auto") options.profile = ParseLinkProfile(arguments_.profile);
     options.points = arguments_.point;
-    options.job = ParseGoJob(arguments_.job);
+    options.job = arguments_.job;
     options.sends_pad_position = arguments_.pad_position;
     options.output = arguments_.source.output;
     options.record = arguments_.record;

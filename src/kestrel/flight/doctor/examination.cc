@@ -225,6 +225,7 @@ void Examination::Summarize(Time start, Time end, DoctorObservations* observatio
   if (parts_.source != nullptr) {
     const double duration_s = ToSeconds(end - start);
     SummarizeCamera(eyes_.front(), duration_s, observations);
+    observations->camera.counters = parts_.source->counters();  // of all cameras
     observations->further.resize(parts_.further.size());
     for (std::size_t i = 0; i < parts_.further.size(); ++i) {
       SummarizeCamera(eyes_[1 + i], duration_s, &observations->further[i]);
@@ -251,7 +252,6 @@ void Examination::SummarizeCamera(const Eye& eye, double duration_s, CameraSetup
   camera.height_px = eye.height_px;
   camera.frames = eye.frames;
   camera.qualities = eye.qualities;
-  camera.counters = parts_.source->counters();
   SummarizeVision(eye, &setup->vision);
 }
 
@@ -343,6 +343,7 @@ std::vector<Finding> CheckFurther(const DoctorObservations& observations,
   DoctorObservations own = observations;
   static_cast<CameraSetup&>(own) = further;
   std::vector<Finding> findings = CheckSetup(own);
+  std::erase_if(findings, [](const Finding& one) { return one.check == "missed images"; });
   findings.push_back(CheckCamerasTogether(observations, further));
   for (Finding& finding : findings) {
     finding.check = fmt::format("{}: {}", further.calibration.name, finding.check);

@@ -12,6 +12,8 @@
 #include <fmt/format.h>
 
 #include "kestrel/flight/doctor/link_checks.h"
+#include "kestrel/flight/doctor/pad_position_checks.h"
+#include "kestrel/flight/doctor/parameter_rules.h"
 #include "kestrel/flight/doctor/statistics.h"
 
 namespace kestrel {
@@ -88,81 +90,6 @@ constexpr std::array<ListedCheck, 29> kOfPx4 = {{
     {"MAV_2_FORWARD", "with a gimbal that is not heard: 1"},
 }};
 
-// Speed of a vehicle when none is given, from the paper: 15 km/h.
-constexpr double kUsualSpeed_mps = 4.2;
-// Speed margin of the UAV over the target.
-constexpr double kSpeedMargin_mps = 3;
-
-// The wanted value of a parameter.
-struct Wanted {
-  double value;
-  std::string_view why;  // the consequence otherwise
-  bool needs_reboot = false;
-};
-
-// Checks one parameter after the other and collects the findings.
-class ParameterRules {
- public:
-  explicit ParameterRules(const DoctorObservations& observations) : all_(observations) {}
-
-  std::optional<double> Find(std::string_view name) const {
-    const auto found = all_.parameters.find(name);
-    if (found == all_.parameters.end()) return std::nullopt;
-    return found->second.value;
-  }
-  bool IsSet(std::string_view name, int bit) const {
-    return (static_cast<int>(Find(name).value_or(0)) >> bit & 1) != 0;
-  }
-
-  // Adds a finding: good where 'is_good', else 'otherwise' with the value to set. A parameter that
-  // the autopilot does not have is left out.
-  template <class IsGood>
-  void Want(std::string_view name, Verdict otherwise, const Wanted& wanted, const IsGood& is_good) {
-    const auto found = all_.parameters.find(name);
-    if (found == all_.parameters.end()) return;
-    const ReportedParameter& reported = found->second;
-    Finding finding = Good(reported.own_name, fmt::format("{:g}", reported.value / reported.scale));
-    if (!is_good(reported.value)) {
-      finding.verdict = otherwise;
-      finding.measured += fmt::format(": {}", wanted.why);
-      finding.advice =
-          fmt::format("param set {} {:g}{}; or kestrel doctor --fix", reported.own_name,
-                      wanted.value / reported.scale, wanted.needs_reboot ? ", then reboot" : "");
-      finding.fix = ParameterFix{std::string(name), wanted.value, wanted.needs_reboot};
-    }
-    findings_.push_back(std::move(finding));
-  }
-  void WantExactly(std::string_view name, Verdict otherwise, const Wanted& wanted) {
-    Want(name, otherwise, wanted, [&](double value) { return value == wanted.value; });
-  }
-  void WantAtLeast(std::string_view name, Verdict otherwise, double least, const Wanted& wanted) {
-    Want(name, otherwise, wanted, [&](double value) { return value >= least; });
-  }
-  void WantBit(std::string_view name, Verdict otherwise, int bit, std::string_view why) {
-    const auto now = static_cast<int>(Find(name).value_or(0));
-    Want(name, otherwise, {static_cast<double>(now | 1 << bit), why},
-         [&](double value) { return (static_cast<int>(value) >> bit & 1) != 0; });
-  }
-  void Add(Finding finding) { findings_.push_back(std::move(finding)); }
-
-  // Verdict where targets are ignored: set-points land without them, but less surely.
-  Verdict without_targets() const { return all_.use.guides ? Verdict::kDoubtful : Verdict::kWrong; }
-  bool moves() const { return all_.use.target_mps.has_value(); }
-  // Wanted speed of the UAV, m/s.
-  double wanted_mps() const { return target_mps() + kSpeedMargin_mps; }
-  double target_mps() const { return all_.use.target_mps.value_or(kUsualSpeed_mps); }
-  const DoctorObservations& all() const { return all_; }
-  std::vector<Finding> Take() { return std::move(findings_); }
-
- private:
-  const DoctorObservations& all_;
-  std::vector<Finding> findings_;
-};
-
-double LinkDelayOf(const DoctorObservations& observations) {
-  return observations.use.link_delay_s.value_or(observations.link.round_trip_s / 2);
-}
-
 // Checks the autopilot's largest lean. Guidance refuses where it may lean more by its own limits
 // than the autopilot allows.
 void CheckTilt(std::string_view name, ParameterRules* rules) {
@@ -234,52 +161,6 @@ void CheckSpeedsOfArduPilot(ParameterRules* rules) {
   rules->WantAtLeast("WP_SPD", Verdict::kWrong, rules->target_mps() + 1,
                      {speed_mps, "slower than the target and a margin: it falls behind"});
   CheckTilt("ATC_ANGLE_MAX", rules);
-}
-
-// ArduPilot takes the smallest delay of the messages for none at all, and this for that one.
-void CheckDelayOfArduPilot(ParameterRules* rules) {
-  constexpr double kGood_ms = 40, kLongest_ms = 250;
-  const DoctorObservations& all = rules->all();
-  if (all.vision.frames == 0) return;
-  const double latency_ms =
-      std::min(std::round(kMilliseconds * (all.vision.latency_s + LinkDelayOf(all))), kLongest_ms);
-  rules->Want(
-      "VISO_DELAY_MS", Verdict::kDoubtful,
-      {latency_ms, "not the time from light to message: its place lags in every turn", true},
-      [&](double ms) { return std::abs(ms - latency_ms) <= kGood_ms; });
-}
-
-// Checks that ArduPilot uses the pad as its position, and does not fly home by it.
-void CheckPadPositionOfArduPilot(ParameterRules* rules) {
-  constexpr double kOdometry = 1, kExternal = 6, kGnss = 3, kCompass = 1, kLand = 3, kBrake = 7;
-  constexpr double kLandWithoutStation = 5;
-  rules->WantAtLeast("VISO_TYPE", Verdict::kWrong, kOdometry,
-                     {kOdometry, "ODOMETRY is ignored", true});
-  rules->WantExactly("EK3_SRC1_POSXY", Verdict::kWrong,
-                     {kExternal, "its estimator does not take the pad's position"});
-  for (const std::string_view name : {"EK3_SRC1_VELXY", "EK3_SRC1_VELZ"}) {
-    rules->Want(name, Verdict::kDoubtful,
-                {0, "it arms in no mode that holds its place: speed by GNSS or flow is wanted"},
-                [](double source) { return source == 0 || source == kExternal; });
-  }
-  rules->Want("EK3_SRC1_POSZ", Verdict::kWrong, {1, "its height would be by GNSS"},
-              [](double source) { return source != kGnss; });
-  rules->Want("EK3_SRC1_YAW", Verdict::kWrong, {kCompass, "its heading would be by GNSS"},
-              [](double source) { return source == kCompass || source == kExternal; });
-  rules->WantExactly("GPS1_TYPE", Verdict::kDoubtful,
-                     {0, "modes that hold their place wait for a fix before they arm", true});
-  rules->WantExactly("FS_EKF_ACTION", Verdict::kDoubtful,
-                     {1, "it drifts when the pad is lost and Kestrel is gone"});
-  rules->WantExactly("FENCE_ENABLE", Verdict::kDoubtful,
-                     {0, "it arms with a position only, and there is none before the pad is seen"});
-  rules->Want("FS_THR_ENABLE", Verdict::kDoubtful,
-              {kLand, "when the transmitter is lost it climbs and returns, by the pad's position"},
-              [](double action) { return action == 0 || action == kLand || action == kBrake; });
-  rules->Want("FS_GCS_ENABLE", Verdict::kDoubtful,
-              {kLandWithoutStation,
-               "when the ground station is lost it climbs and returns, by the pad's position"},
-              [](double action) { return action == 0 || action == kLandWithoutStation; });
-  CheckDelayOfArduPilot(rules);
 }
 
 void CheckEstimatorOfArduPilot(ParameterRules* rules) {
@@ -489,23 +370,6 @@ void CheckEstimatorOfPx4(ParameterRules* rules) {
               [](double control) { return control < kAlways; });
   rules->WantExactly("EKF2_OF_CTRL", Verdict::kDoubtful,
                      {0, "speed by optical flow is the deck's"});
-}
-
-void CheckPadPositionOfPx4(ParameterRules* rules) {
-  constexpr double kAll = 11, kWanted_us = 500'000, kLongest_us = 1e6, kReturn = 2, kLand = 3;
-  rules->Want("EKF2_EV_CTRL", Verdict::kWrong,
-              {kAll, "its estimator does not take the pad's position"},
-              [](double control) { return (static_cast<unsigned>(control) & 1) != 0; });
-  rules->Want("EKF2_NOAID_TOUT", Verdict::kDoubtful,
-              {kWanted_us, "so long it flies on by a guess when the pad is lost", true},
-              [](double us) { return us <= kLongest_us; });
-  rules->WantExactly("EKF2_GPS_CTRL", Verdict::kDoubtful,
-                     {0, "it jumps where a fix of GNSS comes"});
-  rules->WantExactly("SYS_HAS_GPS", Verdict::kDoubtful,
-                     {0, "it warns without GNSS, or does not arm (COM_ARM_WO_GPS)", true});
-  rules->Want("NAV_RCL_ACT", Verdict::kDoubtful,
-              {kLand, "when the transmitter is lost it climbs and returns, by the pad's position"},
-              [](double action) { return action != kReturn; });
 }
 
 // The reaction of PX4 when set-points stop has to be one that holds. Without a transmitter

@@ -21,7 +21,7 @@ using testing::ThrowsMessage;
 const VehicleMotionOptions kAtRest{.path = "standing"};
 
 // Go guidance, a multicopter, an object, the wind, and a gripper that answers after a moment.
-struct GoFlight {
+struct GoFlight : FlownInSteps<GoFlight> {
   explicit GoFlight(const std::string& job, const VehicleMotionOptions& motion = kAtRest,
                     const GuidanceOptions& options = {})
       : guidance(options, ParseGoJob(job)), uav({}, {6, -3, 10}), object(motion, 1) {
@@ -51,21 +51,6 @@ struct GoFlight {
     Answer();
     uav.Step(output.set_point, wind(time_s));
     time_s += kTestStep_s;
-  }
-  template <class Until, class Change>
-  bool FlyUntil(const Until& until, double longest_s, const Change& change) {
-    for (const double end_s = time_s + longest_s; time_s < end_s;) {
-      Step(change);
-      if (until()) return true;
-    }
-    return false;
-  }
-  template <class Until>
-  bool FlyUntil(const Until& until, double longest_s = 60) {
-    return FlyUntil(until, longest_s, [](GuidanceInput&) {});
-  }
-  bool FlyUntilPhase(Phase phase, double longest_s = 60) {
-    return FlyUntil([&] { return output.phase == phase; }, longest_s);
   }
   bool FlyUntilDone(double longest_s = 90) {
     return FlyUntil([&] { return guidance.is_done(); }, longest_s);

@@ -170,9 +170,30 @@ class TestTarget {
   std::function<double(double)> wander_[4];
 };
 
+// The steps of a flight, which has Step(change) (see TestFlight), time_s and the newest output.
+template <class Flight>
+struct FlownInSteps {
+  template <class Until>
+  bool FlyUntil(const Until& until, double longest_s = 60) {
+    return FlyUntil(until, longest_s, [](GuidanceInput&) {});
+  }
+  template <class Until, class Change>
+  bool FlyUntil(const Until& until, double longest_s, const Change& change) {
+    auto& flight = static_cast<Flight&>(*this);
+    for (const double end_s = flight.time_s + longest_s; flight.time_s < end_s;) {
+      flight.Step(change);
+      if (until()) return true;
+    }
+    return false;
+  }
+  bool FlyUntilPhase(GuidancePhase phase, double longest_s = 60) {
+    return FlyUntil([&] { return static_cast<Flight&>(*this).output.phase == phase; }, longest_s);
+  }
+};
+
 // Guidance, a multicopter, a deck and the wind. Each knows the truth about the others, except for
 // what a test takes away.
-struct TestFlight {
+struct TestFlight : FlownInSteps<TestFlight> {
   explicit TestFlight(const GuidanceOptions& options = {}, const TestUavOptions& uav_options = {},
                       const VehicleMotionOptions& vehicle = {}, std::uint64_t seed = 1)
       : guidance(options), uav(uav_options, {0, 0, 10}), target(vehicle, seed) {
@@ -210,21 +231,6 @@ struct TestFlight {
   }
   const GuidanceOutput& Step() {
     return Step([](GuidanceInput&) {});
-  }
-  template <class Until>
-  bool FlyUntil(const Until& until, double longest_s = 60) {
-    return FlyUntil(until, longest_s, [](GuidanceInput&) {});
-  }
-  template <class Until, class Change>
-  bool FlyUntil(const Until& until, double longest_s, const Change& change) {
-    for (const double end_s = time_s + longest_s; time_s < end_s;) {
-      Step(change);
-      if (until()) return true;
-    }
-    return false;
-  }
-  bool FlyUntilPhase(GuidancePhase phase, double longest_s = 60) {
-    return FlyUntil([&] { return output.phase == phase; }, longest_s);
   }
 
   // Descends and is carried by the deck until guidance has found contact.

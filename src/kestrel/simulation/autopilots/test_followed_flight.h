@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <deque>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -14,6 +13,7 @@
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/flight/guidance/follow_guidance.h"
+#include "kestrel/simulation/autopilots/test_late_images.h"
 #include "kestrel/simulation/autopilots/test_linked_flight.h"
 #include "kestrel/vision/pipeline/follow_pipeline.h"
 #include "kestrel/vision/pipeline/world_location.h"
@@ -107,16 +107,9 @@ class FollowedFlight : public LinkedFlight {
   }
 
   void See() override {
-    constexpr Duration kPeriod = std::chrono::milliseconds(60);
-    constexpr Duration kLatency = std::chrono::milliseconds(40);
     if (camera_.gimbal && track_.mark == 0) LookDown();
-    if (now >= capture_due_) {
-      capture_due_ = now + kPeriod;
-      Capture();
-    }
-    if (images_.empty() || now < images_.front().captured + kLatency) return;
-    Process(images_.front());
-    images_.pop_front();
+    images_.See(
+        now, [this] { return Capture(); }, [this](const Image& image) { Process(image); });
   }
 
   // A person does that at the ground station.
@@ -128,7 +121,7 @@ class FollowedFlight : public LinkedFlight {
     SendFromGround(slider);
   }
 
-  void Capture() {
+  Image Capture() {
     const RigidTransform world_from_camera = WorldFromCamera();
     Eigen::Vector2d pixel;
     const bool is_in_view =
@@ -138,7 +131,7 @@ class FollowedFlight : public LinkedFlight {
     Image image{now, std::nullopt};
     if (is_in_view) image.sight = Place() - model.truth().world_from_body.translation;
     if (is_in_view) track_.mark = 1;
-    images_.push_back(image);
+    return image;
   }
 
   // The errors are those of the line of sight, in the autopilot's world.
@@ -171,8 +164,7 @@ class FollowedFlight : public LinkedFlight {
   Random random_;
   double stays_[3] = {};
   TargetTracker tracker_{FollowPipelineOptions().Tracker()};
-  std::deque<Image> images_;
-  Time capture_due_{};
+  LateImages<Image> images_;
   int orders_ = 0;
   int images_taken_ = 0, images_with_it_ = 0;
 };

@@ -15,6 +15,7 @@
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/flight/guidance/go_guidance.h"
 #include "kestrel/simulation/autopilots/simulated_camera.h"
+#include "kestrel/simulation/autopilots/test_late_images.h"
 #include "kestrel/simulation/autopilots/test_linked_flight.h"
 #include "kestrel/simulation/recordings/recording_plan.h"
 #include "kestrel/vision/mapping/object_map.h"
@@ -65,8 +66,6 @@ class GoFlight : private OwnField, public LinkedFlight {
   const std::vector<HuntObject>& field() { return world.field().objects(); }
 
  protected:
-  static constexpr Duration kLatency = std::chrono::milliseconds(40);
-
   explicit GoFlight(const GoFlightSetup& setup)
       : OwnField(setup.field, setup.seed),
         LinkedFlight(setup.firmware, setup.model, &field_world, setup.seed, HuntCalibration()) {
@@ -110,6 +109,7 @@ class RenderedGoFlight : public GoFlight {
 
   void See() override {
     constexpr Duration kPeriod = std::chrono::milliseconds(100);
+    constexpr Duration kLatency = std::chrono::milliseconds(40);
     if (now >= capture_due_) {
       capture_due_ = now + kPeriod;
       if (auto frame = renderer_.Capture(now)) frames_.push_back(std::move(*frame));
@@ -161,18 +161,12 @@ class SightedGoFlight : public GoFlight {
   };
 
   void See() override {
-    constexpr Duration kPeriod = std::chrono::milliseconds(60);
-    if (now >= capture_due_) {
-      capture_due_ = now + kPeriod;
-      Capture();
-    }
-    if (images_.empty() || now < images_.front().captured + kLatency) return;
-    Process(images_.front());
-    images_.pop_front();
+    images_.See(
+        now, [this] { return Capture(); }, [this](const Image& image) { Process(image); });
   }
 
   // An object is seen while its middle is in view, and is whole while all of it is.
-  void Capture() {
+  Image Capture() {
     Image image{now, {}};
     const RigidTransform camera_from_world = WorldFromCamera().Inverse();
     for (std::size_t i = 0; i < field().size(); ++i) {
@@ -189,7 +183,7 @@ class SightedGoFlight : public GoFlight {
                                          lens_.height_px() - 1 - pixel.y()});
       image.sights.push_back({ClassOfColor(object.color), in_camera, inside_px > radius_px});
     }
-    images_.push_back(std::move(image));
+    return image;
   }
 
   // Errors across the line of sight and along it, in the autopilot's world.
@@ -236,8 +230,7 @@ class SightedGoFlight : public GoFlight {
   ObjectModel objects_ = DefaultObjectModel();
   ObjectMap map_{objects_, {}};
   SoughtObject sought_;
-  std::deque<Image> images_;
-  Time capture_due_{};
+  LateImages<Image> images_;
 };
 
 }  // namespace kestrel

@@ -52,7 +52,7 @@ SoughtObject::SoughtObject(const ObjectModel& model, const std::string& name,
       name_(name),
       motion_(map.motion()),
       no_track_(TrackerOf(model, name)),
-      tracker_(no_track_) {}
+      tracker_(TrackerOf(model, name)) {}  // a copy would have no room reserved
 
 void SoughtObject::Update(Time time, std::span<const ObjectSighting> sightings,
                           const ObjectMap& map) {
