@@ -585,6 +585,7 @@ void Autopilot::SendQuestions(Time now) {
   };
   if (!version() && questions_ < kQuick) request_message(mavlink::AutopilotVersion::kId);
   if (!origin()) request_message(mavlink::GpsGlobalOrigin::kId);
+  if (!origin() && kind_ == AutopilotKind::kPx4) request_message(mavlink::Altitude::kId);
   if (!home()) request_message(mavlink::HomePosition::kId);
 }
 

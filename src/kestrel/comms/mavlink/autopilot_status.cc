@@ -96,11 +96,18 @@ void AutopilotStatus::Handle(const mavlink::Packet& packet, const TimeSync& cloc
     estimator_ = {received, status->flags, IsGood(status->flags, mavlink::kEstimatorGpsGlitch)};
   } else if (const auto origin = packet.As<mavlink::GpsGlobalOrigin>()) {
     origin_ = {origin->latitude, origin->longitude, kMetres * origin->altitude};
+  } else if (const auto altitude = packet.As<mavlink::Altitude>()) {
+    HandleAltitude(*altitude);
   } else if (const auto home = packet.As<mavlink::HomePosition>()) {
     home_ = {home->latitude, home->longitude, kMetres * home->altitude};
   } else if (const auto version = packet.As<mavlink::AutopilotVersion>()) {
     version_ = VersionOf(version->flight_sw_version);
   }
+}
+
+void AutopilotStatus::HandleAltitude(const mavlink::Altitude& message) {
+  const double altitude_m = message.altitude_amsl - message.altitude_local;
+  if (std::isfinite(altitude_m)) frame_altitude_m_ = altitude_m;
 }
 
 void AutopilotStatus::HandleSystem(const mavlink::SysStatus& message) {

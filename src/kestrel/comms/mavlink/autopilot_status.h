@@ -67,6 +67,8 @@ class AutopilotStatus {
   const std::optional<AutopilotRange>& range() const { return range_; }
   const std::optional<GlobalPosition>& origin() const { return origin_; }  // local frame
   const std::optional<GlobalPosition>& home() const { return home_; }
+  // Altitude of height 0 of the local frame, m above mean sea level; PX4 reports it on request.
+  std::optional<double> frame_altitude_m() const { return frame_altitude_m_; }
   const std::optional<AutopilotBattery>& battery() const { return battery_; }
   const std::optional<AutopilotGnss>& gnss() const { return gnss_; }
   const std::optional<EstimatorHealth>& estimator() const { return estimator_; }
@@ -74,6 +76,7 @@ class AutopilotStatus {
  private:
   void HandleSystem(const mavlink::SysStatus& message);
   void HandleGnss(const mavlink::GpsRawInt& message);
+  void HandleAltitude(const mavlink::Altitude& message);
   void HandleRange(const mavlink::DistanceSensor& message, const TimeSync& clock);
 
   std::optional<AutopilotVersion> version_;
@@ -81,6 +84,7 @@ class AutopilotStatus {
   std::optional<AutopilotRange> range_;
   std::optional<GlobalPosition> origin_;
   std::optional<GlobalPosition> home_;
+  std::optional<double> frame_altitude_m_;
   std::optional<AutopilotBattery> battery_;
   std::optional<AutopilotGnss> gnss_;
   std::optional<EstimatorHealth> estimator_;

@@ -22,7 +22,7 @@ constexpr auto kTable = MakeTable<
     ParamSet, GpsRawInt, RawImu, Attitude, AttitudeQuaternion, LocalPositionNed, GlobalPositionInt,
     SetGpsGlobalOrigin, GpsGlobalOrigin, RcChannels, RequestDataStream, CommandLong, CommandAck,
     SetAttitudeTarget, SetPositionTargetLocalNed, HighresImu, SimState, Timesync,
-    HilStateQuaternion, DistanceSensor, FollowTarget, AutopilotVersion, LandingTarget,
+    HilStateQuaternion, DistanceSensor, Altitude, FollowTarget, AutopilotVersion, LandingTarget,
     EkfStatusReport, EstimatorStatus, HomePosition, MessageInterval, ExtendedSysState, Statustext,
     CameraInformation, CameraSettings, CameraCaptureStatus, MountOrientation,
     VideoStreamInformation, VideoStreamStatus, CameraFovStatus, CameraTrackingImageStatus,
@@ -70,6 +70,7 @@ static_assert(Is<SimState>(32, 84, 92));
 static_assert(Is<Timesync>(34, 16, 18));
 static_assert(Is<HilStateQuaternion>(4, 64, 64));
 static_assert(Is<DistanceSensor>(85, 14, 39));
+static_assert(Is<Altitude>(47, 32, 32));
 static_assert(Is<FollowTarget>(127, 93, 93));
 static_assert(Is<AutopilotVersion>(178, 60, 78));
 static_assert(Is<LandingTarget>(200, 30, 60));

@@ -753,6 +753,28 @@ struct DistanceSensor {
   }
 };
 
+struct Altitude {
+  static constexpr std::uint32_t kId = 141;
+  static constexpr std::string_view kName = "ALTITUDE";
+  std::uint64_t time_usec = 0;
+  float altitude_monotonic = 0;
+  float altitude_amsl = 0;
+  float altitude_local = 0;
+  float altitude_relative = 0;
+  float altitude_terrain = 0;
+  float bottom_clearance = 0;
+
+  static constexpr void Visit(auto& self, auto&& visitor) {
+    visitor("time_usec", self.time_usec, "us");
+    visitor("altitude_monotonic", self.altitude_monotonic, "m");
+    visitor("altitude_amsl", self.altitude_amsl, "m");
+    visitor("altitude_local", self.altitude_local, "m");
+    visitor("altitude_relative", self.altitude_relative, "m");
+    visitor("altitude_terrain", self.altitude_terrain, "m");
+    visitor("bottom_clearance", self.bottom_clearance, "m");
+  }
+};
+
 struct FollowTarget {
   static constexpr std::uint32_t kId = 144;
   static constexpr std::string_view kName = "FOLLOW_TARGET";

@@ -511,7 +511,7 @@ std::vector<Fault> ParameterFaults() {
 // The pad is the position.
 std::vector<Fault> PadFaults() {
   return {
-      {"no origin", Setup::kPadPx4,
+      {"no origin", Setup::kPadArduPilot,
        [](DoctorObservations* all) { all->use.has_pad_origin = false; }, "origin", Verdict::kWrong,
        "fly.pad_origin"},
       {"ODOMETRY not read", Setup::kPadArduPilot, Parameter("VISO_TYPE", 0), "VISO_TYPE",

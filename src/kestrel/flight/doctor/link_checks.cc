@@ -206,9 +206,10 @@ Finding CheckOrigin(const LinkObservations& link, const DoctorUse& use) {
   const std::string check = "origin";
   if (link.has_origin) return Good(check, "the autopilot has one");
   if (use.has_pad_origin) return Good(check, "Kestrel sets fly.pad_origin");
+  if (link.kind == AutopilotKind::kPx4) return Good(check, "PX4 needs none");
   return Wrong(check,
-               "the autopilot has none: no home, without which --guide refuses, and ArduPilot no "
-               "failsafe of its estimator",
+               "the autopilot has none: no home, without which --guide refuses, and no failsafe of "
+               "its estimator",
                "--set fly.pad_origin=LATITUDE,LONGITUDE, or set it at the ground station");
 }
 

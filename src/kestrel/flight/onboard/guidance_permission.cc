@@ -121,7 +121,9 @@ std::string WhyNotGuide(const Autopilot& autopilot, const GuidanceOptions& optio
   if (!autopilot.is_position_good(now).value_or(true)) {
     return "the autopilot has no good estimate of its position";
   }
-  const auto home = HomeOf(autopilot);
+  auto home = HomeOf(autopilot);
+  // PX4 has none without a global position.
+  if (!home && is_position_by_pad) home = position.head<2>();
   if (!home) return "the autopilot has no home position";
   if (!autopilot.parameters().is_done()) return "the autopilot's limits are not read yet";
   if (const std::vector<std::string> beyond = ViolationsOf(LimitsOf(autopilot), limits);

@@ -67,6 +67,7 @@ class GuidedFlight {
  private:
   void KnowAutopilot(Time now);
   void WatchMode(const GuidanceInput& input, Time now);
+  void WarnOfRefusal(bool is_flying, Time now);
   void CheckPermission(const GuidanceInput& input, Time now);
   GuidanceInput Input(Time now, const TrackSnapshot& track, const PoseHistory& poses) const;
   std::optional<TargetEstimate> Target(Time now, const TrackSnapshot& track) const;
@@ -99,8 +100,10 @@ class GuidedFlight {
   bool was_armed_ = false;
   std::optional<Time> left_on_deck_;  // the mode was left in contact, without a position
   Time permission_due_{};
-  bool may_begin_ = false;  // guidance may begin
-  std::string refusal_;     // reason why it may not
+  bool may_begin_ = false;             // guidance may begin
+  std::string refusal_;                // reason why it may not
+  std::optional<Time> refused_since_;  // in flight
+  bool warned_of_refusal_ = false;     // in this flight
   bool knows_parameters_ = false;
 
   Time reported_frame_;  // the newest frame used for a set-point

@@ -265,6 +265,17 @@ TEST_F(GuidedFlightTest, RefusesInOneLineBeforeFlight) {
   }
 }
 
+// Without set-points PX4 does not take the mode, and the pilot would not learn why.
+TEST_F(GuidedFlightTest, WarnsOfRefusalOnceBeforeModeIsGiven) {
+  Start(mavlink::kAutopilotPx4);
+  has_home_ = false;
+  Pass(10);
+  const std::string warning = "guidance would be refused now: the autopilot has no home position";
+  const std::size_t first = reported_.find(warning);
+  ASSERT_NE(first, std::string::npos) << reported_;
+  EXPECT_EQ(reported_.find(warning, first + 1), std::string::npos);
+}
+
 TEST_F(GuidedFlightTest, RefusesTooLowRate) {
   FlightOptions options;
   options.rate_hz = 10;

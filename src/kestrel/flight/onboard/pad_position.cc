@@ -88,6 +88,7 @@ void PadPosition::Send(Time now, const TrackSnapshot& track) {
   WatchPad(pose);
   if (is_moving_) return known_.reset();
   known_ = sight->time;
+  is_used_ = is_used_ || autopilot_.is_position_good(now).value_or(true);
   if (!first_) first_ = now;
   connection_->Send(
       OdometryOf(pose, autopilot_.kind(), static_cast<std::uint64_t>(stamp_ns / kNsPerUs)));
@@ -101,7 +102,9 @@ void PadPosition::BeginWith(Time now) {
   is_origin_settled_ = was_checked_ = false;
 }
 
-bool PadPosition::is_known(Time now) const { return known_ && ToSeconds(now - *known_) < kKnown_s; }
+bool PadPosition::is_seen(Time now) const { return known_ && ToSeconds(now - *known_) < kKnown_s; }
+
+bool PadPosition::is_known(Time now) const { return is_used_ && is_seen(now); }
 
 // A pad that moves would take the world along. On the ground the UAV is pushed and turned by hand.
 void PadPosition::WatchPad(const ExternalPose& pose) {
@@ -135,14 +138,19 @@ void PadPosition::SendOrigin(Time now) {
   if (is_origin_settled_ || now - *heard_ < kOriginPatience) return;
   is_origin_settled_ = true;
   if (autopilot_.origin()) return;
+  if (!origin_ && autopilot_.kind() == AutopilotKind::kPx4) return;  // it needs none
   if (!origin_) {
     return Notify(mavlink::kSeverityWarning,
                   "the autopilot has no origin: set one at the ground station, or fly.pad_origin");
   }
+  constexpr double kMillimetres = 1e3;
   mavlink::SetGpsGlobalOrigin message;
   message.target_system = autopilot_.system();
   message.latitude = origin_->latitude_e7;
   message.longitude = origin_->longitude_e7;
+  // With another altitude PX4 moves its frame up or down.
+  const double altitude_m = autopilot_.status().frame_altitude_m().value_or(0);
+  message.altitude = static_cast<std::int32_t>(std::lround(kMillimetres * altitude_m));
   connection_->Send(message);
   Notify(mavlink::kSeverityInfo, "the autopilot's origin is set to fly.pad_origin");
 }
@@ -154,6 +162,7 @@ void PadPosition::ReportState(Time now) {
       Notify(mavlink::kSeverityWarning, "the autopilot does not use the pad's position: " + why);
     }
   }
+  if (!is_seen(now)) is_used_ = false;
   if (const bool knows = is_known(now); knows != was_known_) {
     was_known_ = knows;
     Notify(knows ? mavlink::kSeverityInfo : mavlink::kSeverityWarning,

@@ -38,11 +38,14 @@ class PadPosition {
   void Send(Time now, const TrackSnapshot& track);
 
   // True while the autopilot's position is one of the pad: the pad was seen in the last second, and
-  // stands. An autopilot goes on for 5 to 8 s without it, and drifts.
+  // stands, and the autopilot has found its estimate good since. PX4's is far off before (it is at
+  // latitude 0 when it gets its origin), and an autopilot goes on for 5 to 8 s without the pad, and
+  // drifts.
   bool is_known(Time now) const;
 
  private:
   void BeginWith(Time now);
+  bool is_seen(Time now) const;
   void WantParameters();
   std::string WhyUnused(Time now) const;
   HeadingSource HeadingOfEstimator() const;
@@ -66,6 +69,7 @@ class PadPosition {
   bool is_origin_settled_ = false;
   bool was_checked_ = false;
   bool was_known_ = false;
+  bool is_used_ = false;    // the estimate was good while the pad was seen
   bool is_moving_ = false;  // the pad, noticed in this flight
   bool is_turned_ = false;  // its heading has left the pad's
   std::uint8_t watched_resets_ = 0;
