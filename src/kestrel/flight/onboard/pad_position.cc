@@ -148,8 +148,10 @@ void PadPosition::SendOrigin(Time now) {
   message.target_system = autopilot_.system();
   message.latitude = origin_->latitude_e7;
   message.longitude = origin_->longitude_e7;
-  // With another altitude PX4 moves its frame up or down.
-  const double altitude_m = autopilot_.status().frame_altitude_m().value_or(0);
+  // With another altitude PX4 moves its frame up or down. ArduPilot reports none, and repeats a
+  // text each second where it is 0.
+  constexpr double kUnknown_m = 1;
+  const double altitude_m = autopilot_.status().frame_altitude_m().value_or(kUnknown_m);
   message.altitude = static_cast<std::int32_t>(std::lround(kMillimetres * altitude_m));
   connection_->Send(message);
   Notify(mavlink::kSeverityInfo, "the autopilot's origin is set to fly.pad_origin");

@@ -42,6 +42,12 @@ class CameraPoses {
   // Adds a report of the gimbal, on its clock.
   PoseStatus Add(const GimbalSample& sample) { return gimbal_history_.Add(sample); }
 
+  // Turns the camera on its gimbal's platform, about the camera's own axes.
+  void TurnOnGimbal(const Eigen::Quaterniond& turn) {
+    Eigen::Quaterniond& rotation = gimbal_->platform_from_camera.rotation;
+    rotation = (rotation * turn).normalized();
+  }
+
   // Returns whether there is a pose for a time on the images' clock, or why not.
   PoseLookup Check(Time image_time) const {
     const PoseLookup lookup = poses_.Check(image_time + clock_offset_);

@@ -16,6 +16,7 @@
 #include "kestrel/vision/pipeline/camera_lens.h"
 #include "kestrel/vision/pipeline/camera_poses.h"
 #include "kestrel/vision/pipeline/camera_watch.h"
+#include "kestrel/vision/pipeline/gimbal_bias.h"
 #include "kestrel/vision/pipeline/input_contradictions.h"
 #include "kestrel/vision/pipeline/stamp_lag.h"
 #include "kestrel/vision/pipeline/world_location.h"
@@ -128,6 +129,7 @@ class LandingPipeline::Impl {
     Duration ahead;  // the first camera's clock minus that of this camera's images
     CameraLag lag;   // late stamps, beside 'ahead'; none of the first camera, which is the clock
     StampLag stamp_lag;  // what its sightings alone say about the stamps; of several cameras
+    std::optional<GimbalBias> gimbal_bias;           // nothing: the mount is fixed
     std::optional<CameraLens> zoom;                  // nothing: the lens is fixed
     double view_rad = 0;                             // what the detector sees, where it zooms
     std::shared_ptr<const CameraModel> zoomed_lens;  // that lens; null until it is known
@@ -159,6 +161,8 @@ class LandingPipeline::Impl {
   static Eigen::Vector3d SweepOf(const Eye& eye, const LandingObservation& observation);
   TargetMeasurement MeasurementOf(const Eye& eye, const LandingObservation& observation) const;
   void Track(Eye* eye, LandingObservation* observation);
+  void LearnGimbalBias(const TargetMeasurement& measurement, const LandingObservation& observation,
+                       Eye* eye) const;
   double LagSigma_s() const;
   void TrackWithOthers(TargetMeasurement measurement, Eye* eye, LandingObservation* observation);
   void Judge(const TargetMeasurement& measurement, const Eigen::Vector3d& slip_mps,
@@ -187,6 +191,7 @@ LandingPipeline::Impl::Eye::Eye(const CameraCalibration& camera,
             Duration::zero(), DurationFromSeconds(options.pose_extrapolation_s)),
       ahead(ClockOffset(camera) - clock_offset),
       fixed_mount(CameraFromBody(camera)) {
+  if (camera.gimbal) gimbal_bias.emplace();
   if (camera.zoom) zoom.emplace(camera, LandingPipelineOptions::kPoseCapacity);
 }
 
@@ -493,10 +498,26 @@ void LandingPipeline::Impl::Track(Eye* eye, LandingObservation* observation) {
     } else {
       observation->fate = tracker_.Add(measurement);
     }
+    LearnGimbalBias(measurement, *observation, eye);
     if (observation->fate) eye->is_track_trusted = observation->fate <= MeasurementFate::kAccepted;
   }
   observation->track_state = tracker_.StateAt(observation->time);
   observation->target = tracker_.Predict(observation->time);
+}
+
+void LandingPipeline::Impl::LearnGimbalBias(const TargetMeasurement& measurement,
+                                            const LandingObservation& observation, Eye* eye) const {
+  constexpr double kStands_mps = 0.15;
+  if (!eye->gimbal_bias || observation.fate != MeasurementFate::kAccepted) return;
+  if (observation.position_method != PositionMethod::kSize) return;
+  const auto target = tracker_.Predict(observation.time);
+  if (!target || target->motion.velocity().norm() + target->velocity_sigma_mps() > kStands_mps) {
+    return eye->gimbal_bias->Forget();
+  }
+  eye->poses.TurnOnGimbal(eye->gimbal_bias->Add(
+      {observation.time, observation.report.detection->camera_from_target.translation,
+       observation.world_from_camera->rotation, measurement.position_in_world,
+       measurement.covariance, options_.noise.pose_bias_m}));
 }
 
 // A camera whose stamps are late shows the target where its view was, and the target, before.
