@@ -45,15 +45,12 @@ class Report {
       for (const double lost_s : {0.5, 1.0, 3.0, 60.0}) Lose(height_m, lost_s);
     }
     for (const bool hangs : {false, true}) Abandon(hangs);
-    Change("compass turns by 40 degrees", [](NoPositionSetup* setup) {
-      setup->turn_after_s = kNoPositionStart_s + 10;
-    });
-    Change("hover thrust a fifth too high", [](NoPositionSetup* setup) {
-      setup->hover_thrust_error = 0.2;
-    });
-    Change("hover thrust a fifth too low", [](NoPositionSetup* setup) {
-      setup->hover_thrust_error = -0.2;
-    });
+    Change("compass turns by 40 degrees",
+           [](NoPositionSetup* setup) { setup->turn_after_s = kNoPositionStart_s + 10; });
+    Change("hover thrust a fifth too high",
+           [](NoPositionSetup* setup) { setup->hover_thrust_error = 0.2; });
+    Change("hover thrust a fifth too low",
+           [](NoPositionSetup* setup) { setup->hover_thrust_error = -0.2; });
     Change("pad accelerates by 1.5 m/s2 for 5 s", [](NoPositionSetup* setup) {
       constexpr double kFastest_mps = 7.5;
       setup->job.pad_moves = true;
@@ -219,7 +216,8 @@ class Report {
         [&](const NoPositionSetup& one) {
           PointedFlight flight = NoPositionFlightOf(one);
           flight.Fly(kNoPositionStart_s + kSettle_s);
-          Watch(&flight, [&](double s) { flight.is_blind = s < lost_s; }, &after);
+          Watch(
+              &flight, [&](double s) { flight.is_blind = s < lost_s; }, &after);
         },
         [&] { return Print(&after); });
   }
@@ -235,7 +233,8 @@ class Report {
           } else {
             flight.Kill();
           }
-          Watch(&flight, [](double) {}, &after);
+          Watch(
+              &flight, [](double) {}, &after);
         },
         [&] { return Print(&after); });
   }

@@ -15,7 +15,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using State = RelativePadState;
 
-constexpr double kOldestMode_s = 3.5;  // after so long without a report the mode is not known
+constexpr double kOldestMode_s = 3.5;      // after so long without a report the mode is not known
 constexpr double kAttitudeDelay_s = 0.15;  // from a commanded lean to the lean
 constexpr double kFastest_mps = 0.8;       // towards the pad
 constexpr double kJerk = 8;                // m/s^3, of the commanded acceleration
@@ -131,8 +131,7 @@ void RelativeGuidance::Enter(GuidancePhase phase, const char* reason, Time now) 
 // A mode that the autopilot refuses the pilot is given up for a landing.
 GuidanceRequest RelativeGuidance::RequestEnd(const RelativeInput& input) const {
   if (!input.is_armed || input.is_landed) return GuidanceRequest::kNone;
-  const bool is_for_pilot =
-      input.has_pilot && ToSeconds(input.now - gave_up_) < kPilotPatience_s;
+  const bool is_for_pilot = input.has_pilot && ToSeconds(input.now - gave_up_) < kPilotPatience_s;
   return is_for_pilot ? GuidanceRequest::kAltitude : GuidanceRequest::kLand;
 }
 
@@ -145,8 +144,8 @@ void RelativeGuidance::ChoosePhase(const RelativeInput& input) {
   if (input.pad_age_s > kLost_s) return Lose(input);
   const double feet_m = FeetHeight(input);
   if (phase_ == GuidancePhase::kApproach && IsAbove(input, Cone(feet_m), kStill_mps)) {
-    return Enter(GuidancePhase::kFollow,
-                 job_.lands ? "above the pad" : "hovers above the pad", input.now);
+    return Enter(GuidancePhase::kFollow, job_.lands ? "above the pad" : "hovers above the pad",
+                 input.now);
   }
   if (phase_ == GuidancePhase::kFollow && job_.lands) {
     constexpr double kSettle_s = 1;
@@ -185,8 +184,8 @@ void RelativeGuidance::FollowLoss(const RelativeInput& input) {
                              : "the pad is lost: climbs to widen the view";
 }
 
-// LAND is level, and drifts with the wind: the UAV sinks against what it knows of the wind, where the
-// autopilot controls the climb rate.
+// LAND is level, and drifts with the wind: the UAV sinks against what it knows of the wind, where
+// the autopilot controls the climb rate.
 void RelativeGuidance::EndLoss(const RelativeInput& input) {
   if (input.has_pilot) return GiveUp(input, "the pad is lost: fly by hand, or it lands");
   const bool is_low = height_m_ - sunk_m_ - options_.leg_m < kLandBelow_m;
@@ -265,8 +264,7 @@ RelativeSetPoint RelativeGuidance::Fly(const RelativeInput& input) {
 
 Vector2d RelativeGuidance::WantedAcceleration(const RelativeInput& input) const {
   constexpr double kTilt = Radians(20);
-  const double most =
-      kGravity * std::tan(std::min(kTilt, Radians(options_.limits.max_tilt_deg)));
+  const double most = kGravity * std::tan(std::min(kTilt, Radians(options_.limits.max_tilt_deg)));
   const RelativePadState::Estimate& pad = *input.pad;
   const Vector2d against_bias = Limited(-pad.bias().head<2>(), most);
   const bool is_followed = phase_ != GuidancePhase::kSearch &&
@@ -274,11 +272,10 @@ Vector2d RelativeGuidance::WantedAcceleration(const RelativeInput& input) const 
                            pad.Sigma(State::kVelocity) < kKnown_mps;
   if (!is_followed) return against_bias;
   const Gains gains = GainsFor(kAttitudeDelay_s + input.link_delay_s);
-  const Vector2d way =
-      job_.lands ? WayOfFeet(pad, options_.leg_m) : Vector2d(pad.way().head<2>());
+  const Vector2d way = job_.lands ? WayOfFeet(pad, options_.leg_m) : Vector2d(pad.way().head<2>());
   const Vector2d closing = Limited(gains.position / gains.velocity * way, kFastest_mps);
-  const Vector2d following = gains.velocity * (pad.velocity().head<2>() + closing) +
-                             pad.pad_acceleration().head<2>();
+  const Vector2d following =
+      gains.velocity * (pad.velocity().head<2>() + closing) + pad.pad_acceleration().head<2>();
   return Limited(following + against_bias, most);
 }
 

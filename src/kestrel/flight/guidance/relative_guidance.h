@@ -109,7 +109,7 @@ class RelativeGuidance {
   bool has_given_up_ = false;
   Time gave_up_;
   std::optional<bool> was_guided_;
-  double height_m_ = 0;        // of the body above the pad, to hold
+  double height_m_ = 0;  // of the body above the pad, to hold
   // Without the pad: its age from which the UAV sinks, and how far it has sunk.
   double lost_after_s_ = 0, sunk_m_ = 0;
   std::optional<Eigen::Vector2d> sent_;  // the last acceleration

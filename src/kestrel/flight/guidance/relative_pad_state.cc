@@ -21,18 +21,19 @@ using Axis = RelativePadState::Axis;
 // own errors. Memory and standard deviation.
 constexpr double kPadMemory_s = 4, kGustMemory_s = 0.7;
 constexpr double kDriving = 1, kGusts = 1;  // m/s^2
-constexpr double kLifting = 1, kHovering = 0.5;  // m/s^2, of a pad that moves, and of one that stands
-constexpr double kBiasWalk = 0.05;           // m/s^2 per square root of a second
-constexpr double kBiasAtFirst = 1;           // m/s^2: 3 m/s of wind, 2 degrees
-constexpr double kThrustAtFirst = 2;         // m/s^2: a hover thrust that is wrong by a fifth
+constexpr double kLifting = 1,
+                 kHovering = 0.5;     // m/s^2, of a pad that moves, and of one that stands
+constexpr double kBiasWalk = 0.05;    // m/s^2 per square root of a second
+constexpr double kBiasAtFirst = 1;    // m/s^2: 3 m/s of wind, 2 degrees
+constexpr double kThrustAtFirst = 2;  // m/s^2: a hover thrust that is wrong by a fifth
 // Also what an attitude of another time than the frame, by some ms, is wrong by: the estimate is
 // slower from higher up, where that would make the UAV swing.
 constexpr double kAttitudeNoise = Radians(0.5);
 constexpr double kThrustLag_s = 0.12;
-constexpr double kContradiction = 25;        // squared, in variances
+constexpr double kContradiction = 25;  // squared, in variances
 constexpr double kContradicted_s = 0.5;
 constexpr double kSubStep_s = 0.05;
-constexpr double kLargestGap_s = 0.3;        // between two attitudes
+constexpr double kLargestGap_s = 0.3;  // between two attitudes
 
 double SquareOf(double value) { return value * value; }
 
@@ -44,8 +45,7 @@ double RelativePadState::Estimate::Sigma(int index) const {
 
 double RelativePadState::Estimate::DriftSigma(double seconds) const {
   const double bias = SquareOf(Sigma(kBias)) + SquareOf(kBiasWalk) * seconds / 5;
-  return std::sqrt(SquareOf(Sigma(kVelocity) * seconds) +
-                   bias * SquareOf(seconds * seconds / 2));
+  return std::sqrt(SquareOf(Sigma(kVelocity) * seconds) + bias * SquareOf(seconds * seconds / 2));
 }
 
 RelativePadState::RelativePadState(bool pad_moves) : pad_moves_(pad_moves) {}
@@ -63,8 +63,8 @@ void RelativePadState::AddAttitude(Time time, const Quaterniond& world_from_body
       sighted_.reset();
     }
     const double turned_s = std::min(step_s, kLargestGap_s);
-    heading_ += HeadingOf(last_attitude_ * RotationBy(turned_s * rate_in_body)) -
-                HeadingOf(last_attitude_);
+    heading_ +=
+        HeadingOf(last_attitude_ * RotationBy(turned_s * rate_in_body)) - HeadingOf(last_attitude_);
   }
   last_attitude_ = world_from_body;
   thrust_ += (1 - std::exp(-step_s / kThrustLag_s)) * (commanded_ - thrust_);
@@ -224,7 +224,8 @@ void RelativePadState::Step(double seconds, const Vector3d& acceleration,
       axis.mean = change * axis.mean;
       axis.mean(kWay) -= dt * dt / 2 * acceleration(i);
       axis.mean(kVelocity) -= dt * acceleration(i);
-      const double pad = i < 2 ? (pad_moves_ ? kDriving : kGusts) : (pad_moves_ ? kLifting : kHovering);
+      const double pad =
+          i < 2 ? (pad_moves_ ? kDriving : kGusts) : (pad_moves_ ? kLifting : kHovering);
       axis.covariance = change * axis.covariance * change.transpose();
       axis.covariance(kAcceleration, kAcceleration) += SquareOf(pad) * (1 - kept * kept);
       axis.covariance(kBias, kBias) += SquareOf(kBiasWalk) * dt;

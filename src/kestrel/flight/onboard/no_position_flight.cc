@@ -39,7 +39,8 @@ NoPositionFlight::NoPositionFlight(const FlightOptions& options, const RelativeJ
       guidance_(std::in_place, options.guidance, job, /*streams=*/false),
       schedule_(options.rate_hz) {
   if (options.guidance.touchdown_heading != "any") {
-    throw InputError("guidance.touchdown_heading: without a position the heading stays, expected any");
+    throw InputError(
+        "guidance.touchdown_heading: without a position the heading stays, expected any");
   }
 }
 
@@ -90,8 +91,8 @@ bool NoPositionFlight::IsMode() const {
   return IsGuidedByLeanMode(autopilot_.kind(), autopilot_.custom_mode());
 }
 
-// Begins when the pilot has given the mode and the UAV is in the air, unless there is a refusal; the
-// pilot must then give the mode anew.
+// Begins when the pilot has given the mode and the UAV is in the air, unless there is a refusal;
+// the pilot must then give the mode anew.
 void NoPositionFlight::WatchMode(Time now, bool is_seen) {
   const bool is_armed = autopilot_.is_armed();
   if (was_armed_ && !is_armed) guidance_->Rearm();

@@ -8,8 +8,7 @@ namespace kestrel {
 void ArduPilotGuidedNoGps::Handle(const mavlink::SetAttitudeTarget& message,
                                   const FlightState& state, bool is_guided) {
   if (!is_guided) return;
-  const auto order =
-      AttitudeOrderOf(message, parameters_["WP_SPD_UP"], parameters_["WP_SPD_DN"]);
+  const auto order = AttitudeOrderOf(message, parameters_["WP_SPD_UP"], parameters_["WP_SPD_DN"]);
   if (!order) return;
   order_ = *order;
   reported_ = state.time;

@@ -17,7 +17,7 @@ struct NoPositionSetup {
   double altitude_m = 3;
   double wind_mps = 3;
   double gusts = 0.25;  // spread, as a part of the wind
-  double pad_mps = 0;  // straight on
+  double pad_mps = 0;   // straight on
   // The pad drives off 'after' seconds, so fast at most and with this acceleration; 0: see above.
   double drive_after_s = 0, drive_acceleration = 1;
   double hover_thrust_error = 0;
@@ -34,7 +34,8 @@ inline PointedFlight NoPositionFlightOf(const NoPositionSetup& setup) {
   options.estimate.has_gnss = false;
   options.estimate.hover_thrust_error = setup.hover_thrust_error;
   options.estimate.turn_after_s = setup.turn_after_s;
-  if (setup.firmware == AutopilotFirmware::kPx4) options.parameters = "COM_OBL_RC_ACT=4,LNDMC_XY_VEL_MAX=12";
+  if (setup.firmware == AutopilotFirmware::kPx4)
+    options.parameters = "COM_OBL_RC_ACT=4,LNDMC_XY_VEL_MAX=12";
   if (!setup.parameters.empty()) {
     options.parameters += (options.parameters.empty() ? "" : ",") + setup.parameters;
   }
