@@ -163,9 +163,6 @@ void RelativeGuidance::Lose(const RelativeInput& input) {
   while (lost_after_s_ < kLastEnd_s && 2 * pad.DriftSigma(lost_after_s_) < kLargestDrift_m) {
     lost_after_s_ += 0.25;
   }
-  while (lost_after_s_ > kWiden_s && 2 * pad.DriftSigma(lost_after_s_) > kLargestDrift_m) {
-    lost_after_s_ -= 0.25;
-  }
   sunk_m_ = 0;
   height_m_ = -pad.way().z();
   Enter(GuidancePhase::kSearch, "the pad is lost: level, against the wind as it was", input.now);
