@@ -104,6 +104,30 @@ void FlyArguments::AddTo(CLI::App* command) {
   CLI::Option* position_flag = command->add_flag(
       "--pad-position", pad_position,
       "Send the place over the pad, which stands, to the autopilot as its position: no GNSS");
+  CLI::Option* no_position_flag =
+      command
+          ->add_flag(
+              "--no-position", no_position,
+              "Fly over the pad and land on it by lean and climb alone, when the pilot gives "
+              "GUIDED_NOGPS or OFFBOARD: the autopilot has no position; needs --floor and "
+              "--ceiling")
+          ->needs(guide_flag)
+          ->excludes(position_flag);
+  command->add_flag("--hover", hover, "Stay above the pad, at the height of the beginning")
+      ->needs(no_position_flag);
+  command
+      ->add_option("--floor", floor,
+                   "With --no-position: still, or moves: the pad, or what is below, may move")
+      ->type_name("WORD")
+      ->check(CLI::IsMember({"still", "moves"}))
+      ->needs(no_position_flag);
+  command
+      ->add_option(
+          "--ceiling", ceiling,
+          "With --no-position: yes, or no: a pad that is lost is looked for from higher up")
+      ->type_name("WORD")
+      ->check(CLI::IsMember({"yes", "no"}))
+      ->needs(no_position_flag);
   task.AddTo(command, [](std::string_view) { return true; });
   CLI::Option* hunt_flag = command->get_option("--hunt");
   command->add_option("--model", model, "Objects and their colours (YAML), with --hunt")
@@ -126,6 +150,7 @@ void FlyArguments::AddTo(CLI::App* command) {
   point_flag->excludes(hunt_flag);
   for (CLI::Option* other : {hunt_flag, follow_flag}) {
     position_flag->excludes(other);
+    no_position_flag->excludes(other);
     other->excludes("--target")->excludes("--target-id")->excludes("--target-size");
   }
   team.AddTo(command)->needs(hunt_flag)->excludes(go_flag);
@@ -141,6 +166,12 @@ std::vector<RecordingChoice> FlyArguments::Cameras(PixelFormat format) const {
     cameras.push_back(one.Recording(format));
   }
   return cameras;
+}
+
+std::optional<RelativeJob> FlyArguments::WithoutPosition() const {
+  if (!no_position) return std::nullopt;
+  return RelativeJob{
+      .lands = !hover, .pad_moves = floor == "moves", .has_ceiling = ceiling == "yes"};
 }
 
 KestrelOptions FlyArguments::ReadOptions() {
@@ -167,6 +198,12 @@ KestrelOptions FlyArguments::ReadOptions() {
   }
   if (guide && task.name == "hunt" && go.empty()) {
     throw InputError("--hunt --guide: expected --go CLASS, the objects to fly to");
+  }
+  if (no_position && (floor.empty() || ceiling.empty())) {
+    throw InputError(
+        "--no-position: expected --floor still or moves, and --ceiling yes or no: without a "
+        "position "
+        "they decide what a lost pad costs");
   }
   job = ParseGoJob(then);
   if (no_guard) options.fly.guard.enabled = false;

@@ -12,6 +12,7 @@
 #include "kestrel/app/cli/team_arguments.h"
 #include "kestrel/app/options/kestrel_options.h"
 #include "kestrel/flight/guidance/go_job.h"
+#include "kestrel/flight/guidance/relative_guidance.h"
 
 namespace kestrel {
 
@@ -29,6 +30,9 @@ struct FlyArguments {
   bool guide = false;
   bool point = false;
   bool pad_position = false;
+  bool no_position = false;
+  bool hover = false;
+  std::string floor, ceiling;  // a person's answers; empty: none was given
   bool no_guard = false;
   TaskArgument task;
   std::string model;           // file with the model of the objects
@@ -44,6 +48,9 @@ struct FlyArguments {
 
   // The cameras, of which there are several, with their calibrations.
   std::vector<RecordingChoice> Cameras(PixelFormat format) const;
+
+  // The job of a flight without a position; nothing: it has one. After ReadOptions.
+  std::optional<RelativeJob> WithoutPosition() const;
 
   // Returns the options with the changes that these arguments make; a source that the command line
   // does not name becomes that of the options. Throws InputError for arguments of `land` that a

@@ -307,6 +307,7 @@ class Flight {
     options.points = arguments_.point;
     options.job = arguments_.job;
     options.sends_pad_position = arguments_.pad_position;
+    options.without_position = arguments_.WithoutPosition();
     options.output = arguments_.source.output;
     options.record = arguments_.record;
     options.replace = arguments_.source.force;

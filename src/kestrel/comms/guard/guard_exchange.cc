@@ -2,24 +2,20 @@
 #include "kestrel/comms/guard/guard_exchange.h"
 
 #include <cmath>
-#include <cstdlib>
 
 #include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/comms/mavlink/messages.h"
 #include "kestrel/comms/mavlink/ned.h"
+#include "kestrel/comms/mavlink/pilot_sticks.h"
 
 namespace kestrel {
 namespace {
 
-// PX4 reports a transmitter that is lost as healthy, but not as present; ArduPilot the other way.
-bool IsReceiving(const mavlink::SysStatus& status) {
-  return (status.onboard_control_sensors_present & status.onboard_control_sensors_health &
-          mavlink::kSensorReceiver) != 0;
-}
-
-bool IsThrottleCentred(const mavlink::RcChannels& channels) {
-  constexpr int kMiddle_us = 1500, kMargin_us = 100;
-  return std::abs(channels.chan3_raw - kMiddle_us) < kMargin_us;
+// GUIDED_NOGPS is a mode of set-points for a program that flies without a position.
+bool IsGuided(const GuardLife& life, std::uint32_t custom_mode) {
+  const bool may_lean = life.task == GuardTask::kLower || life.task == GuardTask::kLand;
+  return IsGuidedMode(life.kind, custom_mode) ||
+         (may_lean && IsGuidedByLeanMode(life.kind, custom_mode));
 }
 
 }  // namespace
@@ -27,10 +23,10 @@ bool IsThrottleCentred(const mavlink::RcChannels& channels) {
 void TakePacket(const mavlink::Packet& packet, const GuardLife& life, Time now,
                 FlightGuard* guard) {
   if (const auto heartbeat = packet.As<mavlink::Heartbeat>()) {
-    guard->TakeMode(IsGuidedMode(life.kind, heartbeat->custom_mode), now);
+    guard->TakeMode(IsGuided(life, heartbeat->custom_mode), now);
     guard->TakeArmed((heartbeat->base_mode & mavlink::kModeFlagArmed) != 0);
   } else if (const auto mode = packet.As<mavlink::CurrentMode>()) {
-    guard->TakeMode(IsGuidedMode(life.kind, mode->custom_mode), now);
+    guard->TakeMode(IsGuided(life, mode->custom_mode), now);
   } else if (const auto position = packet.As<mavlink::LocalPositionNed>()) {
     guard->TakeVelocity(EnuFromNed({position->vx, position->vy, position->vz}), now);
   } else if (const auto attitude = packet.As<mavlink::AttitudeQuaternion>()) {

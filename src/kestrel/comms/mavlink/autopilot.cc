@@ -461,6 +461,8 @@ void Autopilot::WantStreams() {
   if (options_.wants_acceleration) {
     streams_.WantIfThere(is_px4 ? mavlink::HighresImu::kId : mavlink::RawImu::kId,
                          kAcceleration_hz);
+  }
+  if (options_.wants_acceleration || options_.wants_sticks) {
     streams_.WantIfThere(mavlink::RcChannels::kId, kStatusRate_hz);  // for the guard
   }
   if (options_.wants_true_pose) {

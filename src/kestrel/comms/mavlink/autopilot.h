@@ -39,6 +39,7 @@ struct AutopilotOptions {
   std::optional<int> gimbal_device_id = std::nullopt;  // see GimbalReports; nothing: no gimbal
   std::optional<int> zoom_device_id = std::nullopt;    // see ZoomReports; nothing: no zoom
   bool wants_acceleration = false;                     // that the accelerometer measures
+  bool wants_sticks = false;                           // how the pilot holds them
   bool points_gimbal = false;                          // wants what GimbalManager needs
   bool poses_as_ground_station = false;
 

@@ -19,6 +19,7 @@ constexpr std::uint32_t kArduCopterLoiter = 5;
 constexpr std::uint32_t kArduCopterReturn = 6;
 constexpr std::uint32_t kArduCopterLand = 9;
 constexpr std::uint32_t kArduCopterBrake = 17;
+constexpr std::uint32_t kArduCopterGuidedNoGps = 20;
 
 constexpr std::array<std::pair<std::uint32_t, std::string_view>, 22> kArduCopterModes = {
     {{0, "STABILIZE"},
@@ -37,7 +38,7 @@ constexpr std::array<std::pair<std::uint32_t, std::string_view>, 22> kArduCopter
      {16, "POSHOLD"},
      {kArduCopterBrake, "BRAKE"},
      {18, "THROW"},
-     {20, "GUIDED_NOGPS"},
+     {kArduCopterGuidedNoGps, "GUIDED_NOGPS"},
      {21, "SMART_RTL"},
      {22, "FLOWHOLD"},
      {23, "FOLLOW"},
@@ -95,6 +96,8 @@ std::uint32_t ArduCopterMode(FlightMode mode) {
   switch (mode) {
     case FlightMode::kGuided:
       return kArduCopterGuided;
+    case FlightMode::kGuidedByLean:
+      return kArduCopterGuidedNoGps;
     case FlightMode::kLand:
     case FlightMode::kPrecisionLand:
       return kArduCopterLand;
@@ -113,6 +116,7 @@ std::uint32_t ArduCopterMode(FlightMode mode) {
 std::uint32_t Px4Mode(FlightMode mode) {
   switch (mode) {
     case FlightMode::kGuided:
+    case FlightMode::kGuidedByLean:
       return kPx4Offboard;
     case FlightMode::kLand:
       return kPx4Land;
@@ -196,6 +200,11 @@ bool IsLandingMode(AutopilotKind kind, std::uint32_t custom_mode) {
 bool IsGuidedMode(AutopilotKind kind, std::uint32_t custom_mode) {
   if (kind == AutopilotKind::kArduPilot) return custom_mode == kArduCopterGuided;
   return kind == AutopilotKind::kPx4 && custom_mode == kPx4Offboard;
+}
+
+bool IsGuidedByLeanMode(AutopilotKind kind, std::uint32_t custom_mode) {
+  if (kind == AutopilotKind::kArduPilot) return custom_mode == kArduCopterGuidedNoGps;
+  return IsGuidedMode(kind, custom_mode);
 }
 
 }  // namespace kestrel

@@ -19,6 +19,7 @@ const char* VehicleName(std::uint8_t mav_type);
 // Modes that can be requested from an autopilot.
 enum class FlightMode {
   kGuided,         // flies by set-points: GUIDED, OFFBOARD
+  kGuidedByLean,   // flies by lean and climb, without a position: GUIDED_NOGPS, OFFBOARD
   kLand,           // straight down: LAND
   kPrecisionLand,  // descends onto the reported target: LAND, PRECLAND
   kHold,           // holds its place without a pilot: BRAKE, LOITER ("Hold")
@@ -44,5 +45,7 @@ bool IsLandingMode(AutopilotKind kind, std::uint32_t custom_mode);
 
 // True for the mode in which it flies by external set-points.
 bool IsGuidedMode(AutopilotKind kind, std::uint32_t custom_mode);
+// The same for set-points that need no position.
+bool IsGuidedByLeanMode(AutopilotKind kind, std::uint32_t custom_mode);
 
 }  // namespace kestrel

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/comms/mavlink/mavlink_enums.h"
+#include "kestrel/comms/mavlink/pilot_sticks.h"
 
 namespace kestrel {
 namespace {
@@ -85,6 +86,9 @@ void AutopilotStatus::Handle(const mavlink::Packet& packet, const TimeSync& cloc
     HandleRange(*range, clock);
   } else if (const auto system = packet.As<mavlink::SysStatus>()) {
     HandleSystem(*system);
+    is_receiving_ = IsReceiving(*system);
+  } else if (const auto channels = packet.As<mavlink::RcChannels>()) {
+    throttle_centred_ = IsThrottleCentred(*channels) ? std::optional(received) : std::nullopt;
   } else if (const auto gnss = packet.As<mavlink::GpsRawInt>()) {
     HandleGnss(*gnss);
   } else if (const auto ekf = packet.As<mavlink::EkfStatusReport>()) {
@@ -108,6 +112,11 @@ void AutopilotStatus::Handle(const mavlink::Packet& packet, const TimeSync& cloc
 void AutopilotStatus::HandleAltitude(const mavlink::Altitude& message) {
   const double altitude_m = message.altitude_amsl - message.altitude_local;
   if (std::isfinite(altitude_m)) frame_altitude_m_ = altitude_m;
+}
+
+bool AutopilotStatus::HasPilot(Time now) const {
+  constexpr double kAge_s = 2;
+  return is_receiving_ && throttle_centred_ && ToSeconds(now - *throttle_centred_) < kAge_s;
 }
 
 void AutopilotStatus::HandleSystem(const mavlink::SysStatus& message) {

@@ -72,6 +72,8 @@ class AutopilotStatus {
   const std::optional<AutopilotBattery>& battery() const { return battery_; }
   const std::optional<AutopilotGnss>& gnss() const { return gnss_; }
   const std::optional<EstimatorHealth>& estimator() const { return estimator_; }
+  // True when a pilot can take over by his sticks (pilot_sticks.h).
+  bool HasPilot(Time now) const;
 
  private:
   void HandleSystem(const mavlink::SysStatus& message);
@@ -88,6 +90,8 @@ class AutopilotStatus {
   std::optional<AutopilotBattery> battery_;
   std::optional<AutopilotGnss> gnss_;
   std::optional<EstimatorHealth> estimator_;
+  bool is_receiving_ = false;
+  std::optional<Time> throttle_centred_;  // when it was last
 };
 
 // Returns why an autopilot that reports a failsafe in this mode is not flown by set-points, and

@@ -25,6 +25,25 @@ mavlink::SetPositionTargetLocalNed SetPointMessage(const SetPoint& set_point, Au
 mavlink::SetAttitudeTarget LevelMessage(float heading, float thrust, std::uint8_t system,
                                         std::uint8_t component, std::uint32_t boot_ms);
 
+// A command for an autopilot that knows its attitude only, in the world by the autopilot's heading.
+struct LeanSetPoint {
+  Eigen::Vector3d acceleration{0, 0, 0};  // m/s^2; upwards for PX4 only
+  double climb_mps = 0;                   // for ArduPilot only
+  double yaw = 0;                         // of the nose, rad from east to north
+};
+
+// Returns it as the attitude and the climb rate that ArduCopter's GUIDED_NOGPS takes.
+// 'max_climb_mps', 'max_sink_mps': the autopilot's own (WP_SPD_UP, WP_SPD_DN).
+mavlink::SetAttitudeTarget LeanMessage(const LeanSetPoint& set_point, double max_climb_mps,
+                                       double max_sink_mps, std::uint8_t system,
+                                       std::uint8_t component, std::uint32_t boot_ms);
+
+// Returns it as the acceleration and the yaw that PX4's OFFBOARD takes without a position: one axis
+// of a velocity would be refused there.
+mavlink::SetPositionTargetLocalNed AccelerationMessage(const LeanSetPoint& set_point,
+                                                       std::uint8_t system, std::uint8_t component,
+                                                       std::uint32_t boot_ms);
+
 // Returns the form of a set-point for a UAV that a deck carries, for ArduPilot's GUIDED: level, the
 // heading, and down as fast as it may. Where it controls a velocity against the deck, it leans ever
 // more, and its land detector never finds that it has landed.
@@ -35,5 +54,7 @@ mavlink::SetAttitudeTarget CarriedMessage(const SetPoint& set_point, std::uint8_
 // the line did not accept it.
 bool SendSetPoint(const SetPoint& set_point, const Autopilot& autopilot, Time now,
                   Connection* connection);
+bool SendSetPoint(const LeanSetPoint& set_point, double max_climb_mps, double max_sink_mps,
+                  const Autopilot& autopilot, Time now, Connection* connection);
 
 }  // namespace kestrel

@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "kestrel/comms/mavlink/mavlink_enums.h"
+#include "kestrel/comms/mavlink/ned.h"
+#include "kestrel/core/poses/gravity.h"
 
 namespace kestrel {
 namespace {
@@ -63,6 +65,35 @@ TEST(SetPointMessageTest, CommandsLevelDescentOnDeck) {
   EXPECT_EQ(message.q[2], 0);
   EXPECT_FLOAT_EQ(message.q[3], std::sqrt(0.5F));
   EXPECT_EQ(message.thrust, 0);
+}
+
+// GUIDED_NOGPS flies an old lean on where the quaternion is not one.
+TEST(LeanMessageTest, IsUnitAttitudeWithClimbRate) {
+  const LeanSetPoint set_point{.acceleration = {1.5, -2, 0}, .climb_mps = 0, .yaw = 0.7};
+  const mavlink::SetAttitudeTarget level = LeanMessage(set_point, 2.5, 1.5, 1, 1, 0);
+  EXPECT_EQ(level.type_mask, mavlink::kIgnoreBodyRates);
+  EXPECT_EQ(level.thrust, 0.5F);
+  const Eigen::Quaterniond in_ned(level.q[0], level.q[1], level.q[2], level.q[3]);
+  EXPECT_NEAR(in_ned.norm(), 1, 1e-6);
+  const Eigen::Vector3d up = EnuFluFromNedFrd(in_ned) * Eigen::Vector3d::UnitZ();
+  EXPECT_NEAR(up.x() / up.z() * kGravity, 1.5, 1e-4);
+  EXPECT_NEAR(up.y() / up.z() * kGravity, -2, 1e-4);
+  LeanSetPoint moving = set_point;
+  moving.climb_mps = 1.25;
+  EXPECT_FLOAT_EQ(LeanMessage(moving, 2.5, 1.5, 1, 1, 0).thrust, 0.75F);
+  moving.climb_mps = -3;
+  EXPECT_FLOAT_EQ(LeanMessage(moving, 2.5, 1.5, 1, 1, 0).thrust, 0);
+}
+
+// One axis of a velocity, and PX4 refuses it without a position.
+TEST(AccelerationMessageTest, HasAccelerationAndYawAlone) {
+  const LeanSetPoint set_point{.acceleration = {1, 2, 3}, .climb_mps = 1, .yaw = 0};
+  const mavlink::SetPositionTargetLocalNed message = AccelerationMessage(set_point, 1, 1, 0);
+  EXPECT_EQ(message.type_mask, 0x83F);
+  EXPECT_EQ(message.coordinate_frame, mavlink::kFrameLocalNed);
+  EXPECT_FLOAT_EQ(message.afx, 2);
+  EXPECT_FLOAT_EQ(message.afy, 1);
+  EXPECT_FLOAT_EQ(message.afz, -3);
 }
 
 TEST(SetPointMessageTest, DoesNotSendNonFiniteValues) {

@@ -17,6 +17,8 @@ const char* ToString(GuidanceRequest request) {
       return "grab";
     case GuidanceRequest::kRelease:
       return "release";
+    case GuidanceRequest::kAltitude:
+      return "altitude";
   }
   return "";
 }

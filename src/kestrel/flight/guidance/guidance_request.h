@@ -7,13 +7,14 @@ namespace kestrel {
 // caller limits how often it is sent.
 enum class GuidanceRequest {
   kNone,
-  kLand,     // its LAND mode, in contact
-  kHold,     // LOITER or HOLD: guidance has given up
-  kDisarm,   // by force, in contact
-  kGrab,     // the gripper closes
-  kRelease,  // the gripper opens
+  kLand,      // its LAND mode, in contact
+  kHold,      // LOITER or HOLD: guidance has given up
+  kDisarm,    // by force, in contact
+  kGrab,      // the gripper closes
+  kRelease,   // the gripper opens
+  kAltitude,  // ALT_HOLD or Altitude: the pilot flies on, without a position
 };
-// "none", "land", "hold", "disarm", "grab", "release"
+// "none", "land", "hold", "disarm", "grab", "release", "altitude"
 const char* ToString(GuidanceRequest request);
 
 }  // namespace kestrel

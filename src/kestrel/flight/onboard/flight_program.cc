@@ -53,7 +53,10 @@ FlightProgram::FlightProgram(const FlightOptions& options, const FlightParts& pa
     pad_position_.emplace(ParsePadOrigin(options_.pad_origin), parts.autopilot, parts.connection,
                           report_);
   }
-  if (parts.guidance) {
+  if (parts.without_position) {
+    no_position_.emplace(options, *parts.without_position, parts.autopilot, parts.connection,
+                         report_);
+  } else if (parts.guidance) {
     guided_.emplace(options, tracker_, parts.guidance, !parts.source_has_poses, parts.autopilot,
                     parts.connection, report_);
     if (parts.sends_pad_position) guided_->set_position_by_pad();
@@ -336,7 +339,7 @@ void FlightProgram::Communicate() {
     if (gimbal_) Point(now);
     if (camera_) camera_->Tick(now, track_.Get(), poses_);
     WatchFlight(now);
-    if (guard_ && !guard_->Watch(now, *guided_)) {
+    if (guard_ && !guard_->Watch(now, TaskOfTheGuard(now))) {
       End({FlightOutcome::kNotLanded, {}, guard_->reason()});
     }
   }
@@ -359,10 +362,20 @@ void FlightProgram::SendTarget(Time now) {
   const TrackSnapshot& track = track_.Get();
   if (sender_) {
     if (guided_) sender_->set_may_stand(!guided_->is_flying());
+    if (no_position_) sender_->set_may_stand(!no_position_->is_flying());
     if (sender_->Send(now, track, poses_)) latency_.step(kMessage).Add(Now() - track.captured);
     phase_ = sender_->phase();
     height_m_ = sender_->height_m();
     messages_ = sender_->messages();
+  }
+  Fly(now, track);
+}
+
+void FlightProgram::Fly(Time now, const TrackSnapshot& track) {
+  if (no_position_) {
+    if (no_position_->Fly(now, track)) latency_.step(kSetPoint).Add(Now() - track.captured);
+    guidance_phase_ = no_position_->phase();
+    set_points_ = no_position_->set_points();
   }
   if (!guided_) return;
   guided_->Take(order_);
@@ -370,6 +383,11 @@ void FlightProgram::SendTarget(Time now) {
   if (guided_->Fly(now, track, poses_)) latency_.step(kSetPoint).Add(Now() - track.captured);
   guidance_phase_ = guided_->phase();
   set_points_ = guided_->set_points();
+}
+
+GuardTask FlightProgram::TaskOfTheGuard(Time now) const {
+  if (no_position_) return TaskOfGuard(*no_position_, *parts_.autopilot);
+  return TaskOfGuard(*guided_, *parts_.autopilot, now);
 }
 
 // The delay that all cameras have, as far as it is known.
@@ -391,6 +409,7 @@ void FlightProgram::TakeAutopilotPose(const PoseSample& pose) {
 
 void FlightProgram::TakeAutopilotAttitude(const PoseSample& attitude) {
   if (pad_position_) pad_position_->TakeAttitude(attitude);
+  if (no_position_) no_position_->TakeAttitude(attitude);
 }
 
 void FlightProgram::TakeAutopilotAcceleration(Time time, const Eigen::Vector3d& acceleration) {
@@ -475,6 +494,10 @@ LandingWatchInput FlightProgram::LandingInput(Time now) {
     const TurnState target = Propagate(track.target->motion, ahead_s, noise_);
     input.pattern = {target.position(), target.covariance.topLeftCorner<3, 3>()};
   }
+  if (no_position_) {
+    input.has_contact = input.has_contact || no_position_->phase() == GuidancePhase::kLanded;
+    input.gave_up = no_position_->gave_up();
+  }
   if (!guided_) return input;
   input.has_contact = input.has_contact || guided_->phase() == GuidancePhase::kLanded;
   if (guided_->is_flying()) {
@@ -512,7 +535,7 @@ FlightReport FlightProgram::Report() const {
     const std::lock_guard lock(autopilot_mutex_);
     autopilot = autopilot_state_;
   }
-  if (guided_) autopilot.guidance = guidance_phase_.load();
+  if (guided_ || no_position_) autopilot.guidance = guidance_phase_.load();
   autopilot.target = phase_;
   autopilot.link = parts_.connection->counters();
   return report;
@@ -534,7 +557,8 @@ std::string FlightProgram::State() const {
   }
   state += fmt::format("; target {}", ToString(phase_.load()));
   if (phase_ == TargetPhase::kFound) state += fmt::format(", {:.1f} m below", height_m_.load());
-  if (guided_) return state + fmt::format("; guidance: {}", ToString(guidance_phase_.load()));
+  if (guided_ || no_position_)
+    return state + fmt::format("; guidance: {}", ToString(guidance_phase_.load()));
   return state + fmt::format("; {} messages sent", messages_.load());
 }
 

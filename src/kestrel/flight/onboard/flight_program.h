@@ -24,6 +24,7 @@
 #include "kestrel/flight/onboard/guided_flight.h"
 #include "kestrel/flight/onboard/landing_watch.h"
 #include "kestrel/flight/onboard/latency_statistics.h"
+#include "kestrel/flight/onboard/no_position_flight.h"
 #include "kestrel/flight/onboard/open_live_source.h"
 #include "kestrel/flight/onboard/pad_position.h"
 #include "kestrel/flight/onboard/pointed_gimbal.h"
@@ -59,9 +60,10 @@ struct FlightParts {
   const CameraCalibration* tracking = nullptr;
   const CameraStream* stream = nullptr;  // in which they do so; null: the source's own
   GuidanceMaker guidance = {};  // flies by set-points when the pilot gives the mode; null: does not
-  bool sends_pad_position = false;  // see SessionOptions
-  bool source_has_poses = false;    // the autopilot's poses are then not used
-  bool sees_repeated = false;       // processes images that equal the one before
+  bool sends_pad_position = false;                   // see SessionOptions
+  std::optional<RelativeJob> without_position = {};  // see SessionOptions
+  bool source_has_poses = false;                     // the autopilot's poses are then not used
+  bool sees_repeated = false;                        // processes images that equal the one before
   std::size_t cameras = 1;
   std::optional<LinkProfile> profile;  // nothing: chosen by the heartbeat
   // Returns the true pattern at the time of a frame, in a simulation that knows it.
@@ -135,6 +137,8 @@ class FlightProgram {
   void TakeGimbal(const GimbalSample& report);
   void Point(Time now);
   void SendTarget(Time now);
+  void Fly(Time now, const TrackSnapshot& track);
+  GuardTask TaskOfTheGuard(Time now) const;
   void WatchFlight(Time now);
   LandingWatchInput LandingInput(Time now);
   void ShowAutopilot(Time now);
@@ -170,6 +174,7 @@ class FlightProgram {
   std::optional<TargetSender> sender_;  // nothing: there is nothing to land on
   std::optional<PadPosition> pad_position_;
   std::optional<GuidedFlight> guided_;
+  std::optional<NoPositionFlight> no_position_;  // instead of guided_
   std::optional<PointedGimbal> gimbal_;
   std::atomic<bool> resumes_pointing_{false};  // set by any thread
   std::optional<TrackingCamera> camera_;       // its marks are applied by the vision's thread

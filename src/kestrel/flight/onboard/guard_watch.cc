@@ -17,6 +17,13 @@ GuardTask TaskOfGuard(const GuidedFlight& guided, const Autopilot& autopilot, Ti
   return guided.is_position_by_pad() || is_lost ? GuardTask::kLower : GuardTask::kStop;
 }
 
+GuardTask TaskOfGuard(const NoPositionFlight& flight, const Autopilot& autopilot) {
+  if (!IsGuidedByLeanMode(autopilot.kind(), autopilot.custom_mode())) return GuardTask::kNothing;
+  if (flight.is_at_deck()) return GuardTask::kLand;
+  const bool is_its_own = flight.is_flying() || !flight.gave_up().empty();
+  return is_its_own ? GuardTask::kLower : GuardTask::kNothing;
+}
+
 GuardWatch::GuardWatch(GuardLink* guard, Autopilot* autopilot, const Connection* connection,
                        const GuardOptions& options, std::function<void(const std::string&)> report)
     : guard_(guard),
@@ -25,8 +32,8 @@ GuardWatch::GuardWatch(GuardLink* guard, Autopilot* autopilot, const Connection*
       options_(options),
       report_(std::move(report)) {}
 
-bool GuardWatch::Watch(Time now, const GuidedFlight& guided) {
-  guard_->SendLife(LifeOf(TaskOfGuard(guided, *autopilot_, now), *autopilot_, *connection_), now);
+bool GuardWatch::Watch(Time now, GuardTask task) {
+  guard_->SendLife(LifeOf(task, *autopilot_, *connection_), now);
   const GuardState state = guard_->state();
   if (state == reported_) return true;
   reported_ = state;

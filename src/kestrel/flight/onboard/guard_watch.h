@@ -10,11 +10,13 @@
 #include "kestrel/comms/mavlink/connection.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/flight/onboard/guided_flight.h"
+#include "kestrel/flight/onboard/no_position_flight.h"
 
 namespace kestrel {
 
 // Task of the guard if this is the last sign of life.
 GuardTask TaskOfGuard(const GuidedFlight& guided, const Autopilot& autopilot, Time now);
+GuardTask TaskOfGuard(const NoPositionFlight& flight, const Autopilot& autopilot);
 
 // Gives the guard its signs of life, and informs the user and the ground station what becomes of
 // it. Used by the link's thread only.
@@ -24,9 +26,9 @@ class GuardWatch {
   GuardWatch(GuardLink* guard, Autopilot* autopilot, const Connection* connection,
              const GuardOptions& options, std::function<void(const std::string&)> report);
 
-  // Called after each set-point that was due. False: the guard has the UAV, or the line cannot be
-  // opened, and the flight has to end.
-  bool Watch(Time now, const GuidedFlight& guided);
+  // Called after each set-point that was due. 'task': if this is the last sign of life. False: the
+  // guard has the UAV, or the line cannot be opened, and the flight has to end.
+  bool Watch(Time now, GuardTask task);
 
   // Why the flight has to end; empty: it goes on.
   const std::string& reason() const { return reason_; }

@@ -211,6 +211,9 @@ void GuidedFlight::Request(Time now, GuidanceRequest request) {
     case GuidanceRequest::kHold:
       autopilot_.RequestMode(FlightMode::kHold);
       return;
+    case GuidanceRequest::kAltitude:
+      autopilot_.RequestMode(FlightMode::kAltitude);
+      return;
     case GuidanceRequest::kDisarm:
       Notify(mavlink::kSeverityWarning, "disarming by force, in contact");
       autopilot_.DisarmByForce();

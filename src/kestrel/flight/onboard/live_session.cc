@@ -282,7 +282,11 @@ AutopilotOptions Flight::WantedOfAutopilot() const {
   if (options_.guides && wanted.mode_rate_hz == 0) wanted.mode_rate_hz = kMode_hz;
   if (live_.true_pose) wanted.wants_true_pose = true;
   wanted.wants_acceleration = options_.sends_pad_position;
+  wanted.wants_sticks = options_.without_position.has_value();
   if (const auto& gimbal = live_.calibration.gimbal) {
+    if (options_.without_position) {
+      throw InputError("--no-position: the camera is on a gimbal, expected one that is fixed");
+    }
     wanted.gimbal_device_id = gimbal->device_id;
     wanted.points_gimbal = Points();
   }
@@ -344,6 +348,7 @@ FlightParts Flight::ProgramParts() {
           .stream = options_.stream ? &*options_.stream : nullptr,
           .guidance = Guide(),
           .sends_pad_position = options_.sends_pad_position,
+          .without_position = options_.without_position,
           .source_has_poses = live_.has_poses,
           .sees_repeated = live_.sees_repeated,
           .cameras = 1 + live_.further.size(),

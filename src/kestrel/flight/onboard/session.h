@@ -12,6 +12,7 @@
 
 #include "kestrel/comms/mavlink/target_profile.h"
 #include "kestrel/flight/guidance/go_job.h"
+#include "kestrel/flight/guidance/relative_guidance.h"
 #include "kestrel/flight/onboard/camera_stream.h"
 #include "kestrel/flight/onboard/flight_options.h"
 #include "kestrel/flight/onboard/open_live_source.h"
@@ -55,6 +56,9 @@ struct SessionOptions {
   // Sends the UAV's place over the pad to the autopilot as its position: it needs no other. The pad
   // stands. Needs a task with a pad, and an autopilot.
   bool sends_pad_position = false;
+  // Flies over the pad, and onto it, without any position of the autopilot; needs 'guides' and a
+  // task with a pad.
+  std::optional<RelativeJob> without_position = {};
   // The video in which ground stations mark what is followed; nothing: that of the source.
   std::optional<CameraStream> stream = {};
 };

@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::uint32_t kPx4TakeOff = Px4CustomMode(4, 2);
 // Numbers of ArduCopter's modes that can be requested.
-constexpr std::array<std::uint32_t, 12> kArduPilotModes = {0, 2, 3, 4, 5, 6, 7, 9, 16, 17, 21, 23};
+constexpr std::array<std::uint32_t, 13> kArduPilotModes = {0, 2,  3,  4,  5,  6, 7,
+                                                           9, 16, 17, 20, 21, 23};
 constexpr std::uint32_t kPx4LastMain = 8;
 constexpr std::uint32_t kPx4LastSub = 9;
 
@@ -63,7 +64,7 @@ void AutopilotModel::Receive(const mavlink::SetPositionTargetLocalNed& message, 
 template <class Message>
 void AutopilotModel::ReceiveSetPoint(const Message& message, Time now) {
   if (!IsForIt(message.target_system)) return;
-  const bool is_guided = IsIn(FlightMode::kGuided);
+  const bool is_guided = IsGuided();
   if (is_guided) {
     ++result_.set_points;
     is_taking_off_ = false;
@@ -73,7 +74,7 @@ void AutopilotModel::ReceiveSetPoint(const Message& message, Time now) {
   }
   FlightState state = state_;
   state.time = now;
-  guided_->Handle(message, state, is_guided);
+  Guided().Handle(message, state, is_guided);
 }
 
 bool AutopilotModel::IsForIt(std::uint8_t target_system) const {

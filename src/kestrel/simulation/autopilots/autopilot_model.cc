@@ -16,6 +16,7 @@
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/core/poses/gravity.h"
 #include "kestrel/simulation/autopilots/ardupilot_guided.h"
+#include "kestrel/simulation/autopilots/ardupilot_guided_no_gps.h"
 #include "kestrel/simulation/autopilots/ardupilot_landing.h"
 #include "kestrel/simulation/autopilots/px4_landing.h"
 #include "kestrel/simulation/autopilots/px4_offboard.h"
@@ -99,6 +100,7 @@ AutopilotModel::AutopilotModel(AutopilotFirmware firmware, const AutopilotModelO
       detector_(firmware, parameters_),
       return_(firmware, parameters_),
       streams_(firmware, options.has_gimbal, options.zoom.is_there()),
+      attitude_error_(options.estimate.tilt_memory_s),
       start_(start),
       stepped_to_(start),
       booted_at_(start),
@@ -108,11 +110,13 @@ AutopilotModel::AutopilotModel(AutopilotFirmware firmware, const AutopilotModelO
   };
   if (is_px4()) {
     landing_ = std::make_unique<Px4Landing>(parameters_, px4_clock_, announce);
-    guided_ = std::make_unique<Px4Offboard>(parameters_, announce);
+    guided_ =
+        std::make_unique<Px4Offboard>(parameters_, options.estimate.hover_thrust_error, announce);
     custom_mode_ = CustomModeOf(kind(), FlightMode::kHold);
   } else {
     landing_ = std::make_unique<ArduPilotLanding>(parameters_, announce);
     guided_ = std::make_unique<ArduPilotGuided>(parameters_);
+    guided_by_lean_ = std::make_unique<ArduPilotGuidedNoGps>(parameters_);
     custom_mode_ = CustomModeOf(kind(), FlightMode::kPilot);
   }
   pilot_flies_ = options.pilot.start_altitude_m > 0;
@@ -164,7 +168,7 @@ void AutopilotModel::StepOnce(Time now) {
   MeasureAcceleration();
   landing_->Estimate(state_);
   detector_.Observe(state_, command);
-  if (IsIn(FlightMode::kGuided)) result_.guided_s += state_.step_s;
+  if (IsGuided()) result_.guided_s += state_.step_s;
   FollowPilot(now);
   WatchSetPoints(now);
   ObserveContact(now);
@@ -186,7 +190,10 @@ void AutopilotModel::ObserveFlight(Time now) {
   if (jumps) state_.pose.world_from_body.translation.x() += faults.jump_m;
   // It knows when its estimate was reset: the held place moves along.
   if (jumps && !std::exchange(has_jumped_, true)) hold_.x() += faults.jump_m;
-  if (external_) UseExternalNavigation();
+  if (external_) {
+    UseExternalNavigation();
+    MistakeAttitude(now);
+  }
   state_.is_standing = uav_.is_standing();
   DriftAtRest();
 }
@@ -210,6 +217,21 @@ void AutopilotModel::UseExternalNavigation() {
   place += external_->error();
 }
 
+void AutopilotModel::MistakeAttitude(Time now) {
+  constexpr double kTurning_s = 2;
+  const EstimateFaultOptions& faults = options_.estimate;
+  const Vector3d velocity = uav_.pose().motion->velocity_in_world;
+  if (state_.step_s > 0 && state_.step_s < 1) {
+    attitude_error_.Step(state_.step_s, (velocity - velocity_) / state_.step_s, !LacksPosition());
+  }
+  if (faults.turn_after_s >= 0) {
+    const double since_s = ToSeconds(now - start_) - faults.turn_after_s;
+    attitude_error_.set_turn(Radians(faults.turn_deg) * std::clamp(since_s / kTurning_s, 0.0, 1.0));
+  }
+  Eigen::Quaterniond& rotation = state_.pose.world_from_body.rotation;
+  rotation = attitude_error_.Estimate(rotation);
+}
+
 // Its vertical speed is wrong while it stands, and its height with it.
 void AutopilotModel::DriftAtRest() {
   const bool drifts = state_.is_standing && is_armed_;
@@ -221,7 +243,10 @@ void AutopilotModel::DriftAtRest() {
 
 void AutopilotModel::FollowPilot(Time now) {
   if (pilot_.LosesBattery(now)) EnterBatteryFailsafe(now);
-  if (const auto mode = pilot_.Switch(now, pilot_flies_)) EnterMode(*mode, Wish::kPilot, now);
+  auto mode = pilot_.Switch(now, pilot_flies_);
+  // Without a position there is another switch position for set-points.
+  if (mode == FlightMode::kGuided && LacksPosition()) mode = FlightMode::kGuidedByLean;
+  if (mode) EnterMode(*mode, Wish::kPilot, now);
 }
 
 // It returns unless its battery parameters choose a landing; other actions are not modelled.
@@ -243,8 +268,8 @@ void AutopilotModel::WatchSetPoints(Time now) {
     SendText(Severity::kCritical, "Failsafe activated: no position");
     return EnterMode(FlightMode::kLand, Wish::kFailsafe, now);
   }
-  if (IsIn(FlightMode::kGuided)) {
-    if (const auto action = guided_->LossAction(state_)) {
+  if (IsGuided()) {
+    if (const auto action = Guided().LossAction(state_)) {
       SendText(Severity::kCritical, "Failsafe activated: no offboard signal");
       EnterMode(*action, Wish::kFailsafe, now);
     }
@@ -254,12 +279,17 @@ void AutopilotModel::WatchSetPoints(Time now) {
 }
 
 FlightCommand AutopilotModel::Fly() {
-  if (LacksPosition() && !pilot_flies_) return FlyLevel();
+  if (LacksPosition() && !pilot_flies_) {
+    const bool is_by_lean = IsGuided() && !Guided().NeedsPosition();
+    FlightCommand command = is_by_lean ? Guided().Fly(state_) : FlyLevel();
+    attitude_error_.Apply(&command);
+    return command;
+  }
   FlightCommand command;
   if (LandsByTarget()) {
     command.set_point = landing_->Land(state_);
-  } else if (IsIn(FlightMode::kGuided) && !is_taking_off_) {
-    command = guided_->Fly(state_);
+  } else if (IsGuided() && !is_taking_off_) {
+    command = Guided().Fly(state_);
     // ArduPilot does not lift off by velocities.
     double& climb = command.set_point.velocity.z();
     if (!is_px4() && detector_.has_landed()) climb = std::min(climb, 0.0);
@@ -319,13 +349,17 @@ bool AutopilotModel::NeedsPosition(std::uint32_t custom_mode) const {
   constexpr std::array kArduPilotModes = {0U, 1U, 2U, 9U, 20U};
   constexpr std::array kPx4Modes = {Px4CustomMode(1, 0), Px4CustomMode(2, 0), Px4CustomMode(4, 6),
                                     Px4CustomMode(5, 0), Px4CustomMode(7, 0)};
+  if (is_px4() && custom_mode == CustomModeOf(kind(), FlightMode::kGuided)) {
+    return guided_->NeedsPosition();
+  }
   const auto is_one = [&](const auto& modes) { return std::ranges::count(modes, custom_mode) > 0; };
   return is_px4() ? !is_one(kPx4Modes) : !is_one(kArduPilotModes);
 }
 
 // False when it refuses the mode.
 bool AutopilotModel::EnterMode(std::uint32_t custom_mode, Wish wish, Time now) {
-  const bool is_guided = custom_mode == CustomModeOf(kind(), FlightMode::kGuided);
+  const bool is_guided = custom_mode == CustomModeOf(kind(), FlightMode::kGuided) ||
+                         custom_mode == CustomModeOf(kind(), FlightMode::kGuidedByLean);
   if (is_guided && !guided_->IsAvailable(state_)) return false;
   if (LacksPosition() && NeedsPosition(custom_mode)) {
     if (wish != Wish::kFailsafe) return false;
@@ -348,7 +382,7 @@ bool AutopilotModel::EnterMode(std::uint32_t custom_mode, Wish wish, Time now) {
   if (LandsByTarget()) landing_->StartLanding(state_);
   if (IsIn(FlightMode::kReturn)) return_.Start(state_);
   if (is_guided) {
-    guided_->Start(state_);
+    Guided().Start(state_);
     ++result_.guided_entries;
   }
   // ArduPilot reports it at once, PX4 with the next heartbeat.
@@ -358,7 +392,7 @@ bool AutopilotModel::EnterMode(std::uint32_t custom_mode, Wish wish, Time now) {
 
 void AutopilotModel::LeaveMode(Time now) {
   is_taking_off_ = false;
-  if (IsIn(FlightMode::kGuided)) {
+  if (IsGuided()) {
     result_.left = now;
     result_.set_points_after_take_back = 0;
     result_.last_set_point_after_s = 0;
@@ -368,7 +402,7 @@ void AutopilotModel::LeaveMode(Time now) {
 }
 
 bool AutopilotModel::MayComeDown() const {
-  return LandsByTarget() || IsIn(FlightMode::kGuided) || IsIn(FlightMode::kLand);
+  return LandsByTarget() || IsGuided() || IsIn(FlightMode::kLand);
 }
 
 // The last contact counts: it may have gone around after an earlier one.
@@ -383,7 +417,7 @@ void AutopilotModel::ObserveContact(Time now) {
 
 void AutopilotModel::DisarmAfterLanding(Time now) {
   if (!is_armed_ || detector_.landed_s() < 0) return;
-  const bool lands = MayComeDown() && !IsIn(FlightMode::kGuided);
+  const bool lands = MayComeDown() && !IsGuided();
   // ArduPilot's landing modes do not wait.
   double wait_s = parameters_[is_px4() ? "COM_DISARM_LAND" : "DISARM_DELAY"];
   if (!is_px4() && (lands || IsIn(FlightMode::kReturn))) {

@@ -16,6 +16,7 @@
 #include "kestrel/simulation/autopilot_rules/autopilot_parameters.h"
 #include "kestrel/simulation/autopilot_rules/landing_rules.h"
 #include "kestrel/simulation/autopilot_rules/px4_time_sync.h"
+#include "kestrel/simulation/autopilots/attitude_error.h"
 #include "kestrel/simulation/autopilots/autopilot_messages.h"
 #include "kestrel/simulation/autopilots/autopilot_model_options.h"
 #include "kestrel/simulation/autopilots/external_navigation.h"
@@ -92,6 +93,12 @@ class AutopilotModel {
   }
   void LeaveMode(Time now);
   bool IsIn(FlightMode mode) const { return custom_mode_ == CustomModeOf(kind(), mode); }
+  // Flies by set-points.
+  bool IsGuided() const { return IsIn(FlightMode::kGuided) || IsIn(FlightMode::kGuidedByLean); }
+  // The rules for them, in this mode.
+  GuidedRules& Guided() const {
+    return !is_px4() && IsIn(FlightMode::kGuidedByLean) ? *guided_by_lean_ : *guided_;
+  }
   bool LandsByTarget() const { return IsIn(FlightMode::kPrecisionLand); }
   bool MayComeDown() const;
   void ObserveContact(Time now);
@@ -107,6 +114,7 @@ class AutopilotModel {
   bool LacksPosition() const { return external_ && !external_->has_position(); }
   bool NeedsPosition(std::uint32_t custom_mode) const;
   void UseExternalNavigation();
+  void MistakeAttitude(Time now);
   void MeasureAcceleration();
 
   // autopilot_reports.cc: sent messages.
@@ -156,12 +164,14 @@ class AutopilotModel {
   Px4TimeSync px4_clock_;
   std::unique_ptr<LandingRules> landing_;
   std::unique_ptr<GuidedRules> guided_;
+  std::unique_ptr<GuidedRules> guided_by_lean_;  // of ArduPilot
   LandDetector detector_;
   ReturnFlight return_;
   MessageStreams streams_;
   Eigen::Vector3d velocity_{0, 0, 0};           // true one at the last step
   Eigen::Vector3d acceleration_{0, 0, 0};       // measured, FLU, m/s^2
   std::optional<ExternalNavigation> external_;  // nothing: it has GNSS
+  AttitudeError attitude_error_;                // without GNSS
   std::optional<SimulatedMount> mount_;         // nothing: it has no gimbal
 
   Time start_;

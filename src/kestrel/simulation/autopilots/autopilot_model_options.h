@@ -25,6 +25,10 @@ struct EstimateFaultOptions {
   double rest_climb_mps = 0;
   bool has_home = true;
   bool has_gnss = true;
+  double tilt_memory_s = 30;
+  double turn_after_s = -1;
+  double turn_deg = 40;
+  double hover_thrust_error = 0;
 
   static void Visit(auto& self, auto&& visit) {
     visit("silent_after_s", self.silent_after_s, Range{-1, 10000},
@@ -39,6 +43,14 @@ struct EstimateFaultOptions {
           "error of the vertical speed while the UAV stands; its height drifts by it");
     visit("has_gnss", self.has_gnss,
           "the autopilot has a position by itself; otherwise only by ODOMETRY");
+    visit("tilt_memory_s", self.tilt_memory_s, Range{1, 1e6},
+          "time in which it takes an acceleration that lasts for tilt, without a position");
+    visit(
+        "turn_after_s", self.turn_after_s, Range{-1, 10000},
+        "time at which its heading turns within two seconds, without a position; negative: never");
+    visit("turn_deg", self.turn_deg, Range{-180, 180}, "angle of that turn, from east to north");
+    visit("hover_thrust_error", self.hover_thrust_error, Range{-0.5, 0.5},
+          "part by which PX4 takes the thrust that hovers for too high");
     visit("has_home", self.has_home, "the autopilot has a home position to return to");
   }
 };

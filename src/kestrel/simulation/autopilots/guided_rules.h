@@ -25,6 +25,8 @@ class GuidedRules {
 
   // True when the mode may begin.
   virtual bool IsAvailable(const FlightState& state) const = 0;
+  // True when its set-points, by the newest one, need a position.
+  virtual bool NeedsPosition() const { return true; }
   // Called when the mode begins.
   virtual void Start(const FlightState& state) = 0;
   // One step of the mode. Returns the command to fly.

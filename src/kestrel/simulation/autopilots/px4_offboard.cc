@@ -29,8 +29,12 @@ constexpr double kReaction_s = 0.3;  // delay of its failsafe after the time-out
 
 }  // namespace
 
-Px4Offboard::Px4Offboard(const AutopilotParameters& parameters, Announce announce)
-    : parameters_(parameters), announce_(std::move(announce)), heading_(kPx4YawGain, kPx4Turn) {}
+Px4Offboard::Px4Offboard(const AutopilotParameters& parameters, double thrust_error,
+                         Announce announce)
+    : parameters_(parameters),
+      thrust_error_(thrust_error),
+      announce_(std::move(announce)),
+      heading_(kPx4YawGain, kPx4Turn) {}
 
 void Px4Offboard::Handle(const mavlink::SetPositionTargetLocalNed& message,
                          const FlightState& state, bool /*is_guided*/) {
@@ -40,12 +44,23 @@ void Px4Offboard::Handle(const mavlink::SetPositionTargetLocalNed& message,
               fmt::format("SET_POSITION_TARGET_LOCAL_NED coordinate frame {} unsupported", frame));
     return;
   }
+  const auto acceleration = AccelerationOrderOf(message);
+  is_acceleration_ = acceleration.has_value();
+  if (acceleration) {
+    wanted_ = *acceleration;
+    turn_rate_.reset();
+    return TakeStream(state);
+  }
   const auto order = FlightOrderOf(message, state);
   if (!order) return;
-  if (!stream_begin_ || SilentFor(state) > kSlowest_s) stream_begin_ = state.time;
-  reported_ = state.time;
   wanted_ = order->set_point;
   turn_rate_ = order->turn_rate;
+  TakeStream(state);
+}
+
+void Px4Offboard::TakeStream(const FlightState& state) {
+  if (!stream_begin_ || SilentFor(state) > kSlowest_s) stream_begin_ = state.time;
+  reported_ = state.time;
 }
 
 double Px4Offboard::SilentFor(const FlightState& state) const {
@@ -83,6 +98,7 @@ Vector3d Px4Offboard::WithinLimits(const Vector3d& velocity) const {
 
 // It flies by the last set-point for as long as the mode lasts.
 FlightCommand Px4Offboard::Fly(const FlightState& state) {
+  if (is_acceleration_) return Accelerate(state);
   FlightCommand command;
   command.is_thrust = true;
   command.set_point.velocity = WithinLimits(WantedVelocity(state));
@@ -93,6 +109,22 @@ FlightCommand Px4Offboard::Fly(const FlightState& state) {
   } else {
     heading_.Reset();
     if (turn_rate_) command.set_point.yaw = HeadingOf(state) + *turn_rate_;
+  }
+  return command;
+}
+
+// Lean and thrust are made of the acceleration, by its own idea of the thrust that hovers.
+FlightCommand Px4Offboard::Accelerate(const FlightState& state) {
+  const Vector3d weight = kGravity * Vector3d::UnitZ();
+  FlightCommand command;
+  command.is_thrust = true;
+  command.set_point.acceleration = (1 + thrust_error_) * (wanted_.acceleration + weight) - weight;
+  command.set_point.velocity = state.velocity();
+  command.set_point.velocity.z() += wanted_.acceleration.z();
+  if (wanted_.yaw) {
+    command.set_point.yaw = heading_.Step(*wanted_.yaw, 0, state);
+  } else {
+    heading_.Reset();
   }
   return command;
 }

@@ -12,13 +12,14 @@
 
 namespace kestrel {
 
-// PX4's OFFBOARD mode with velocities and places, without a transmitter. It needs a stream of
-// set-points before it begins, and its failsafe parameters decide its end. It does not compensate
-// the air's drag: its velocity control has to.
+// PX4's OFFBOARD mode with velocities, places, or accelerations alone, without a transmitter. It
+// needs a stream of set-points before it begins, and its failsafe parameters decide its end. It
+// does not compensate the air's drag: its velocity control has to.
 class Px4Offboard : public GuidedRules {
  public:
-  // The parameters must outlive this.
-  Px4Offboard(const AutopilotParameters& parameters, Announce announce);
+  // The parameters must outlive this. 'thrust_error': part by which its hover thrust is too high,
+  // which accelerations alone do not make up for.
+  Px4Offboard(const AutopilotParameters& parameters, double thrust_error, Announce announce);
 
   void Handle(const mavlink::SetPositionTargetLocalNed& message, const FlightState& state,
               bool is_guided) override;
@@ -26,18 +27,23 @@ class Px4Offboard : public GuidedRules {
   void Handle(const mavlink::SetAttitudeTarget& /*message*/, const FlightState& /*state*/,
               bool /*is_guided*/) override {}
   bool IsAvailable(const FlightState& state) const override;
+  bool NeedsPosition() const override { return !is_acceleration_; }
   void Start(const FlightState& state) override;
   FlightCommand Fly(const FlightState& state) override;
   std::optional<FlightMode> LossAction(const FlightState& state) const override;
 
  private:
+  void TakeStream(const FlightState& state);
+  FlightCommand Accelerate(const FlightState& state);
   double SilentFor(const FlightState& state) const;
   Eigen::Vector3d WantedVelocity(const FlightState& state) const;
   Eigen::Vector3d WithinLimits(const Eigen::Vector3d& velocity) const;
   Eigen::Vector3d ControlVelocity(const FlightState& state, const Eigen::Vector3d& velocity);
 
   const AutopilotParameters& parameters_;
+  double thrust_error_;
   Announce announce_;
+  bool is_acceleration_ = false;  // it flies by an acceleration alone
   SetPoint wanted_;
   std::optional<double> turn_rate_;  // ENU, rad/s
   HeadingControl heading_;

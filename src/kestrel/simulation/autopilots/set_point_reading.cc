@@ -46,6 +46,19 @@ std::optional<AttitudeOrder> AttitudeOrderOf(const mavlink::SetAttitudeTarget& m
   return order;
 }
 
+std::optional<SetPoint> AccelerationOrderOf(const mavlink::SetPositionTargetLocalNed& message) {
+  constexpr int kOthers = mavlink::kIgnorePosition | mavlink::kIgnoreVelocity;
+  if ((message.type_mask & kOthers) != kOthers ||
+      (message.type_mask & mavlink::kIgnoreAcceleration) != 0) {
+    return std::nullopt;
+  }
+  SetPoint order;
+  order.acceleration = EnuFromNed({message.afx, message.afy, message.afz});
+  if ((message.type_mask & mavlink::kIgnoreYaw) == 0) order.yaw = kNorth - message.yaw;
+  if (!order.acceleration.allFinite() || !std::isfinite(order.yaw.value_or(0))) return std::nullopt;
+  return order;
+}
+
 std::optional<FlightOrder> FlightOrderOf(const mavlink::SetPositionTargetLocalNed& message,
                                          const FlightState& state) {
   const bool is_of_body = IsOfBody(message.coordinate_frame);

@@ -24,6 +24,10 @@ struct FlightOrder {
 std::optional<FlightOrder> FlightOrderOf(const mavlink::SetPositionTargetLocalNed& message,
                                          const FlightState& state);
 
+// The acceleration, and the yaw, in a SET_POSITION_TARGET_LOCAL_NED that has neither a velocity nor
+// a place, not of one axis; nothing: it has one, or is not finite.
+std::optional<SetPoint> AccelerationOrderOf(const mavlink::SetPositionTargetLocalNed& message);
+
 // The attitude in a SET_ATTITUDE_TARGET.
 struct AttitudeOrder {
   Eigen::Vector2d acceleration{0, 0};  // by its lean, m/s^2, in the world (ENU)

@@ -20,6 +20,7 @@
 #include "kestrel/core/camera/calibration.h"
 #include "kestrel/flight/onboard/guard_watch.h"
 #include "kestrel/flight/onboard/guided_flight.h"
+#include "kestrel/flight/onboard/no_position_flight.h"
 #include "kestrel/flight/onboard/pad_position.h"
 #include "kestrel/flight/onboard/pointed_gimbal.h"
 #include "kestrel/simulation/autopilots/test_autopilot.h"
@@ -81,6 +82,11 @@ class LinkedFlight : public TestAutopilot {
     if (pad_position_) guided_->set_position_by_pad();
   }
 
+  // Flies over the pad without any position.
+  void FlyWithoutPosition(const RelativeJob& job, const FlightOptions& options) {
+    no_position_.emplace(options, job, &autopilot_, &connection_, Report());
+  }
+
   // Sends the place over the pad, which is then the autopilot's position.
   void SendPadPosition() {
     pad_position_.emplace(GlobalPosition{473977420, 85455940, 0}, &autopilot_, &connection_,
@@ -102,6 +108,7 @@ class LinkedFlight : public TestAutopilot {
     See();
     if (pad_position_) pad_position_->Send(now, track_);
     if (guided_) guided_->Fly(now, track_, poses_);
+    if (no_position_) no_position_->Fly(now, track_);
     if (pointed_) pointed_->Point(now, track_, poses_);
   }
 
@@ -119,6 +126,7 @@ class LinkedFlight : public TestAutopilot {
   std::optional<PointedGimbal> pointed_;
   std::optional<GuidedFlight> guided_;
   std::optional<PadPosition> pad_position_;
+  std::optional<NoPositionFlight> no_position_;
 
  private:
   static AutopilotOptions LinkOptions(bool has_gimbal) {
@@ -126,6 +134,7 @@ class LinkedFlight : public TestAutopilot {
     AutopilotOptions options;
     options.mode_rate_hz = kMode_hz;
     options.wants_acceleration = true;
+    options.wants_sticks = true;
     options.points_gimbal = has_gimbal;
     if (has_gimbal) options.gimbal_device_id = 0;
     return options;
@@ -134,6 +143,7 @@ class LinkedFlight : public TestAutopilot {
     AutopilotListener listener;
     listener.attitude = [this](const PoseSample& attitude) {
       if (pad_position_) pad_position_->TakeAttitude(attitude);
+      if (no_position_) no_position_->TakeAttitude(attitude);
     };
     listener.acceleration = [this](Time time, const Eigen::Vector3d& acceleration) {
       if (pad_position_) pad_position_->TakeAcceleration(time, acceleration);
@@ -154,9 +164,11 @@ class LinkedFlight : public TestAutopilot {
   }
 
   void Guard() {
-    if (!guided_) return;
+    if (!guided_ && !no_position_) return;
     if (is_alive_) {
-      life_ = LifeOf(TaskOfGuard(*guided_, autopilot_, now), autopilot_, connection_);
+      const GuardTask task = no_position_ ? TaskOfGuard(*no_position_, autopilot_)
+                                          : TaskOfGuard(*guided_, autopilot_, now);
+      life_ = LifeOf(task, autopilot_, connection_);
       guard_.TakeLife(life_.task, life_.kind, now);
     }
     const GuardAction action = guard_.Update(now);

@@ -107,6 +107,7 @@ class PointedFlight : public LinkedFlight {
     std::vector<TestEye> cameras = std::vector<TestEye>(1);
     bool guides = false;
     bool sends_pad_position = false;
+    std::optional<RelativeJob> without_position = {};
     std::uint64_t seed = 1;
   };
 
@@ -122,6 +123,7 @@ class PointedFlight : public LinkedFlight {
     const PadInSight pad{1.2, kTestSightRange_m, TargetTrackerOptions()};
     if (choice.has_gimbal) Point(pad, pad.tracker);
     if (choice.sends_pad_position) SendPadPosition();
+    if (choice.without_position) FlyWithoutPosition(*choice.without_position, FlightOptions());
     if (!choice.guides) return;
     Guide(FlightOptions(), pad.tracker, [](const GuidanceOptions& guidance) {
       return std::make_unique<LandingGuidance>(guidance);
@@ -169,6 +171,8 @@ class PointedFlight : public LinkedFlight {
   void Change(std::size_t camera, const TestEye& eye) { eyes_[camera].own = eye; }
 
   bool is_blind = false;  // no image shows the pad any more
+  // The pad is another one, so far away; m.
+  Eigen::Vector3d pad_offset{0, 0, 0};
 
   void ResumePointing() { pointed_->Resume(); }
 
@@ -254,8 +258,9 @@ class PointedFlight : public LinkedFlight {
     eye->capture_due = now + kPeriod;
     const bool is_wrong = eye->is_wrong(Height());
     if (is_wrong && eye->own.is_stopped) return;
-    const RigidTransform camera_from_target =
-        WorldFromCamera(*eye).Inverse() * world.PatternAt(now);
+    RigidTransform pad = world.PatternAt(now);
+    pad.translation += pad_offset;
+    const RigidTransform camera_from_target = WorldFromCamera(*eye).Inverse() * pad;
     const double distance_m = camera_from_target.translation.norm();
     const double late_s = is_wrong ? eye->own.late_s : 0;
     Image image{now + DurationFromSeconds(late_s), std::nullopt};

@@ -47,8 +47,7 @@ Eigen::Quaterniond GimbalBias::Add(const Sight& sight) {
       sight.world_from_camera.toRotationMatrix() * CrossMatrix(sight.center_in_camera);
   const Eigen::Matrix<double, 6, 3> shared = covariance_ * by_state.transpose();
   const Eigen::Matrix3d innovation = by_state * shared + sight.covariance;
-  const Eigen::Matrix<double, 6, 3> gain =
-      innovation.llt().solve(shared.transpose()).transpose();
+  const Eigen::Matrix<double, 6, 3> gain = innovation.llt().solve(shared.transpose()).transpose();
   const State change = gain * (sight.center_in_world - place_);
   if (!change.allFinite()) return Eigen::Quaterniond::Identity();
   covariance_ -= gain * shared.transpose();
@@ -66,8 +65,7 @@ void GimbalBias::Begin(const Sight& sight) {
   const Eigen::Matrix3d angles = covariance_.bottomRightCorner<3, 3>();
   covariance_.topRightCorner<3, 3>() = by_angles * angles;
   covariance_.bottomLeftCorner<3, 3>() = angles * by_angles.transpose();
-  covariance_.topLeftCorner<3, 3>() =
-      by_angles * angles * by_angles.transpose() + sight.covariance;
+  covariance_.topLeftCorner<3, 3>() = by_angles * angles * by_angles.transpose() + sight.covariance;
 }
 
 bool GimbalBias::IsTurning(const Sight& sight) const {

@@ -46,8 +46,8 @@ class GimbalBias {
   std::optional<Sight> newest_;
   Eigen::Vector3d place_ = Eigen::Vector3d::Zero();
   Eigen::Matrix<double, 6, 6> covariance_ =
-      Eigen::Vector<double, 6>(0, 0, 0, 1, 1, 1).asDiagonal() * Eigen::Matrix<double, 6, 6>::Identity() *
-      (kPrior_rad * kPrior_rad);
+      Eigen::Vector<double, 6>(0, 0, 0, 1, 1, 1).asDiagonal() *
+      Eigen::Matrix<double, 6, 6>::Identity() * (kPrior_rad * kPrior_rad);
 };
 
 }  // namespace kestrel

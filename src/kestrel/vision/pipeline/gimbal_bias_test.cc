@@ -38,7 +38,8 @@ Quaterniond LookFrom(const Vector3d& position) {
   return Quaterniond(axes);
 }
 
-// From 12 m beside the pad to 3 m, a quarter around it, by a gimbal that is a degree off in each axis.
+// From 12 m beside the pad to 3 m, a quarter around it, by a gimbal that is a degree off in each
+// axis.
 Outcome Fly(std::uint64_t seed) {
   Random random(seed);
   const Vector3d angles = Normal(Radians(0.6), &random);
@@ -48,7 +49,8 @@ Outcome Fly(std::uint64_t seed) {
   Outcome outcome{};
   for (double t = 0; t < kSeconds; t += 0.1) {
     const double share = t / kSeconds, turn = std::numbers::pi / 2 * share;
-    const Vector3d position = (12 - 9 * share) * Vector3d(0.6 * std::cos(turn), 0.6 * std::sin(turn), 0.8);
+    const Vector3d position =
+        (12 - 9 * share) * Vector3d(0.6 * std::cos(turn), 0.6 * std::sin(turn), 0.8);
     const Quaterniond truth = LookFrom(position);
     const Vector3d center = truth.conjugate() * -position;
     const Vector3d seen = center + Normal(kNoise_m, &random);
@@ -86,8 +88,12 @@ TEST(GimbalBiasTest, LearnsNothingWhileGimbalTurns) {
   GimbalBias bias;
   for (int i = 0; i < 50; ++i) {
     const Quaterniond turned(AngleAxisd(0.05 * i, Vector3d::UnitZ()));
-    const Quaterniond turn = bias.Add({Time(DurationFromSeconds(1 + 0.2 * i)), {0, 0, 5}, turned,
-                                       Vector3d(0.1 * i, 0, 0), 1e-4 * Eigen::Matrix3d::Identity(), 0});
+    const Quaterniond turn = bias.Add({Time(DurationFromSeconds(1 + 0.2 * i)),
+                                       {0, 0, 5},
+                                       turned,
+                                       Vector3d(0.1 * i, 0, 0),
+                                       1e-4 * Eigen::Matrix3d::Identity(),
+                                       0});
     EXPECT_TRUE(turn.isApprox(Quaterniond::Identity()));
   }
 }

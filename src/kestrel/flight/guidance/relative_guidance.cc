@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/guidance/relative_guidance.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kestrel/core/base/options.h"
+#include "kestrel/core/geometry/angles.h"
+#include "kestrel/core/poses/gravity.h"
+
+namespace kestrel {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using State = RelativePadState;
+
+constexpr double kOldestMode_s = 3.5;      // after so long without a report the mode is not known
+constexpr double kAttitudeDelay_s = 0.15;  // from a commanded lean to the lean
+constexpr double kFastest_mps = 0.8;       // towards the pad
+constexpr double kJerk = 8;                // m/s^3, of the commanded acceleration
+constexpr double kStepLimit_s = 0.2;
+constexpr double kStill_mps = 0.25;
+constexpr double kKnown_mps = 0.45;  // standard deviation of a velocity that is followed
+// Height control, 1/s each.
+constexpr double kHeightGain = 1.2, kClimbGain = 2.5;
+constexpr double kClimb_mps = 1, kWiden_mps = 0.5;
+// Ages of the pad in the ladder of losses, and the way that it may take.
+constexpr double kLost_s = 0.3, kWiden_s = 1.5, kFirstEnd_s = 3, kLastEnd_s = 5;
+constexpr double kLargestDrift_m = 1.5;  // two standard deviations
+// The descent without the pad, and where the autopilot's own landing takes over.
+constexpr double kBlindSink_mps = 0.6, kLandBelow_m = 0.5;
+// The last bit of a landing.
+constexpr double kContact_m = 0.05, kCommitUnseen_s = 1, kLongestCommit_s = 3;
+constexpr double kPilotPatience_s = 1.5;  // until LAND is requested instead of his mode
+
+Vector2d Limited(const Vector2d& vector, double most) {
+  const double size = vector.norm();
+  return size > most ? Vector2d(most / size * vector) : vector;
+}
+
+// The way of the feet, level, m: the UAV leans against the wind, and its feet are not below it.
+Vector2d WayOfFeet(const RelativePadState::Estimate& pad, double leg_m) {
+  return pad.way().head<2>() - leg_m / kGravity * pad.bias().head<2>();
+}
+
+}  // namespace
+
+RelativeGuidance::RelativeGuidance(const GuidanceOptions& options, const RelativeJob& job,
+                                   bool streams)
+    : options_(Checked(options)),
+      job_(job),
+      streams_(streams),
+      may_stream_(streams),
+      reason_("waits for the pilot to give the mode") {}
+
+// A double integrator with this delay stays well damped at any height: the way is in metres.
+RelativeGuidance::Gains RelativeGuidance::GainsFor(double delay_s) {
+  constexpr double kMost = 2.2, kDamping = 0.9;
+  const double velocity = std::min(kMost, 0.4 / delay_s);
+  const double half = velocity / (2 * kDamping);
+  return {half * half, velocity};
+}
+
+RelativeOutput RelativeGuidance::Update(const RelativeInput& input) {
+  const bool has_link = input.is_link_up && input.mode_age_s <= kOldestMode_s;
+  RelativeOutput output;
+  if (has_link) {
+    FollowMode(input);
+    if (is_active_ && !input.pad) GiveUp(input, "the attitude was not sent: lands where it is");
+    if (is_active_) ChoosePhase(input);
+    if (is_active_) {
+      output.set_point = Fly(input);
+      if (phase_ == GuidancePhase::kLanded) output.request = GuidanceRequest::kLand;
+    } else if (has_given_up_) {
+      output.request = RequestEnd(input);
+    } else if (may_stream_) {
+      output.set_point = RelativeSetPoint{};
+    }
+  }
+  sent_.reset();
+  if (output.set_point && is_active_) sent_ = output.set_point->acceleration.head<2>();
+  last_ = input.now;
+  output.phase = phase_;
+  output.reason = reason_;
+  return output;
+}
+
+void RelativeGuidance::FollowMode(const RelativeInput& input) {
+  const bool was_guided = was_guided_.value_or(input.is_guided);
+  was_guided_ = input.is_guided;
+  if (input.is_guided && !was_guided) Start(input);
+  if (input.is_guided || !was_guided) return;
+  End(phase_ == GuidancePhase::kLanded ? "landed; guidance has ended"
+                                       : "the mode was left: give it anew to begin again");
+  has_given_up_ = false;
+}
+
+void RelativeGuidance::Start(const RelativeInput& input) {
+  may_stream_ = false;
+  if (!input.is_armed || input.is_landed) return End("refused: the UAV is on the ground");
+  const bool is_seen = input.pad && input.pad_age_s < kLost_s;
+  if (!is_seen || input.pad->Sigma(State::kVelocity) > kKnown_mps) {
+    return GiveUp(input, "refused: the pad is not in view, or not for long enough");
+  }
+  is_active_ = true;
+  last_ = input.now;
+  height_m_ = -input.pad->way().z();
+  Enter(GuidancePhase::kApproach, "flies to above the pad", input.now);
+}
+
+void RelativeGuidance::End(const char* reason) {
+  is_active_ = false;
+  if (phase_ != GuidancePhase::kLanded) phase_ = GuidancePhase::kIdle;
+  reason_ = reason;
+}
+
+void RelativeGuidance::GiveUp(const RelativeInput& input, const char* reason) {
+  has_given_up_ = true;
+  gave_up_ = input.now;
+  phase_ = GuidancePhase::kIdle;
+  End(reason);
+}
+
+void RelativeGuidance::Enter(GuidancePhase phase, const char* reason, Time now) {
+  phase_ = phase;
+  reason_ = reason;
+  entered_ = now;
+}
+
+// A mode that the autopilot refuses the pilot is given up for a landing.
+GuidanceRequest RelativeGuidance::RequestEnd(const RelativeInput& input) const {
+  if (!input.is_armed || input.is_landed) return GuidanceRequest::kNone;
+  const bool is_for_pilot = input.has_pilot && ToSeconds(input.now - gave_up_) < kPilotPatience_s;
+  return is_for_pilot ? GuidanceRequest::kAltitude : GuidanceRequest::kLand;
+}
+
+void RelativeGuidance::ChoosePhase(const RelativeInput& input) {
+  if (phase_ == GuidancePhase::kLanded) return;
+  if (!input.is_armed) return End("the motors are off");
+  if (phase_ == GuidancePhase::kCommit) return Commit(input);
+  if (input.is_landed) return Enter(GuidancePhase::kLanded, "the autopilot has landed", input.now);
+  if (phase_ == GuidancePhase::kSearch) return FollowLoss(input);
+  if (input.pad_age_s > kLost_s) return Lose(input);
+  const double feet_m = FeetHeight(input);
+  if (phase_ == GuidancePhase::kApproach && IsAbove(input, Cone(feet_m), kStill_mps)) {
+    return Enter(GuidancePhase::kFollow, job_.lands ? "above the pad" : "hovers above the pad",
+                 input.now);
+  }
+  if (phase_ == GuidancePhase::kFollow && job_.lands) {
+    constexpr double kSettle_s = 1;
+    if (!IsAbove(input, Cone(feet_m), kStill_mps)) entered_ = input.now;
+    if (ToSeconds(input.now - entered_) < kSettle_s) return;
+    return Enter(GuidancePhase::kDescend, "", input.now);
+  }
+  if (phase_ == GuidancePhase::kDescend) Descend(input);
+}
+
+// How long it may fly without the pad follows from how well the velocity and the bias are known.
+void RelativeGuidance::Lose(const RelativeInput& input) {
+  lost_after_s_ = kFirstEnd_s;
+  const RelativePadState::Estimate& pad = *input.pad;
+  while (lost_after_s_ < kLastEnd_s && 2 * pad.DriftSigma(lost_after_s_) < kLargestDrift_m) {
+    lost_after_s_ += 0.25;
+  }
+  sunk_m_ = 0;
+  height_m_ = -pad.way().z();
+  Enter(GuidancePhase::kSearch, "the pad is lost: level, against the wind as it was", input.now);
+}
+
+void RelativeGuidance::FollowLoss(const RelativeInput& input) {
+  constexpr double kFound_s = 0.15;
+  const double age_s = input.pad_age_s;
+  if (age_s < kFound_s && input.pad->Sigma(State::kVelocity) < kKnown_mps) {
+    height_m_ = -input.pad->way().z();
+    return Enter(GuidancePhase::kApproach, "the pad is back", input.now);
+  }
+  if (age_s <= kWiden_s) return;
+  if (age_s > lost_after_s_) return EndLoss(input);
+  reason_ = job_.has_ceiling ? "the pad is lost: holds its height, below a ceiling"
+                             : "the pad is lost: climbs to widen the view";
+}
+
+// LAND is level, and drifts with the wind: the UAV sinks against what it knows of the wind, where
+// the autopilot controls the climb rate.
+void RelativeGuidance::EndLoss(const RelativeInput& input) {
+  if (input.has_pilot) return GiveUp(input, "the pad is lost: fly by hand, or it lands");
+  const bool is_low = height_m_ - sunk_m_ - options_.leg_m < kLandBelow_m;
+  if (is_low || streams_) {
+    return GiveUp(input, "the pad is lost: lands where it is");
+  }
+  reason_ = "the pad is lost: sinks, against the wind as it was";
+}
+
+void RelativeGuidance::Descend(const RelativeInput& input) {
+  const double feet_m = FeetHeight(input);
+  const bool is_low = feet_m < options_.commit_height_m;
+  if (is_low && input.pad_age_s < kLost_s / 2 && IsAbove(input, options_.cone_m, kStill_mps)) {
+    Enter(GuidancePhase::kCommit, "", input.now);
+  }
+}
+
+// The camera is too near to see the pad.
+void RelativeGuidance::Commit(const RelativeInput& input) {
+  const bool is_down = input.is_landed || FeetHeight(input) < kContact_m;
+  const bool is_long = ToSeconds(input.now - entered_) > kLongestCommit_s;
+  if (!is_down && !is_long && input.pad_age_s < kCommitUnseen_s) return;
+  Enter(GuidancePhase::kLanded, "on the pad: LAND", input.now);
+}
+
+double RelativeGuidance::FeetHeight(const RelativeInput& input) const {
+  return -input.pad->way().z() - options_.leg_m;
+}
+
+double RelativeGuidance::Cone(double feet_m) const {
+  return options_.cone_m + GuidanceOptions::kConeSlope * std::max(feet_m, 0.0);
+}
+
+bool RelativeGuidance::IsAbove(const RelativeInput& input, double radius_m,
+                               double speed_mps) const {
+  const double sigma_mps = input.pad->Sigma(State::kVelocity);
+  return WayOfFeet(*input.pad, options_.leg_m).norm() < radius_m &&
+         input.pad->velocity().head<2>().norm() < speed_mps + sigma_mps && sigma_mps < kKnown_mps;
+}
+
+// m/s, against the pad.
+double RelativeGuidance::WantedClimb(const RelativeInput& input) const {
+  constexpr double kSinkGain = 0.4, kFastest = 0.8, kSlowest = 0.25;
+  const double feet_m = FeetHeight(input);
+  switch (phase_) {
+    case GuidancePhase::kSearch:
+      if (input.pad_age_s > lost_after_s_) return -kBlindSink_mps;
+      return input.pad_age_s > kWiden_s && !job_.has_ceiling ? kWiden_mps : 0;
+    case GuidancePhase::kDescend: {
+      const double least_m = options_.commit_height_m - 0.1;
+      if (feet_m < least_m) return kHeightGain * (least_m - feet_m);
+      if (!IsAbove(input, Cone(feet_m), 1)) return 0;
+      return -std::clamp(kSinkGain * feet_m, kSlowest, kFastest);
+    }
+    case GuidancePhase::kCommit:
+    case GuidancePhase::kLanded:
+      return -options_.touchdown_sink_mps;
+    default:
+      return std::clamp(kHeightGain * (height_m_ + input.pad->way().z()), -kClimb_mps, kClimb_mps);
+  }
+}
+
+RelativeSetPoint RelativeGuidance::Fly(const RelativeInput& input) {
+  const double step_s = std::clamp(ToSeconds(input.now - last_), 0.0, kStepLimit_s);
+  RelativeSetPoint command;
+  Vector2d wanted = phase_ == GuidancePhase::kLanded ? Vector2d(0, 0) : WantedAcceleration(input);
+  const Vector2d before = sent_.value_or(Vector2d(-input.pad->bias().head<2>()));
+  wanted = before + Limited(wanted - before, kJerk * step_s);
+  command.climb_mps = WantedClimb(input);
+  if (phase_ == GuidancePhase::kSearch) sunk_m_ -= step_s * command.climb_mps;
+  const Vector3d velocity = input.pad->velocity();
+  command.acceleration << wanted,
+      kClimbGain * (command.climb_mps + velocity.z()) - input.pad->bias().z();
+  return command;
+}
+
+Vector2d RelativeGuidance::WantedAcceleration(const RelativeInput& input) const {
+  constexpr double kTilt = Radians(20);
+  const double most = kGravity * std::tan(std::min(kTilt, Radians(options_.limits.max_tilt_deg)));
+  const RelativePadState::Estimate& pad = *input.pad;
+  const Vector2d against_bias = Limited(-pad.bias().head<2>(), most);
+  const bool is_followed = phase_ != GuidancePhase::kSearch &&
+                           (input.pad_age_s < kLost_s || phase_ == GuidancePhase::kCommit) &&
+                           pad.Sigma(State::kVelocity) < kKnown_mps;
+  if (!is_followed) return against_bias;
+  const Gains gains = GainsFor(kAttitudeDelay_s + input.link_delay_s);
+  const Vector2d way = job_.lands ? WayOfFeet(pad, options_.leg_m) : Vector2d(pad.way().head<2>());
+  const Vector2d closing = Limited(gains.position / gains.velocity * way, kFastest_mps);
+  const Vector2d following =
+      gains.velocity * (pad.velocity().head<2>() + closing) + pad.pad_acceleration().head<2>();
+  return Limited(following + against_bias, most);
+}
+
+}  // namespace kestrel

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/onboard/no_position_flight.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kestrel/comms/mavlink/mavlink_enums.h"
+#include "kestrel/comms/mavlink/set_point_message.h"
+#include "kestrel/core/base/error.h"
+#include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/flight/onboard/guidance_permission.h"
+#include "kestrel/flight/onboard/target_sender.h"
+
+namespace kestrel {
+namespace {
+
+constexpr double kAttitudeAge_s = 0.5;  // after so long without one the link is away
+constexpr Duration kCheckPeriod = std::chrono::milliseconds(500);
+constexpr Duration kRepeatPeriod = std::chrono::milliseconds(300);
+constexpr std::string_view kArduPilotOptions = "GUID_OPTIONS";
+constexpr unsigned kTakesThrust = 8;  // of GUID_OPTIONS: thrust is no climb rate
+// ArduCopter's WP_SPD_UP and WP_SPD_DN as they come.
+constexpr double kClimb_mps = 2.5, kSink_mps = 1.5;
+
+}  // namespace
+
+NoPositionFlight::NoPositionFlight(const FlightOptions& options, const RelativeJob& job,
+                                   Autopilot* autopilot, Connection* connection,
+                                   std::function<void(const std::string&)> report)
+    : options_(options),
+      job_(job),
+      autopilot_(*autopilot),
+      connection_(connection),
+      report_(std::move(report)),
+      pad_(job.pad_moves),
+      guidance_(std::in_place, options.guidance, job, /*streams=*/false),
+      schedule_(options.rate_hz) {
+  if (options.guidance.touchdown_heading != "any") {
+    throw InputError(
+        "guidance.touchdown_heading: without a position the heading stays, expected any");
+  }
+}
+
+void NoPositionFlight::TakeAttitude(const PoseSample& attitude) {
+  const Eigen::Vector3d rate =
+      attitude.motion ? attitude.motion->rate_in_body : Eigen::Vector3d(0, 0, 0);
+  const Eigen::Quaterniond& rotation = attitude.world_from_body.rotation;
+  pad_.AddAttitude(attitude.time, rotation, rate);
+  attitude_time_ = attitude.time;
+  heading_ = HeadingOf(rotation);
+  turn_rate_ = (rotation * rate).z();
+}
+
+bool NoPositionFlight::Fly(Time now, const TrackSnapshot& track) {
+  const bool is_news = track.sight && track.sight->time != reported_frame_;
+  if (is_news) {
+    reported_frame_ = track.sight->time;
+    pad_.AddSight(track.sight->time, track.sight->target_from_body.Inverse().translation,
+                  track.sight->covariance);
+  }
+  if (!schedule_.IsDue(now, is_news)) return false;
+  KnowAutopilot(now);
+  if (kind_ == AutopilotKind::kUnknown) return false;
+  RelativeInput input = Input(now);
+  WatchMode(now, input.pad.has_value());
+  input.is_guided = is_begun_;
+  const RelativeOutput output = guidance_->Update(input);
+  ReportPhase(output);
+  Request(output.request, now);
+  if (!output.set_point || !(is_begun_ || refusal_.empty())) return false;
+  if (!Send(*output.set_point, now)) return false;
+  ++set_points_;
+  return is_news && is_begun_;
+}
+
+void NoPositionFlight::KnowAutopilot(Time now) {
+  if (!autopilot_.is_here() || autopilot_.kind() == kind_) return;
+  kind_ = autopilot_.kind();
+  WantGuidanceParameters(&autopilot_);
+  const bool is_px4 = kind_ == AutopilotKind::kPx4;
+  if (!is_px4) autopilot_.parameters().Want(kArduPilotOptions);
+  guidance_.emplace(options_.guidance, job_, /*streams=*/is_px4);
+  permission_due_ = now;
+  was_mode_ = IsMode();
+}
+
+bool NoPositionFlight::IsMode() const {
+  return IsGuidedByLeanMode(autopilot_.kind(), autopilot_.custom_mode());
+}
+
+// Begins when the pilot has given the mode and the UAV is in the air, unless there is a refusal;
+// the pilot must then give the mode anew.
+void NoPositionFlight::WatchMode(Time now, bool is_seen) {
+  const bool is_armed = autopilot_.is_armed();
+  if (was_armed_ && !is_armed) guidance_->Rearm();
+  was_armed_ = is_armed;
+  if (!autopilot_.is_here()) return;
+  const bool is_mode = IsMode();
+  if (is_mode && !was_mode_) is_given_ = true;
+  if (!is_mode) is_given_ = is_begun_ = false;
+  was_mode_ = is_mode;
+  if (!is_begun_ && now >= permission_due_) {
+    permission_due_ = now + kCheckPeriod;
+    refusal_ = WhyNot(now);
+  }
+  const bool is_other = autopilot_.is_guided_mode() && !is_mode;
+  if (is_other && !std::exchange(was_refused_mode_, is_other)) {
+    Notify(mavlink::kSeverityWarning, "GUIDED needs a position: give GUIDED_NOGPS");
+  }
+  was_refused_mode_ = is_other;
+  if (!is_given_ || is_begun_ || !is_armed || !IsInFlight(autopilot_.landed_state())) return;
+  is_given_ = false;
+  refusal_ = WhyNot(now);
+  if (!refusal_.empty()) {
+    return Notify(mavlink::kSeverityWarning, "guidance refused: " + refusal_);
+  }
+  is_begun_ = true;
+  yaw_ = heading_;
+  // The autopilot's own height control flew so far, and its thrust was not commanded.
+  if (kind_ == AutopilotKind::kPx4 && is_seen) pad_.ForgetThrust();
+}
+
+std::string NoPositionFlight::WhyNot(Time now) const {
+  if (kind_ != AutopilotKind::kArduPilot && kind_ != AutopilotKind::kPx4) {
+    return "the autopilot is neither ArduPilot nor PX4";
+  }
+  if (!autopilot_.is_multicopter()) {
+    return fmt::format("the vehicle is {}, expected a multicopter",
+                       VehicleName(autopilot_.vehicle_type()));
+  }
+  if (autopilot_.is_in_failsafe()) return FailsafeInWords(kind_, autopilot_.custom_mode());
+  if (!autopilot_.parameters().is_done()) return "the autopilot's parameters are not read yet";
+  const auto flags = autopilot_.parameters().Find(kArduPilotOptions);
+  if (flags && (static_cast<unsigned>(*flags) & kTakesThrust) != 0) {
+    return "GUID_OPTIONS has bit 3: expected thrust as a climb rate";
+  }
+  if (const std::string unsafe = UnsafeLoss(autopilot_, /*is_position_by_pad=*/true);
+      !unsafe.empty() && !options_.guidance.accept_unsafe_loss) {
+    return unsafe;
+  }
+  if (ToSeconds(now - attitude_time_) > kAttitudeAge_s) return "no attitude is sent";
+  return "";
+}
+
+RelativeInput NoPositionFlight::Input(Time now) {
+  const Duration link_delay = LinkDelay(options_, autopilot_);
+  RelativeInput input;
+  input.now = now;
+  input.pad = pad_.At(now + link_delay);
+  if (pad_.sighted()) input.pad_age_s = ToSeconds(now - *pad_.sighted());
+  input.is_armed = autopilot_.is_armed();
+  input.is_landed = autopilot_.landed_state() == LandedState::kOnGround;
+  input.is_link_up = ToSeconds(now - attitude_time_) < kAttitudeAge_s;
+  input.has_pilot = autopilot_.status().HasPilot(now);
+  input.mode_age_s = ToSeconds(now - autopilot_.mode_reported());
+  input.link_delay_s = ToSeconds(link_delay);
+  return input;
+}
+
+bool NoPositionFlight::Send(const RelativeSetPoint& set_point, Time now) {
+  const double ahead_s = std::clamp(ToSeconds(now - attitude_time_), 0.0, kAttitudeAge_s);
+  const Eigen::AngleAxisd world_from_level(heading_ + ahead_s * turn_rate_,
+                                           Eigen::Vector3d::UnitZ());
+  LeanSetPoint sent;
+  sent.acceleration = world_from_level * set_point.acceleration;
+  sent.climb_mps = set_point.climb_mps;
+  sent.yaw = is_begun_ ? yaw_ : heading_;
+  const AutopilotLimits limits = LimitsOf(autopilot_);
+  const bool is_commanded = is_begun_ && kind_ == AutopilotKind::kPx4;
+  pad_.set_climb_acceleration(is_commanded ? set_point.acceleration.z() : 0);
+  return SendSetPoint(sent, limits.max_climb_mps.value_or(kClimb_mps),
+                      limits.max_sink_mps.value_or(kSink_mps), autopilot_, now, connection_);
+}
+
+void NoPositionFlight::Request(GuidanceRequest request, Time now) {
+  if (request == GuidanceRequest::kNone || now < request_due_) return;
+  request_due_ = now + kRepeatPeriod;
+  autopilot_.RequestMode(request == GuidanceRequest::kAltitude ? FlightMode::kAltitude
+                                                               : FlightMode::kLand);
+}
+
+void NoPositionFlight::ReportPhase(const RelativeOutput& output) {
+  if (output.phase == reported_phase_ && output.reason == reported_reason_) return;
+  reported_phase_ = output.phase;
+  reported_reason_ = output.reason;
+  Notify(mavlink::kSeverityInfo,
+         fmt::format("{}{}{}", ToString(output.phase), reported_reason_.empty() ? "" : ": ",
+                     reported_reason_));
+}
+
+void NoPositionFlight::Notify(std::uint8_t severity, const std::string& text) {
+  report_(text);
+  autopilot_.Announce(severity, "Kestrel: " + text);
+}
+
+}  // namespace kestrel

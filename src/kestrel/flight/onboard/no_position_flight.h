@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "kestrel/comms/mavlink/autopilot.h"
+#include "kestrel/comms/mavlink/connection.h"
+#include "kestrel/core/base/time.h"
+#include "kestrel/core/poses/pose_history.h"
+#include "kestrel/flight/guidance/relative_guidance.h"
+#include "kestrel/flight/guidance/relative_pad_state.h"
+#include "kestrel/flight/onboard/flight_options.h"
+#include "kestrel/flight/onboard/send_schedule.h"
+#include "kestrel/flight/session/track_snapshot.h"
+
+namespace kestrel {
+
+// Flies the UAV over a pad and onto it while the autopilot has no position, when the pilot gives it
+// GUIDED_NOGPS (ArduCopter) or OFFBOARD (PX4): by lean and climb, from where frames show the pad
+// and from the autopilot's attitude. Used by the link's thread only.
+class NoPositionFlight {
+ public:
+  // 'report': receives lines for the user. Throws InputError when the options are not valid.
+  NoPositionFlight(const FlightOptions& options, const RelativeJob& job, Autopilot* autopilot,
+                   Connection* connection, std::function<void(const std::string&)> report);
+
+  // Takes the autopilot's attitude and turn, on the local clock.
+  void TakeAttitude(const PoseSample& attitude);
+  // Sends what is due at 'now'; true when it was the first set-point of a new frame.
+  bool Fly(Time now, const TrackSnapshot& track);
+
+  GuidancePhase phase() const { return guidance_->phase(); }
+  bool is_at_deck() const {
+    return phase() == GuidancePhase::kLanded || phase() == GuidancePhase::kCommit;
+  }
+  bool is_flying() const { return guidance_->is_active() && !is_at_deck(); }
+  int set_points() const { return set_points_; }  // sent
+  // Why guidance gave up; empty: it flies, the pilot has taken over since, or it has not begun.
+  std::string gave_up() const { return guidance_->has_given_up() ? reported_reason_ : ""; }
+  // The pad by the estimate; nothing: it was not seen yet.
+  const RelativePadState& pad() const { return pad_; }
+
+ private:
+  void KnowAutopilot(Time now);
+  void WatchMode(Time now, bool is_seen);
+  bool IsMode() const;
+  std::string WhyNot(Time now) const;
+  RelativeInput Input(Time now);
+  bool Send(const RelativeSetPoint& set_point, Time now);
+  void Request(GuidanceRequest request, Time now);
+  void ReportPhase(const RelativeOutput& output);
+  void Notify(std::uint8_t severity, const std::string& text);
+
+  FlightOptions options_;
+  RelativeJob job_;
+  Autopilot& autopilot_;
+  Connection* connection_;
+  std::function<void(const std::string&)> report_;
+  RelativePadState pad_;
+  std::optional<RelativeGuidance> guidance_;
+  AutopilotKind kind_ = AutopilotKind::kUnknown;
+  SendSchedule schedule_;
+
+  Time attitude_time_{};
+  double heading_ = 0;    // by the autopilot, rad from east to north
+  double turn_rate_ = 0;  // rad/s
+  double yaw_ = 0;        // where the nose is to point
+  Time reported_frame_{};
+  bool was_mode_ = false;
+  bool is_given_ = false;  // the pilot has given the mode, and guidance has not begun yet
+  bool is_begun_ = false;
+  bool was_armed_ = false;
+  bool was_refused_mode_ = false;  // the one that needs a position
+  Time permission_due_{};
+  std::string refusal_ = "the autopilot is not known yet";
+  Time request_due_{};
+  GuidancePhase reported_phase_ = GuidancePhase::kIdle;
+  std::string reported_reason_;
+  int set_points_ = 0;
+};
+
+}  // namespace kestrel
