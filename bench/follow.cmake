@@ -1,6 +1,6 @@
 # Flights beside what a person has marked, and down on an object of a map.
 foreach(report follow_flight_accuracy go_accuracy)
   add_executable(${report} ${report}.cc)
-  target_link_libraries(${report} PRIVATE kestrel::autopilots kestrel::guidance kestrel::pipeline
+  target_link_libraries(${report} PRIVATE kestrel::autopilots kestrel::guidance kestrel::pipeline kestrel::team
                                           kestrel::tracking CLI11::CLI11 fmt::fmt)
 endforeach()
