@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Flies simulated autopilots to discs of 0.2 m over MAVLink, in simulated time, and prints how near
 // to their middle the gripper closes. Usage: go_accuracy [--flights N] [--first-seed N]
-// [--case TEXT] [--rendered] [--log]
+// [--case TEXT] [--rendered] [--log], or with --team N: N UAVs deliver the discs of the contest's
+// field to its box.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -12,7 +13,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "kestrel/simulation/autopilots/test_go_flight.h"
+#include "kestrel/simulation/autopilots/test_team_flight.h"
 #include "report_main.h"
 
 namespace kestrel {
@@ -24,6 +25,8 @@ struct Arguments {
   std::string only;
   bool is_rendered = false;
   bool logs = false;
+  int team = 0;  // UAVs; 0: flights of one, to one disc
+  double longest_s = 1200;
 };
 
 struct Case {
@@ -132,6 +135,71 @@ void Run(const Arguments& arguments) {
   }
 }
 
+// The contest's field: ten discs that stand, ten that move, and a box beside them.
+const Eigen::Vector2d kBox(0, -16);  // m, world
+constexpr double kBoxRadius_m = 0.7;
+constexpr int kDiscs = 10;
+
+GoFlightSetup DeliveryOf(const char* class_name, AutopilotFirmware firmware, std::uint64_t seed,
+                         int uav, int uavs) {
+  constexpr double kSpacing_m = 11, kRadius_m = 16;
+  GoFlightSetup setup{
+      .firmware = firmware,
+      .model = ModelOf(kCases[0]),
+      .field = {"ground.map_px=256", "field.length_m=30", "field.width_m=20",
+                "field.objects.red=10", "field.objects.green=0", "field.objects.blue=0",
+                "field.objects.yellow=10", "field.objects.yellow_speed_mps=0.9"},
+      .class_name = class_name,
+      .box = kBox,
+      .flight = FlightOf(),
+      .seed = seed};
+  setup.model.pilot.offset_east_m = kSpacing_m * (uav - 0.5 * (uavs - 1));
+  setup.model.pilot.offset_north_m = 0;
+  setup.flight.guidance.search_radius_m = kRadius_m;
+  return setup;
+}
+
+void FlyTeam(const char* class_name, AutopilotFirmware firmware, const Arguments& arguments) {
+  constexpr double kLook_s = 1;
+  for (int i = 0; i < arguments.flights; ++i) {
+    const std::uint64_t seed = arguments.first_seed + static_cast<std::uint64_t>(i);
+    std::vector<GoFlightSetup> setups;
+    for (int uav = 0; uav < arguments.team; ++uav) {
+      setups.push_back(DeliveryOf(class_name, firmware, seed, uav, arguments.team));
+    }
+    TeamGoFlights flights(setups);
+    flights.radio().loss = 0.1;
+    const auto count = [&] { return flights.CountDelivered(kBox, kBoxRadius_m); };
+    while (flights.seconds() < arguments.longest_s && count() < kDiscs) flights.Fly(kLook_s);
+    int grabs = 0;
+    for (const auto& uav : flights.uavs) {
+      grabs += uav->model.result().grabs;
+      if (arguments.logs) {
+        fmt::print(stderr, "seed {}, a UAV:\n{}{}", seed, uav->reported,
+                   InWords(uav->model.result()));
+      }
+    }
+    fmt::print("| {} | {} | {} | {} | {} | {} of {} | {} | {:.1f} | {:.0f} |\n", class_name,
+               firmware == AutopilotFirmware::kPx4 ? "sim:px4" : "sim:ardupilot", arguments.team,
+               seed, flights.CountTaken(), count(), kDiscs, grabs, flights.nearest_m,
+               flights.seconds());
+    std::fflush(stdout);
+  }
+}
+
+void RunTeam(const Arguments& arguments) {
+  fmt::print(
+      "| discs | autopilot | UAVs | seed | taken | delivered | grabs | nearest approach, m | time, "
+      "s "
+      "|\n|---|---|---|---|---|---|---|---|---|\n");
+  for (const char* class_name : {"red", "yellow"}) {
+    if (std::string(class_name).find(arguments.only) == std::string::npos) continue;
+    for (const auto firmware : {AutopilotFirmware::kArduPilot, AutopilotFirmware::kPx4}) {
+      FlyTeam(class_name, firmware, arguments);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace kestrel
 
@@ -144,9 +212,14 @@ int main(int argc, char** argv) {
   app.add_option("--case", arguments.only, "Only the cases with this text in their name");
   app.add_flag("--rendered", arguments.is_rendered, "With rendered images, which takes minutes");
   app.add_flag("--log", arguments.logs, "Print what each flight reports");
+  app.add_option("--team", arguments.team,
+                 "So many UAVs deliver the discs of the contest's field; --case red: those that "
+                 "stand, yellow: those that move")
+      ->check(CLI::Range(1, 8));
+  app.add_option("--longest", arguments.longest_s, "Time after which a team stops, s (1200)");
   CLI11_PARSE(app, argc, argv);
   return kestrel::ReportMain([&] {
-    kestrel::Run(arguments);
+    arguments.team > 0 ? kestrel::RunTeam(arguments) : kestrel::Run(arguments);
     return 0;
   });
 }

@@ -147,13 +147,18 @@ void FlyArguments::AddTo(CLI::App* command) {
                    "height in m and the time in s, as hover,3,20 (hover)")
       ->type_name("JOB")
       ->needs(go_flag);
+  command
+      ->add_option("--box", box,
+                   "After a pick, the place to which the object is taken; then the next one")
+      ->type_name("LAT,LON")
+      ->needs(go_flag);
   point_flag->excludes(hunt_flag);
   for (CLI::Option* other : {hunt_flag, follow_flag}) {
     position_flag->excludes(other);
     no_position_flag->excludes(other);
     other->excludes("--target")->excludes("--target-id")->excludes("--target-size");
   }
-  team.AddTo(command)->needs(hunt_flag)->excludes(go_flag);
+  team.AddTo(command)->needs(hunt_flag);
   command->add_flag("--loop", loop, "Play a recording in a loop");
 }
 
@@ -206,6 +211,12 @@ KestrelOptions FlyArguments::ReadOptions() {
         "they decide what a lost pad costs");
   }
   job = ParseGoJob(then);
+  if (!box.empty()) {
+    box_place = ParseGlobalPosition(box);
+    if (!box_place) throw InputError(fmt::format("--box '{}': expected LAT,LON in degrees", box));
+    if (job.action != GoAction::kPick) throw InputError("--box: expected --then pick");
+  }
+  job.delivers = box_place.has_value();
   if (no_guard) options.fly.guard.enabled = false;
   if (console && !console->empty()) {
     options.console = WithAddress(options.console, *console, "--console");

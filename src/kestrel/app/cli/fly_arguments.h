@@ -11,6 +11,7 @@
 #include "kestrel/app/cli/task_argument.h"
 #include "kestrel/app/cli/team_arguments.h"
 #include "kestrel/app/options/kestrel_options.h"
+#include "kestrel/comms/mavlink/global_position.h"
 #include "kestrel/flight/guidance/go_job.h"
 #include "kestrel/flight/guidance/relative_guidance.h"
 
@@ -39,6 +40,8 @@ struct FlyArguments {
   std::string go;              // class of the objects to one of which the UAV goes; empty: to none
   std::string then = "hover";  // its job there, as ParseGoJob reads it
   GoJob job;                   // the same; by ReadOptions
+  std::string box;             // LAT,LON where it takes the objects; empty: it keeps one
+  std::optional<GlobalPosition> box_place;  // the same; by ReadOptions
   TeamArguments team;
   bool loop = false;
   // Options that the command line sets over the configuration file, as "key=value"; by ReadOptions.

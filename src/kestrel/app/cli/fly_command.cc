@@ -141,7 +141,7 @@ class Flight {
     Time next_state = Now();
     FlightEnd end = session_->Run([&] {
       log_->Show();
-      if (sharing_ != nullptr) sharing_->Share();
+      if (sharing_ != nullptr) FlyWithTeam();
       if (Now() >= next_state) {
         Log(session_->State());
         next_state += DurationFromSeconds(kStatePeriod_s);
@@ -299,6 +299,7 @@ class Flight {
     team_ = std::make_unique<TeamLink>(
         arguments_.team.team, arguments_.source.dds.Domain(), options_.team, options_.hunt.map,
         ReadModel(arguments_.model), [this](const std::string& text) { Notify(text); });
+    if (!arguments_.go.empty()) team_->Seek(arguments_.go);
   }
 
   SessionOptions Options() const {
@@ -306,6 +307,7 @@ class Flight {
     if (arguments_.profile != "auto") options.profile = ParseLinkProfile(arguments_.profile);
     options.points = arguments_.point;
     options.job = arguments_.job;
+    options.box = arguments_.box_place;
     options.sends_pad_position = arguments_.pad_position;
     options.without_position = arguments_.WithoutPosition();
     options.output = arguments_.source.output;
@@ -325,6 +327,13 @@ class Flight {
     if (!source.output.empty()) folder.emplace(source.output, source.force);
     sharing_ = session_->sinks().Add(std::make_unique<LiveTeamSharing>(
         std::move(team_), session_->vision().map(), std::move(folder), &sinks_, WasInterrupted));
+  }
+
+  void FlyWithTeam() {
+    TeamLink& team = sharing_->team();
+    team.SetFlight(session_->ToObjects());
+    sharing_->Share();
+    if (const TeamGoal* goal = team.goal()) session_->Take(*goal);
   }
 
   FlightRequests Requests() {

@@ -205,13 +205,15 @@ TEST_F(FlyCommandTest, RefusesFlightToObjectBeforeItBegins) {
   ExpectInputError(fly + " --go purple",
                    "no class 'purple', expected red, green, blue, yellow, orange");
   ExpectInputError(fly + " --go red --then dance", "expected hover, look, drop");
+  ExpectInputError(fly + " --go red --box 47.3,8.5", "--box: expected --then pick");
+  ExpectInputError(fly + " --go red --then pick --box here", "--box 'here': expected LAT,LON");
   ExpectInputError(fly + " --go red --set fly.guidance.search_radius_m=200",
                    "expected at most 100 (limits.geofence_radius_m)");
   for (const char* wrong :
        {"fly sim:hunt --autopilot sim:ardupilot --hunt --go red",
         "fly sim:hunt --autopilot sim:ardupilot --guide --go red",
         "fly sim:hunt --autopilot sim:ardupilot --hunt --follow --guide --go red",
-        "fly sim:hunt --autopilot sim:ardupilot --hunt --guide --go red --team a"}) {
+        "fly sim:hunt --autopilot sim:ardupilot --hunt --guide --box 47.3,8.5"}) {
     EXPECT_EQ(Run(wrong).status, 2) << wrong;
   }
 }

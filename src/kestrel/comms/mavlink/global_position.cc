@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "kestrel/core/base/parse_number.h"
+
 namespace kestrel {
 namespace {
 
@@ -41,6 +43,20 @@ GlobalPosition GlobalFromLocal(AutopilotKind kind, const GlobalPosition& origin,
       origin.longitude_e7 + in_world.x() / (scale_m * Shrinking(latitude_e7, origin.latitude_e7));
   return {static_cast<std::int32_t>(std::lround(latitude_e7)),
           static_cast<std::int32_t>(std::lround(longitude_e7)), origin.altitude_m + in_world.z()};
+}
+
+std::optional<GlobalPosition> ParseGlobalPosition(std::string_view text) {
+  constexpr double kPerDegree = 1e7;
+  const std::size_t comma = text.find(',');
+  if (comma == std::string_view::npos) return std::nullopt;
+  const auto latitude = ParseNumber<double>(text.substr(0, comma));
+  const auto longitude = ParseNumber<double>(text.substr(comma + 1));
+  if (!latitude || !longitude || !(std::abs(*latitude) <= 90) || !(std::abs(*longitude) <= 180)) {
+    return std::nullopt;
+  }
+  if (*latitude == 0 && *longitude == 0) return std::nullopt;  // autopilots refuse it
+  return GlobalPosition{static_cast<std::int32_t>(std::lround(kPerDegree * *latitude)),
+                        static_cast<std::int32_t>(std::lround(kPerDegree * *longitude)), 0};
 }
 
 }  // namespace kestrel

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string_view>
 
 #include <Eigen/Core>
 
@@ -23,5 +25,8 @@ Eigen::Vector3d LocalFromGlobal(AutopilotKind kind, const GlobalPosition& origin
                                 const GlobalPosition& position);
 GlobalPosition GlobalFromLocal(AutopilotKind kind, const GlobalPosition& origin,
                                const Eigen::Vector3d& in_world);
+
+// Parses "LATITUDE,LONGITUDE" in degrees; nothing: it is something else, or 0,0.
+std::optional<GlobalPosition> ParseGlobalPosition(std::string_view text);
 
 }  // namespace kestrel

@@ -92,23 +92,38 @@ void TeamLink::Share(std::vector<MappedObject> objects) {
 
 void TeamLink::Exchange() {
   topic_.Receive([this](std::span<const std::uint8_t> bytes) { member_.Hear(bytes, Now()); });
-  if (options_.claim && position_ && Now() >= next_claim_) ChooseAgain();
+  const bool claims = goals_ || (options_.claim && position_);
+  if (claims && Now() >= next_claim_) ChooseAgain();
   member_.Tick(Now(), [this](std::span<const std::uint8_t> bytes) { topic_.Send(bytes); });
   for (const std::string& warning : member_.TakeWarnings()) {
     report_("team: " + warning);
   }
 }
 
+// Returns the object for which the UAV goes; nothing: there is none.
+std::optional<MappedObject> TeamLink::Choose() {
+  const TeamView view = View();
+  if (goals_) {
+    const TeamGoal& goal = goals_->Update(view, flight_, Now(), &member_);
+    return goal.number == 0 ? std::nullopt : std::optional(goal.object);
+  }
+  const auto chosen = ChooseObject(view, *position_, model_, Now(), &member_);
+  return chosen ? std::optional(view.objects[*chosen]) : std::nullopt;
+}
+
 // Called as often as the claim is sent to others.
 void TeamLink::ChooseAgain() {
   next_claim_ = Now() + DurationFromSeconds(TeamOptions::kDigestPeriod_s);
-  const TeamView view = View();
-  const auto chosen = ChooseObject(view, *position_, model_, Now(), &member_);
+  const std::optional<MappedObject> chosen = Choose();
   std::optional<ObjectRef> claimed;
   if (const auto claim = member_.ClaimOf(member_.self(), Now())) claimed = claim->object;
   if (std::exchange(claimed_, claimed) == claimed) return;
-  if (!chosen) return report_("team: there is nothing left to go for");
-  const MappedObject& object = view.objects[*chosen];
+  if (!chosen) {
+    // One that carries an object goes for no other one meanwhile.
+    if (!goals_ || flight_.wants_object) report_("team: there is nothing left to go for");
+    return;
+  }
+  const MappedObject& object = *chosen;
   const auto class_index = ClassOf(object, model_);
   report_(fmt::format("team: goes for {} at ({:.1f}, {:.1f}) m",
                       class_index ? model_.classes[*class_index].name : ToString(object.shape),

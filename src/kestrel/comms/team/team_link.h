@@ -11,6 +11,7 @@
 
 #include "kestrel/comms/dds/team_topic.h"
 #include "kestrel/comms/team/team_fusion.h"
+#include "kestrel/comms/team/team_goal.h"
 #include "kestrel/comms/team/team_member.h"
 #include "kestrel/comms/team/team_options.h"
 #include "kestrel/comms/team/team_view.h"
@@ -62,6 +63,14 @@ class TeamLink {
   // Sets the position of the UAV in its own world; claims depend on the distance from it.
   void SetPosition(const Eigen::Vector3d& position) { position_ = position; }
 
+  // From now on the UAV goes to objects of a class, one after the other: it claims them whatever
+  // the options say. 'class_name': as of GoalChooser.
+  void Seek(const std::string& class_name) { goals_.emplace(model_, class_name); }
+  // What it does, for the next goal.
+  void SetFlight(const FlightToObjects& flight) { flight_ = flight; }
+  // Its goal; null: it does not seek.
+  const TeamGoal* goal() const { return goals_ ? &goals_->goal() : nullptr; }
+
   // Sends and receives what is due; call it often.
   void Exchange();
 
@@ -83,6 +92,7 @@ class TeamLink {
  private:
   TeamView View() { return ViewTeam(member_, Now(), &fusion_); }
   void ChooseAgain();
+  std::optional<MappedObject> Choose();
   std::vector<std::optional<Claim>> Claims() const;
   void ReportAwaited() const;
 
@@ -97,6 +107,8 @@ class TeamLink {
   std::optional<Eigen::Vector3d> position_;
   Time next_claim_ = Time::min();
   std::optional<ObjectRef> claimed_;  // as it was reported
+  std::optional<GoalChooser> goals_;
+  FlightToObjects flight_;
 };
 
 }  // namespace kestrel

@@ -75,6 +75,24 @@ void TeamMember::SetClaim(const std::optional<Claim>& claim) {
   has_news_ = true;
 }
 
+void TeamMember::SetFlight(const std::optional<UavFlight>& flight) {
+  const auto is_at_work = [](const auto& one) { return one && one->is_at_work; };
+  std::optional<UavFlight>& own = peers_[self_].flight;
+  if (is_at_work(flight) != is_at_work(own)) has_news_ = true;
+  own = flight;
+}
+
+void TeamMember::SetGone(const ObjectRef& object, Time local) {
+  AddGone(object.uav, object.id, local);
+  has_news_ = true;
+}
+
+// Others repeat what was heard before the object itself.
+void TeamMember::AddGone(const UavKey& uav, std::int64_t id, Time local) {
+  const TeamMap::Part* const part = map_.Find(uav);
+  if (part != nullptr && part->contents.objects.contains(id)) peers_[uav].gone.emplace(id, local);
+}
+
 void TeamMember::SetDone() {
   peers_[self_].is_done = true;
   has_news_ = true;
@@ -147,6 +165,7 @@ void TeamMember::HearDigest(const UavKey& sender, const Digest& digest, Time loc
 void TeamMember::HearLine(const DigestLine& line, Time local) {
   Peer* const peer = Know(line.uav);
   if (peer == nullptr) return;
+  for (const std::int64_t id : line.gone) AddGone(line.uav, id, local);
   if (line.uav == self_) {
     if (IsLater(line.beat, peer->beat)) peer->beat = line.beat;  // forged: stay ahead of it
     return;
@@ -156,6 +175,7 @@ void TeamMember::HearLine(const DigestLine& line, Time local) {
   peer->beat = line.beat;
   peer->beat_at = local;
   peer->claim = line.claim;
+  peer->flight = line.flight;
   peer->is_done = line.is_done;
 }
 
@@ -232,6 +252,23 @@ std::optional<Claim> TeamMember::ClaimOf(const UavKey& uav, Time local) const {
   return IsAlive(uav, local) ? peers_.at(uav).claim : std::nullopt;
 }
 
+std::optional<UavFlight> TeamMember::FlightOf(const UavKey& uav, Time local) const {
+  const auto peer = peers_.find(uav);
+  if (peer == peers_.end() || !peer->second.flight || !IsAlive(uav, local)) return std::nullopt;
+  UavFlight flight = *peer->second.flight;
+  if (peer->second.beat_at) {
+    flight.position += ToSeconds(local - *peer->second.beat_at) * flight.velocity;
+  }
+  return flight;
+}
+
+std::optional<Time> TeamMember::GoneSince(const ObjectRef& object) const {
+  const auto peer = peers_.find(object.uav);
+  if (peer == peers_.end()) return std::nullopt;
+  const auto gone = peer->second.gone.find(object.id);
+  return gone == peer->second.gone.end() ? std::nullopt : std::optional(gone->second);
+}
+
 void TeamMember::Tick(Time local, const Send& send) {
   if (last_tick_) {
     const double more = ToSeconds(local - *last_tick_) * options_.rate_bytes_per_s;
@@ -287,7 +324,12 @@ void TeamMember::SendDigest(Time local, const Send& send) {
     if (part != nullptr) line.version = part->contents.version;
     line.is_done = peer.is_done && !(uav == self_ && unsent_);
     line.claim = ClaimOf(uav, local);
+    line.flight = IsAlive(uav, local) ? peer.flight : std::nullopt;
     if (part != nullptr) line.missing = part->Missing(room);
+    std::erase_if(peer.gone, [part](const auto& gone) {
+      return part == nullptr || !part->contents.objects.contains(gone.first);
+    });
+    for (const auto& [id, since] : peer.gone) line.gone.push_back(id);
     room -= line.missing.size();
     peer.tries = IsBehind(uav, peer) ? std::min(peer.tries + 1, kMaxTries) : 0;
     line.tries = peer.tries;

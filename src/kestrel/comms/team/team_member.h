@@ -40,6 +40,13 @@ class TeamMember {
   // a change.
   void SetClaim(const std::optional<Claim>& claim);
 
+  // Sets where this UAV flies; nothing: it does not. A change of is_at_work is sent at once.
+  void SetFlight(const std::optional<UavFlight>& flight);
+
+  // Declares that an object is not there any more, because it was taken. All UAVs hear it, for as
+  // long as the map of its UAV has the object.
+  void SetGone(const ObjectRef& object, Time local);
+
   // Declares that the map set last is this UAV's last one; the next Tick sends that.
   void SetDone();
 
@@ -66,6 +73,10 @@ class TeamMember {
   bool AreAllDone(Time local) const;
   // Returns the claim of a UAV that is alive.
   std::optional<Claim> ClaimOf(const UavKey& uav, Time local) const;
+  // Returns where a UAV that is alive flies now, by what it has sent last.
+  std::optional<UavFlight> FlightOf(const UavKey& uav, Time local) const;
+  // Returns since when it is known here that an object was taken; nothing: it was not.
+  std::optional<Time> GoneSince(const ObjectRef& object) const;
 
   std::size_t refused() const { return refused_; }  // number of messages
   // Returns warnings for the user since the last call.
@@ -77,6 +88,8 @@ class TeamMember {
     std::uint32_t beat = 0;
     std::optional<Time> beat_at;  // when it last increased
     std::optional<Claim> claim;
+    std::optional<UavFlight> flight;
+    std::map<std::int64_t, Time> gone;  // objects of its map, and when this was first heard
     bool is_done = false;
     std::uint64_t newest = 0;  // newest version that anyone has heard of
     int tries = 0;
@@ -87,6 +100,7 @@ class TeamMember {
   void HearDigest(const UavKey& sender, const Digest& digest, Time local);
   void HearPart(const PartMessage& part, Time local);
   void HearLine(const DigestLine& line, Time local);
+  void AddGone(const UavKey& uav, std::int64_t id, Time local);
   void Defend(const PartMessage& part, Time local);
   void Answer(const UavKey& sender, const DigestLine& line, Time local);
   int RankAfter(const UavKey& owner, const UavKey& asker, Time local) const;

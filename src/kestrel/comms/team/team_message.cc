@@ -13,7 +13,7 @@
 namespace kestrel {
 namespace {
 
-constexpr std::uint32_t kMagic = 0x0254'4b01;  // the last byte is the format's number
+constexpr std::uint32_t kMagic = 0x0354'4b01;  // the last byte is the format's number
 constexpr std::size_t kMaxNameSize = 32;
 constexpr std::int64_t kMaxId = std::int64_t{1} << 48;
 constexpr std::uint64_t kMaxAge_ns = 1'000'000'000'000'000;  // eleven days
@@ -22,7 +22,14 @@ constexpr double kMaxNumber = 1e9;
 constexpr int kMaxDetections = 1 << 30;
 constexpr int kStanding = 3;  // number of values in the state of a standing object
 enum Kind : std::uint8_t { kDigest, kPart };
-enum Flag : std::uint8_t { kMayMove = 1, kHasDigits = 2, kMoves = 4, kDone = 1 };
+enum Flag : std::uint8_t {
+  kMayMove = 1,
+  kHasDigits = 2,
+  kMoves = 4,
+  kDone = 1,
+  kFlies = 2,
+  kAtWork = 4
+};
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -189,6 +196,45 @@ PartMessage ReadPart(ByteReader* in) {
   return part;
 }
 
+void WriteIds(const std::vector<std::int64_t>& ids, Bytes* out) {
+  PutVarint(ids.size(), out);
+  for (const std::int64_t id : ids) PutVarint(static_cast<std::uint64_t>(id), out);
+}
+
+std::vector<std::int64_t> ReadIds(std::size_t most, ByteReader* in) {
+  std::vector<std::int64_t> ids;
+  const std::size_t count = in->Varint(most);
+  for (std::size_t i = 0; i < count && !in->has_failed(); ++i) ids.push_back(ReadId(in));
+  return ids;
+}
+
+std::uint8_t FlagsOf(const DigestLine& line) {
+  const bool is_at_work = line.flight && line.flight->is_at_work;
+  return static_cast<std::uint8_t>((line.is_done ? kDone : 0) | (line.flight ? kFlies : 0) |
+                                   (is_at_work ? kAtWork : 0));
+}
+
+void ReadFlags(ByteReader* in, DigestLine* line) {
+  const std::uint8_t flags = in->Fixed<std::uint8_t>();
+  in->Require(flags <= (kDone | kFlies | kAtWork));
+  line->is_done = (flags & kDone) != 0;
+  const bool is_at_work = (flags & kAtWork) != 0;
+  if ((flags & kFlies) != 0) line->flight = UavFlight{.is_at_work = is_at_work};
+  in->Require(line->flight || !is_at_work);
+}
+
+void Write(const UavFlight& flight, Bytes* out) {
+  for (const double value : flight.position) Put(value, out);
+  for (const double value : flight.velocity) PutSingle(value, out);
+}
+
+void Read(ByteReader* in, UavFlight* flight) {
+  for (double& value : flight->position) {
+    value = ReadBounded(in->Fixed<double>(), kMaxPosition_m, in);
+  }
+  for (double& value : flight->velocity) value = ReadSingle(in);
+}
+
 // A claim refers to the UAV by its line, because names are long.
 void Write(const Digest& digest, Bytes* out) {
   PutVarint(digest.size(), out);
@@ -197,9 +243,10 @@ void Write(const Digest& digest, Bytes* out) {
     Put(line.beat, out);
     PutVarint(line.version, out);
     Put(static_cast<std::uint8_t>(line.tries), out);
-    Put<std::uint8_t>(line.is_done ? kDone : 0, out);
-    PutVarint(line.missing.size(), out);
-    for (const std::int64_t id : line.missing) PutVarint(static_cast<std::uint64_t>(id), out);
+    Put(FlagsOf(line), out);
+    if (line.flight) Write(*line.flight, out);
+    WriteIds(line.missing, out);
+    WriteIds(line.gone, out);
     const auto claimed =
         !line.claim ? digest.end() : std::find_if(digest.begin(), digest.end(), [&](auto& other) {
           return other.uav == line.claim->object.uav;
@@ -220,13 +267,10 @@ Digest ReadDigest(ByteReader* in) {
     line.beat = in->Fixed<std::uint32_t>();
     line.version = in->Varint(kMaxVersion);
     line.tries = in->Fixed<std::uint8_t>();
-    const std::uint8_t flags = in->Fixed<std::uint8_t>();
-    in->Require(flags <= kDone);
-    line.is_done = flags == kDone;
-    const std::size_t missing = in->Varint(kMaxMissing);
-    for (std::size_t i = 0; i < missing && !in->has_failed(); ++i) {
-      line.missing.push_back(ReadId(in));
-    }
+    ReadFlags(in, &line);
+    if (line.flight) Read(in, &*line.flight);
+    line.missing = ReadIds(kMaxMissing, in);
+    line.gone = ReadIds(kMaxSentObjects, in);
     claimed.push_back(in->Varint(digest.size()));
     if (claimed.back() == 0) continue;
     const std::int64_t id = ReadId(in);

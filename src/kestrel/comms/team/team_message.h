@@ -11,6 +11,8 @@
 #include <variant>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "kestrel/core/base/time.h"
 #include "kestrel/vision/mapping/mapped_object.h"
 
@@ -46,6 +48,15 @@ struct Claim {
   bool operator==(const Claim&) const = default;
 };
 
+// Where a UAV flies, in its own world (m, m/s).
+struct UavFlight {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+  bool is_at_work = false;  // near an object or the box: the others keep away
+
+  bool operator==(const UavFlight&) const = default;
+};
+
 // Contents of a UAV's map: an object that is not listed is not in it any more.
 struct Contents {
   std::uint64_t version = 0;  // grows with every change; 0: nothing was sent yet
@@ -73,6 +84,8 @@ struct DigestLine {
   std::vector<std::int64_t> missing;  // objects that the contents list and the sender lacks
   int tries = 0;                      // number of digests since the sender knows that it lacks
                                       // something
+  std::optional<UavFlight> flight = {};
+  std::vector<std::int64_t> gone = {};  // objects that the contents list and somebody has taken
 };
 using Digest = std::vector<DigestLine>;
 

@@ -69,6 +69,8 @@ TEST(TeamMessage, DigestRoundTrips) {
   digest[1].beat = 4'000'000'000;
   digest[1].missing = {3, 400};
   digest[1].tries = 7;
+  digest[1].flight = UavFlight{{1, -2, 6}, {0.5, 0, -1}, true};
+  digest[1].gone = {2, 5};
   digest[1].is_done = true;
   TeamMessage sent;
   sent.sender = a;
@@ -82,6 +84,9 @@ TEST(TeamMessage, DigestRoundTrips) {
   EXPECT_EQ(lines[1].beat, 4'000'000'000);
   EXPECT_THAT(lines[1].missing, ElementsAre(3, 400));
   EXPECT_EQ(lines[1].tries, 7);
+  EXPECT_EQ(lines[0].flight, std::nullopt);
+  EXPECT_EQ(lines[1].flight, digest[1].flight);
+  EXPECT_EQ(lines[1].gone, digest[1].gone);
   EXPECT_TRUE(lines[1].is_done);
   EXPECT_FALSE(lines[0].is_done);
   EXPECT_FALSE(lines[1].claim);

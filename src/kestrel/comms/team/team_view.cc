@@ -2,6 +2,7 @@
 #include "kestrel/comms/team/team_view.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "kestrel/vision/mapping/object_fusion.h"
 
@@ -63,6 +64,19 @@ void FindHolders(const TeamMember& member, Time local, TeamView* view) {
   }
 }
 
+// Finds the objects that were taken. One that is seen long after that is there all the same: the
+// eyes of a UAV see it for a moment after somebody else has declared it taken.
+void FindGone(const TeamMember& member, Time local, Time now, TeamView* view) {
+  constexpr Duration kSeenAfter = std::chrono::seconds(3);
+  view->is_gone.resize(view->objects.size());
+  for (const auto& [ref, i] : view->index) {
+    const auto since = member.GoneSince(ref);
+    if (since && now - view->objects[i].last_seen + kSeenAfter > local - *since) {
+      view->is_gone[i] = true;
+    }
+  }
+}
+
 }  // namespace
 
 TeamView ViewTeam(const TeamMember& member, Time local, TeamFusion* fusion) {
@@ -101,6 +115,7 @@ TeamView ViewTeam(const TeamMember& member, Time local, TeamFusion* fusion) {
     view.objects[i].time = now;
   }
   FindHolders(member, local, &view);
+  FindGone(member, local, now, &view);
   return view;
 }
 
@@ -139,17 +154,21 @@ std::vector<TeamObject> CommonMap(const TeamMember& member, const TeamView& view
 }
 
 std::optional<std::size_t> ChooseObject(const TeamView& view, const Eigen::Vector3d& position,
-                                        const ObjectModel& model, Time local, TeamMember* member) {
-  if (const auto claim = member->ClaimOf(member->self(), local)) {
+                                        const ObjectModel& model, Time local, TeamMember* member,
+                                        const ObjectFilter& may_choose) {
+  const UavKey& self = member->self();
+  if (const auto claim = member->ClaimOf(self, local)) {
     const auto held = view.index.find(claim->object);
-    if (held != view.index.end() && view.holders[held->second] == member->self()) {
+    if (held != view.index.end() && view.holders[held->second] == self &&
+        !view.is_gone[held->second] && may_choose(held->second)) {
       return held->second;
     }
   }
   std::optional<Claim> best;
   std::optional<std::size_t> chosen;
   for (const auto& [ref, i] : view.index) {
-    if (view.holders[i] && view.holders[i] != member->self()) continue;
+    if (view.holders[i] && view.holders[i] != self) continue;
+    if (view.is_gone[i] || !may_choose(i)) continue;
     // The metre limits the weight of distance: among near objects the value decides.
     const double bid =
         ScoreOf(view.objects[i], model) / (1 + (view.objects[i].position() - position).norm());

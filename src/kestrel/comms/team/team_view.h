@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -25,6 +26,7 @@ struct TeamView {
   // Holder of each object: the UAV that is alive and claims it with the highest bid; of equal bids
   // the first by key.
   std::vector<std::optional<UavKey>> holders;
+  std::vector<bool> is_gone;  // whether each object was taken, and not seen since
   // Transforms from the UAVs' worlds to the common one, as far as they are known.
   std::map<UavKey, WorldAlignment> common_from_world;
 };
@@ -41,10 +43,15 @@ std::vector<TeamObject> OwnMap(const TeamView& view);
 std::vector<TeamObject> CommonMap(const TeamMember& member, const TeamView& view,
                                   const TeamFusion& fusion);
 
+// Says whether an object of the view, by its index, may be chosen.
+using ObjectFilter = std::function<bool(std::size_t)>;
+
 // Chooses an object for the UAV at 'position' (in its own world), and claims it: the one with the
-// most value for its distance that nobody else holds. It keeps its object until that is gone or
-// somebody bids more. Returns the index in the view; nothing when no object is left.
-std::optional<std::size_t> ChooseObject(const TeamView& view, const Eigen::Vector3d& position,
-                                        const ObjectModel& model, Time local, TeamMember* member);
+// most value for its distance that nobody else holds and nobody has taken. It keeps its object
+// until that is gone or somebody bids more. Returns the index in the view; nothing when no object
+// is left.
+std::optional<std::size_t> ChooseObject(
+    const TeamView& view, const Eigen::Vector3d& position, const ObjectModel& model, Time local,
+    TeamMember* member, const ObjectFilter& may_choose = [](std::size_t) { return true; });
 
 }  // namespace kestrel

@@ -2,16 +2,21 @@
 #include "kestrel/flight/guidance/go_guidance.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
 
 #include <fmt/format.h>
 
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/geometry/angles.h"
+#include "kestrel/flight/guidance/keep_apart.h"
 #include "kestrel/flight/guidance/since.h"
 
 namespace kestrel {
 namespace {
 
+using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 // Part of the cone in which the UAV sinks: the camera of a hunt sees less to the sides than that of
@@ -35,7 +40,20 @@ constexpr double kBelow_m = 1;  // from the UAV to the object, while it looks wh
 // An object that stands is where it was: near it the UAV flies on for this long without a sight.
 constexpr double kStands_mps = 0.2;
 constexpr double kStandsSight_s = 3;
-constexpr double kGone_s = 2;  // an object that is not seen for so long from above is gone
+constexpr double kLayer_m = 1.5;   // between the heights at which the UAVs of a team travel
+constexpr double kClimbOff_m = 6;  // near the ground, from a UAV at work that goes first
+// At the box: the UAV sinks within this distance of it, others keep away while it is within that,
+// and the gripper opens within the last one while it stands still.
+constexpr double kAtBox_m = 1.5, kNearBox_m = 3, kOverBox_m = 0.4, kOverBox_mps = 0.4;
+constexpr double kSame_m = 0.5;  // an object that stands is no further from where it was gripped
+constexpr double kGone_s = 2;    // an object that is not seen for so long from above is gone
+
+// True when a UAV that goes first is within the distance.
+bool MustGiveWay(const Vector2d& place, std::span<const OtherUav> others, double distance_m) {
+  return std::ranges::any_of(others, [&](const OtherUav& other) {
+    return other.goes_first && (other.position - place).norm() < distance_m;
+  });
+}
 
 // False when the object is out of sight for too long to go on near it.
 bool IsSureOf(const GuidanceInput& input) {
@@ -74,7 +92,10 @@ GoGuidance::GoGuidance(const GuidanceOptions& options, const GoJob& job)
 
 void GoGuidance::Begin(const GuidanceInput& input) {
   yaw_ = HeadingOf(input.uav->world_from_body.rotation);
+  home_ = input.uav->world_from_body.translation.head<2>();
+  ended_ = {};
   mark_ = failures_ = 0;
+  carries_ = skips_ = false;
   has_gripped_ = is_open_ = is_done_ = false;
   fault_ = give_up_ = nullptr;
   motion_ = GuidanceRequest::kNone;
@@ -98,18 +119,25 @@ const char* GoGuidance::WhyGiveUp(const GuidanceInput& input) {
   if (phase() == GuidancePhase::kSearch && IsSearchOver(input.now)) {
     return "the object was not found again: gave up";
   }
-  if (phase() != GuidancePhase::kApproach || !input.target) return nullptr;
+  if (phase() != GuidancePhase::kApproach || !input.target || carries_) return nullptr;
   Vector3d above = input.uav->world_from_body.translation;
   above.head<2>() = input.target->motion.position().head<2>();
-  return limits().Contains(above) ? nullptr : "the object is outside of the geofence: gave up";
+  if (limits().Contains(above)) return nullptr;
+  if (!job_.delivers) return "the object is outside of the geofence: gave up";
+  Leave(false, "the object is outside of the geofence: goes on to the next one");
+  return nullptr;
 }
 
 Guidance::Wish GoGuidance::Choose(const GuidanceInput& input) {
+  // The vision has not heard yet that the job at this object has ended.
+  const bool has_ended = ended_.mark != 0 && input.mark == ended_.mark && !carries_;
   // Near the object the view of another one is that of none; but what is seen below may have got
   // another number.
   const bool is_elsewhere = phase() != GuidancePhase::kLook || Look(input).off_m > kBelow_m;
-  if (input.target && input.mark != mark_ && is_elsewhere && phase() != GuidancePhase::kSearch &&
-      phase() != GuidancePhase::kApproach) {
+  const bool is_another = input.mark != mark_ && is_elsewhere &&
+                          phase() != GuidancePhase::kSearch &&
+                          phase() != GuidancePhase::kApproach && !carries_;
+  if (input.target && (is_another || has_ended)) {
     GuidanceInput without = input;
     without.target.reset();
     return Choose(without);
@@ -120,28 +148,34 @@ Guidance::Wish GoGuidance::Choose(const GuidanceInput& input) {
     return {};
   }
   const Situation now = Look(input);
+  travel_m_ = options().search_altitude_m + kLayer_m * input.layer;
   ChoosePhase(input, now);
   Wish wish;
-  wish.follows_target = input.target.has_value();
+  wish.follows_target = input.target.has_value() && !carries_;
   if (input.gripper.number == answers_before_) wish.request = motion_;
-  if (phase() == GuidancePhase::kSearch) {
-    wish.set_point = Search(input, now);
-  } else {
-    wish.set_point = input.target && !is_done_ ? Pursue(input, now) : Stay(now);
-  }
+  wish.set_point = Command(input, now);
   wish.set_point.yaw = yaw_;
+  if (!is_at_work()) {
+    KeepApart(now.feet.head<2>(), going_to_, input.others, &wish.set_point);
+  }
   return wish;
 }
 
 void GoGuidance::ChoosePhase(const GuidanceInput& input, const Situation& now) {
   if (is_done_) return;
+  if (carries_) return Deliver(input, now);
   if (input.target) KeepPlace(input, now);
+  if (IsLow() && MustGiveWay(now.feet.head<2>(), input.others, kClimbOff_m)) {
+    return Enter(GuidancePhase::kApproach, "gives way to another UAV of the team");
+  }
   if (phase() == GuidancePhase::kAct) return Act(input);
   if (phase() == GuidancePhase::kGoAround) return ChooseClimb(input, now);
   if (phase() == GuidancePhase::kLook) return LookWhetherGone(input);
   if (!FindObject(input)) return;
   if (phase() == GuidancePhase::kApproach && now.off_m < kConePart * Cone(now.height_m)) {
-    if (MayDescend(now)) {
+    if (MustGiveWay(now.feet.head<2>(), input.others, kGiveWay_m)) {
+      set_reason("waits above the object: another UAV of the team is near");
+    } else if (MayDescend(now)) {
       waits_since_.reset();
       Enter(GuidancePhase::kDescend, "above the object, which is in sight");
     } else {
@@ -158,7 +192,7 @@ bool GoGuidance::FindObject(const GuidanceInput& input) {
     if (IsLow()) {
       TryAgain("the object is lost");
     } else if (phase() != GuidancePhase::kSearch) {
-      SearchAfterLoss(input.now);
+      Lose(input.now);
     }
     return false;
   }
@@ -239,6 +273,7 @@ void GoGuidance::Grip(const GuidanceInput& input) {
   const bool picks = job_.action == GoAction::kPick;
   if (!gripped_) {
     if (picks) is_open_ = false;
+    RememberGrip(input);
     if (Operate(input, picks ? GuidanceRequest::kGrab : GuidanceRequest::kRelease)) {
       gripped_ = input.now;
     }
@@ -255,6 +290,8 @@ void GoGuidance::ChooseClimb(const GuidanceInput& input, const Situation& now) {
   if (now.feet.z() - object_z_m_ < std::min(options().sight_height_m, highest_m)) return;
   if (fault_ != nullptr) {
     give_up_ = fault_;
+  } else if (skips_) {
+    Leave(false, "does not come down on the object: goes on to the next one");
   } else if (has_gripped_ && job_.action == GoAction::kPick) {
     unseen_s_ = 0;
     Enter(GuidancePhase::kLook, "looks whether the object is gone");
@@ -263,21 +300,36 @@ void GoGuidance::ChooseClimb(const GuidanceInput& input, const Situation& now) {
   } else if (input.target) {
     Enter(GuidancePhase::kApproach, "high enough to come again");
   } else {
-    SearchAfterLoss(input.now);
+    Lose(input.now);
   }
+}
+
+void GoGuidance::RememberGrip(const GuidanceInput& input) {
+  gripped_at_.setConstant(std::numeric_limits<double>::quiet_NaN());
+  if (!input.target || input.target->motion.velocity().norm() > kStands_mps) return;
+  gripped_at_ = input.target->motion.position().head<2>();
+}
+
+// The track of an object that was taken may go on with another one near by.
+bool GoGuidance::IsWhereGripped(const GuidanceInput& input) const {
+  if (!input.target) return false;
+  const double off_m = (input.target->motion.position().head<2>() - gripped_at_).norm();
+  return std::isnan(off_m) || off_m < kSame_m;
 }
 
 // Images without the object count only while images come.
 void GoGuidance::LookWhetherGone(const GuidanceInput& input) {
   const double looked_s = ToSeconds(input.now - entered());
   const double seen_s = input.target_age_s + GuidanceInput::kMostVideoDelay_s;
-  if (input.target && seen_s < looked_s) return TryAgain("the object is still there");
+  if (seen_s < looked_s && IsWhereGripped(input)) return TryAgain("the object is still there");
   if (input.is_camera_up) unseen_s_ += SecondsSinceLast(input.now);
   if (unseen_s_ >= kGone_s) Finish();
 }
 
 void GoGuidance::TryAgain(const char* reason) {
-  if (++failures_ >= kTries) {
+  ++failures_;
+  skips_ = job_.delivers && failures_ >= kTries;
+  if (!job_.delivers && failures_ >= kTries) {
     fault_ = has_gripped_ ? "the object is still there after all tries: gave up"
                           : "does not come down on the object: gave up";
   }
@@ -286,18 +338,62 @@ void GoGuidance::TryAgain(const char* reason) {
 }
 
 void GoGuidance::Finish() {
+  if (job_.delivers) {
+    ended_ = {mark_, true};
+    carries_ = true;
+    is_near_box_ = false;
+    return Enter(GuidancePhase::kApproach, "carries the object to the box");
+  }
   is_done_ = true;
   Enter(GuidancePhase::kLook, InWords(job_.action));
 }
 
+void GoGuidance::Lose(Time now) {
+  if (!job_.delivers) return SearchAfterLoss(now);
+  Leave(false, "the object is lost: goes on to the next one");
+  ended_.mark = 0;  // it may be found again
+}
+
+// Goes on to the next object, which it awaits where it began.
+void GoGuidance::Leave(bool is_taken, const char* reason) {
+  if (!is_taken) ended_ = {mark_, false};
+  mark_ = failures_ = 0;
+  carries_ = skips_ = has_gripped_ = is_open_ = false;
+  set_place(home_);
+  StartSearch();
+  set_reason(reason);
+}
+
+// Others use the box, too: the UAV comes to it when they are away.
+void GoGuidance::Deliver(const GuidanceInput& input, const Situation& now) {
+  if (phase() == GuidancePhase::kAct) {
+    if (!gripped_ && Operate(input, GuidanceRequest::kRelease)) gripped_ = input.now;
+    if (fault_ != nullptr) give_up_ = fault_;
+    if (!IsLongerThan(job_.seconds, gripped_, input.now)) return;
+    return Leave(true, "the object is in the box: goes on to the next one");
+  }
+  if (!input.box) return set_reason("carries the object; the place of the box is not known yet");
+  const double off_m = (now.feet.head<2>() - *input.box).norm();
+  const bool is_down = now.feet.z() < options().limits.floor_m;
+  if (off_m > kOverBox_m || now.velocity.norm() > kOverBox_mps || !is_down) return;
+  gripped_.reset();
+  Enter(GuidancePhase::kAct, "opens the gripper above the box");
+}
+
+bool GoGuidance::is_at_work() const {
+  if (carries_) return phase() == GuidancePhase::kAct || is_near_box_;
+  return IsLow() || phase() == GuidancePhase::kGoAround ||
+         (phase() == GuidancePhase::kLook && !is_done_);
+}
+
 bool GoGuidance::is_at_deck() const {
-  return (phase() == GuidancePhase::kCommit || phase() == GuidancePhase::kAct) &&
+  return (phase() == GuidancePhase::kCommit || phase() == GuidancePhase::kAct) && !carries_ &&
          job_.height_m < options().commit_height_m;
 }
 
 bool GoGuidance::IsLow() const {
   return phase() == GuidancePhase::kDescend || phase() == GuidancePhase::kCommit ||
-         phase() == GuidancePhase::kAct;
+         (phase() == GuidancePhase::kAct && !carries_);
 }
 
 bool GoGuidance::Operate(const GuidanceInput& input, GuidanceRequest motion) {
@@ -312,6 +408,18 @@ bool GoGuidance::Operate(const GuidanceInput& input, GuidanceRequest motion) {
   return input.gripper.is_accepted;
 }
 
+SetPoint GoGuidance::Command(const GuidanceInput& input, const Situation& now) {
+  going_to_ = place();
+  if (carries_) return Carry(input, now);
+  if (phase() == GuidancePhase::kSearch) {
+    SetPoint command = Search(input, now);
+    command.velocity.z() = ClimbRate(now);
+    return command;
+  }
+  if (input.target && !is_done_) return Pursue(input, now);
+  return Stay(place(), travel_m_, now);
+}
+
 SetPoint GoGuidance::Pursue(const GuidanceInput& input, const Situation& now) {
   SetPoint command =
       pursuit().Above(*input.target, {now.feet.head<2>(), now.velocity.head<2>()}, &flight_model());
@@ -324,16 +432,28 @@ SetPoint GoGuidance::Pursue(const GuidanceInput& input, const Situation& now) {
   return command;
 }
 
-// Rises to the height of the search where it is.
-SetPoint GoGuidance::Stay(const Situation& now) {
-  SetPoint command = pursuit().To(place(), {now.feet.head<2>(), now.velocity.head<2>()},
+SetPoint GoGuidance::Stay(const Vector2d& place, double height_m, const Situation& now) {
+  SetPoint command = pursuit().To(place, {now.feet.head<2>(), now.velocity.head<2>()},
                                   &flight_model(), options().limits.max_speed_mps);
-  command.velocity.z() = kHeightGain * (options().search_altitude_m - now.feet.z());
+  command.velocity.z() = kHeightGain * (height_m - now.feet.z());
   return command;
 }
 
+// Up to its layer, to above the box, and down to the lowest height without a target.
+SetPoint GoGuidance::Carry(const GuidanceInput& input, const Situation& now) {
+  if (!input.box) return Stay(place(), travel_m_, now);
+  going_to_ = *input.box;
+  const double off_m = (now.feet.head<2>() - going_to_).norm();
+  is_near_box_ = off_m < kNearBox_m;
+  if (off_m > kAtBox_m) {
+    const bool is_up = now.feet.z() > travel_m_ - kLayer_m || is_near_box_;
+    return Stay(is_up ? going_to_ : place(), travel_m_, now);
+  }
+  return Stay(going_to_, options().limits.floor_m - options().leg_m, now);
+}
+
 double GoGuidance::ClimbRate(const Situation& now) const {
-  if (!IsLow()) return kHeightGain * (options().search_altitude_m - now.feet.z());
+  if (!IsLow()) return kHeightGain * (travel_m_ - now.feet.z());
   const double left_m = now.height_m - job_.height_m;
   if (phase() == GuidancePhase::kAct) return rests_since_ ? 0 : -kHeightGain * left_m;
   if (phase() == GuidancePhase::kCommit) {

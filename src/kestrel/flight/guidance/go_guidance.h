@@ -3,6 +3,8 @@
 
 #include <optional>
 
+#include <Eigen/Core>
+
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/poses/set_point.h"
 #include "kestrel/flight/guidance/descent_guidance.h"  // IWYU pragma: export
@@ -13,7 +15,9 @@ namespace kestrel {
 
 // Flies a multicopter at the height of the search to an object, which may move, and down on it;
 // does a job there, climbs, and stands still. A descent that failed is tried again, and so is a
-// pick after which the object is still seen on the ground. docs/go.md describes it.
+// pick after which the object is still seen on the ground. A job that delivers takes the object to
+// a box, and goes on to the next one. The others of a team are kept away from. docs/go.md describes
+// it.
 class GoGuidance : public DescentGuidance {
  public:
   static constexpr int kTries = 5;
@@ -25,6 +29,9 @@ class GoGuidance : public DescentGuidance {
   bool is_done() const { return is_done_; }
   // Only a gripper's job takes the UAV down that far.
   bool is_at_deck() const override;
+  ObjectEnd ended() const override { return ended_; }
+  bool is_at_work() const override;
+  bool wants_object() const override { return !carries_; }
 
  private:
   void Begin(const GuidanceInput& input) override;
@@ -43,25 +50,40 @@ class GoGuidance : public DescentGuidance {
   void Act(const GuidanceInput& input);
   void Grip(const GuidanceInput& input);
   void ChooseClimb(const GuidanceInput& input, const Situation& now);
+  void RememberGrip(const GuidanceInput& input);
+  bool IsWhereGripped(const GuidanceInput& input) const;
   void LookWhetherGone(const GuidanceInput& input);
   void TryAgain(const char* reason);
   void Finish();
+  void Lose(Time now);
+  void Leave(bool is_taken, const char* reason);
+  void Deliver(const GuidanceInput& input, const Situation& now);
   bool IsLow() const;  // in a phase near the object
   // Requests a motion of the gripper; true once the autopilot has accepted it.
   bool Operate(const GuidanceInput& input, GuidanceRequest motion);
 
   // Set-points.
+  SetPoint Command(const GuidanceInput& input, const Situation& now);
   SetPoint Pursue(const GuidanceInput& input, const Situation& now);
-  SetPoint Stay(const Situation& now);
+  SetPoint Stay(const Eigen::Vector2d& place, double height_m, const Situation& now);
+  SetPoint Carry(const GuidanceInput& input, const Situation& now);
   double ClimbRate(const Situation& now) const;
 
   GoJob job_;
-  double yaw_ = 0;            // of the nose, rad
-  int mark_ = 0;              // number of the object; 0: none yet
-  double object_z_m_ = 0;     // its height in the world
-  int failures_ = 0;          // descents and picks
-  bool has_gripped_ = false;  // in this descent
-  bool is_open_ = false;      // the gripper, before a pick
+  Eigen::Vector2d home_{0, 0};  // where guidance began
+  double travel_m_ = 0;         // height of the UAV's layer
+  Eigen::Vector2d going_to_{0, 0};
+  ObjectEnd ended_;
+  bool carries_ = false;  // an object, to the box
+  bool is_near_box_ = false;
+  bool skips_ = false;                // leaves the object, once it has climbed
+  double yaw_ = 0;                    // of the nose, rad
+  int mark_ = 0;                      // number of the object; 0: none yet
+  double object_z_m_ = 0;             // its height in the world
+  int failures_ = 0;                  // descents and picks
+  Eigen::Vector2d gripped_at_{0, 0};  // the object, when the gripper closed; NaN: it moved
+  bool has_gripped_ = false;          // in this descent
+  bool is_open_ = false;              // the gripper, before a pick
   bool is_done_ = false;
   double unseen_s_ = 0;              // while it looks whether the object is gone
   const char* fault_ = nullptr;      // why it gives up, once it has climbed

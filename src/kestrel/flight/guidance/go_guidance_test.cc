@@ -2,8 +2,10 @@
 #include "kestrel/flight/guidance/go_guidance.h"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,11 +22,20 @@ using testing::ThrowsMessage;
 
 const VehicleMotionOptions kAtRest{.path = "standing"};
 
+GoJob Delivery() {
+  GoJob job = ParseGoJob("pick");
+  job.delivers = true;
+  return job;
+}
+
 // Go guidance, a multicopter, an object, the wind, and a gripper that answers after a moment.
 struct GoFlight : FlownInSteps<GoFlight> {
   explicit GoFlight(const std::string& job, const VehicleMotionOptions& motion = kAtRest,
                     const GuidanceOptions& options = {})
-      : guidance(options, ParseGoJob(job)), uav({}, {6, -3, 10}), object(motion, 1) {
+      : GoFlight(ParseGoJob(job), motion, options) {}
+  explicit GoFlight(const GoJob& job, const VehicleMotionOptions& motion = kAtRest,
+                    const GuidanceOptions& options = {})
+      : guidance(options, job), uav({}, {6, -3, 10}), object(motion, 1) {
     Random random(3);
     wind = MakeWind({}, &random);
   }
@@ -36,7 +47,9 @@ struct GoFlight : FlownInSteps<GoFlight> {
     input.target = object.Estimate(input.now, time_s);
     input.target_age_s = is_gone ? 1e3 : 0.05;
     if (is_gone) input.target.reset();
-    input.mark = is_gone ? 0 : 7;
+    input.mark = is_gone ? 0 : mark;
+    input.box = box;
+    input.others = others;
     input.gripper = gripper;
     input.is_guided = time_s > 0;
     input.is_armed = true;
@@ -62,7 +75,10 @@ struct GoFlight : FlownInSteps<GoFlight> {
     if (!is_grip) return;
     ++gripper.number;
     gripper.is_accepted = has_gripper;
-    if (output.request == GuidanceRequest::kRelease) return;
+    if (output.request == GuidanceRequest::kRelease) {
+      released_at = uav.position();
+      return;
+    }
     ++grabs;
     grab_off_m = FromObject().head<2>().norm();
     grab_height_m = FromObject().z();
@@ -79,6 +95,10 @@ struct GoFlight : FlownInSteps<GoFlight> {
   Path wind;
   GuidanceOutput output;
   GripperAnswers gripper;
+  int mark = 7;
+  std::optional<Eigen::Vector2d> box;
+  std::vector<OtherUav> others;
+  Eigen::Vector3d released_at{0, 0, 0};
   bool has_gripper = true;
   bool is_gone = false;
   int misses = 0;  // so many grabs leave the object where it is
@@ -222,6 +242,57 @@ TEST(GoGuidanceTest, ObjectOutsideOfGeofenceIsGivenUp) {
   GoFlight flight("pick", kAtRest, options);
   ASSERT_TRUE(flight.FlyUntil([&] { return flight.guidance.has_given_up(); }, 5));
   EXPECT_THAT(flight.output.reason, HasSubstr("outside of the geofence"));
+}
+
+TEST(GoGuidanceTest, TakesObjectToBoxAndGoesOnToNextOne) {
+  GoFlight flight(Delivery());
+  flight.box = {{15, -8}};
+  ASSERT_TRUE(flight.FlyUntil([&] { return flight.guidance.ended().mark == 7; }, 90));
+  EXPECT_TRUE(flight.guidance.ended().is_taken);
+  EXPECT_FALSE(flight.guidance.wants_object());
+  ASSERT_TRUE(flight.FlyUntil([&] { return flight.guidance.wants_object(); }, 60));
+  EXPECT_LT((flight.released_at.head<2>() - *flight.box).norm(), 0.5);
+  EXPECT_LT(flight.released_at.z(), 3.5);
+  flight.is_gone = false;
+  flight.mark = 8;
+  flight.misses = 1;  // the next grab takes it
+  ASSERT_TRUE(flight.FlyUntil([&] { return flight.grabs == 2; }, 90)) << flight.output.reason;
+}
+
+TEST(GoGuidanceTest, LeavesObjectThatItDoesNotGetAndGoesOn) {
+  GoFlight flight(Delivery());
+  flight.box = {{15, -8}};
+  flight.misses = 100;
+  ASSERT_TRUE(flight.FlyUntil([&] { return flight.guidance.ended().mark == 7; }, 400));
+  EXPECT_FALSE(flight.guidance.ended().is_taken);
+  EXPECT_FALSE(flight.guidance.has_given_up());
+  EXPECT_EQ(flight.grabs, GoGuidance::kTries);
+  flight.FlyUntil([] { return false; }, 5);
+  EXPECT_EQ(flight.output.phase, Phase::kSearch);  // although the vision still sees it
+}
+
+TEST(GoGuidanceTest, GivesWayNearTheGround) {
+  GoFlight flight("pick");
+  ASSERT_TRUE(flight.FlyUntilPhase(Phase::kDescend));
+  flight.others = {{.position = flight.uav.position().head<2>() + Eigen::Vector2d(4, 0)}};
+  flight.Step([](GuidanceInput&) {});
+  EXPECT_EQ(flight.output.phase, Phase::kDescend);
+  flight.others[0].goes_first = true;
+  EXPECT_FALSE(flight.FlyUntilPhase(Phase::kCommit, 10));
+  EXPECT_GT((flight.uav.position().head<2>() - flight.others[0].position).norm(), 5.5);
+  EXPECT_GT(flight.uav.position().z(), 8);
+  flight.others.clear();
+  EXPECT_TRUE(flight.FlyUntilDone()) << flight.output.reason;
+}
+
+TEST(GoGuidanceTest, TravelsInItsLayer) {
+  GoFlight flight("hover");
+  const auto above = [](GuidanceInput& input) {
+    input.layer = 2;
+    input.target.reset();
+  };
+  flight.FlyUntil([] { return false; }, 15, above);
+  EXPECT_NEAR(flight.uav.position().z(), 10 + 3 + 0.35, 0.2);
 }
 
 TEST(GoGuidanceTest, SearchBeyondTheLimitsIsRefused) {

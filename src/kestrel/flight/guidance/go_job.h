@@ -20,6 +20,8 @@ struct GoJob {
   GoAction action = GoAction::kHover;
   double height_m = 2.5;
   double seconds = 10;
+  // After a pick the UAV takes the object to a box, and then goes on to the next one.
+  bool delivers = false;
 
   bool grips() const { return action == GoAction::kDrop || action == GoAction::kPick; }
 };

@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <optional>
+#include <span>
 
 #include <Eigen/Core>
 
@@ -15,6 +16,7 @@
 #include "kestrel/flight/guidance/guidance_options.h"
 #include "kestrel/flight/guidance/guidance_phase.h"
 #include "kestrel/flight/guidance/guidance_request.h"
+#include "kestrel/flight/guidance/other_uav.h"
 #include "kestrel/flight/guidance/stale_safety.h"
 #include "kestrel/flight/guidance/target_pursuit.h"
 #include "kestrel/vision/tracking/target_tracker.h"
@@ -48,6 +50,12 @@ struct GripperAnswers {
   bool is_accepted = false;  // the newest one; false as well when none came
 };
 
+// How the job at an object ended.
+struct ObjectEnd {
+  int mark = 0;           // the object's number; 0: no job has ended yet
+  bool is_taken = false;  // false: given up
+};
+
 // All inputs of guidance at an instant.
 struct GuidanceInput {
   Time now;                     // never earlier than the one before
@@ -64,6 +72,9 @@ struct GuidanceInput {
   int mark = 0;
   FollowOrder order;  // the newest one
   GripperAnswers gripper;
+  std::span<const OtherUav> others;    // of the team, that fly
+  int layer = 0;                       // of the heights at which they travel, from the lowest one
+  std::optional<Eigen::Vector2d> box;  // where objects are delivered, once it is known (m, world)
   bool is_guided = false;  // the mode in which the autopilot obeys set-points, by its heartbeat
   bool is_armed = false;
   bool is_landed = false;    // the autopilot reports that it is on the ground
@@ -114,6 +125,12 @@ class Guidance {
   const FollowingDemand& demand() const { return demand_.demand(); }
   // TouchdownHeading::error of a landing.
   virtual std::optional<double> heading_error() const { return std::nullopt; }
+  // The last job that ended at an object, where guidance goes on to the next one.
+  virtual ObjectEnd ended() const { return {}; }
+  // True while the other UAVs of the team keep away.
+  virtual bool is_at_work() const { return false; }
+  // False while no object would help, because it carries one.
+  virtual bool wants_object() const { return true; }
   // Wind, drag and the autopilot's answer, as learnt in flight.
   const FlightModel& model() const { return model_; }
 

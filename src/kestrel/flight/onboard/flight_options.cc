@@ -8,7 +8,7 @@
 namespace kestrel {
 
 std::vector<std::string> FlightOptions::Validate() const {
-  if (pad_origin.empty() || ParsePadOrigin(pad_origin)) return {};
+  if (pad_origin.empty() || ParseGlobalPosition(pad_origin)) return {};
   return {fmt::format("pad_origin is '{}', expected LATITUDE,LONGITUDE in degrees, not 0,0",
                       pad_origin)};
 }

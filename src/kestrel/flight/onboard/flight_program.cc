@@ -14,6 +14,7 @@
 #include "kestrel/comms/mavlink/silence.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/options.h"
+#include "kestrel/flight/onboard/team_in_flight.h"
 #include "kestrel/flight/session/autopilot_report.h"
 
 namespace kestrel {
@@ -50,8 +51,8 @@ FlightProgram::FlightProgram(const FlightOptions& options, const FlightParts& pa
                     parts.guidance != nullptr, parts.autopilot, parts.connection, report_);
   }
   if (parts.sends_pad_position) {
-    pad_position_.emplace(ParsePadOrigin(options_.pad_origin), parts.autopilot, parts.connection,
-                          report_);
+    pad_position_.emplace(ParseGlobalPosition(options_.pad_origin), parts.autopilot,
+                          parts.connection, report_);
   }
   if (parts.without_position) {
     no_position_.emplace(options, *parts.without_position, parts.autopilot, parts.connection,
@@ -60,6 +61,7 @@ FlightProgram::FlightProgram(const FlightOptions& options, const FlightParts& pa
     guided_.emplace(options, tracker_, parts.guidance, !parts.source_has_poses, parts.autopilot,
                     parts.connection, report_);
     if (parts.sends_pad_position) guided_->set_position_by_pad();
+    if (parts.box) guided_->set_box(*parts.box);
   }
   if (parts.pointed != nullptr) {
     gimbal_.emplace(options, *parts.pointed, pad_, tracker_, parts.autopilot, parts.connection,
@@ -249,6 +251,7 @@ void FlightProgram::See() {
     if (parts_.cameras == 1 && !parts_.sees_repeated && IsFrozen(frame)) continue;
     latency_.step(kVision).Add(Now() - frame.time);
     if (camera_) camera_->ApplyMarks(Now(), parts_.vision);
+    parts_.vision->Leave(ended_mark_);
     const TrackSnapshot snapshot = See(frame);
     latency_.step(kDetection).Add(snapshot.detect_time);
     frames_ = snapshot.frames;
@@ -300,6 +303,17 @@ void FlightProgram::ReportCameras() {
   for (; reported_camera_events_ < events.size(); ++reported_camera_events_) {
     report_(events[reported_camera_events_]);
   }
+}
+
+void FlightProgram::Take(const TeamGoal& goal) {
+  BetweenFrames([&] { parts_.vision->Assign({goal.number, goal.own_id, goal.object}); });
+  const std::lock_guard lock(team_mutex_);
+  team_ = InFlight(goal, Now());
+}
+
+FlightToObjects FlightProgram::ToObjects() const {
+  const std::lock_guard lock(team_mutex_);
+  return to_objects_;
 }
 
 void FlightProgram::Order(int mark) { order_ = FollowOrder{++orders_, mark}; }
@@ -379,9 +393,15 @@ void FlightProgram::Fly(Time now, const TrackSnapshot& track) {
   }
   if (!guided_) return;
   guided_->Take(order_);
+  {
+    const std::lock_guard lock(team_mutex_);
+    if (auto team = std::exchange(team_, std::nullopt)) guided_->Take(*std::move(team));
+    to_objects_ = kestrel::ToObjects(*guided_, poses_, now);
+  }
   guided_->set_video_delay(VideoDelay());
   if (guided_->Fly(now, track, poses_)) latency_.step(kSetPoint).Add(Now() - track.captured);
   guidance_phase_ = guided_->phase();
+  ended_mark_ = guided_->ended().mark;
   set_points_ = guided_->set_points();
 }
 

@@ -13,6 +13,7 @@
 #include "kestrel/comms/mavlink/autopilot.h"
 #include "kestrel/comms/mavlink/connection.h"
 #include "kestrel/comms/mavlink/target_profile.h"
+#include "kestrel/comms/team/team_goal.h"
 #include "kestrel/core/base/latest_value.h"
 #include "kestrel/core/base/service_manager.h"
 #include "kestrel/core/base/time.h"
@@ -60,6 +61,7 @@ struct FlightParts {
   const CameraCalibration* tracking = nullptr;
   const CameraStream* stream = nullptr;  // in which they do so; null: the source's own
   GuidanceMaker guidance = {};  // flies by set-points when the pilot gives the mode; null: does not
+  std::optional<GlobalPosition> box = {};            // where objects are delivered
   bool sends_pad_position = false;                   // see SessionOptions
   std::optional<RelativeJob> without_position = {};  // see SessionOptions
   bool source_has_poses = false;                     // the autopilot's poses are then not used
@@ -102,6 +104,10 @@ class FlightProgram {
   // Orders guidance to fly to the mark with this number, from when the pilot has given the mode; 0:
   // to stand still. Called by any thread.
   void Order(int mark);
+
+  // Takes what the team wants of this UAV, and returns what it does. Called by any thread.
+  void Take(const TeamGoal& goal);
+  FlightToObjects ToObjects() const;
 
   // Returns the present state. Called by any thread.
   FlightReport Report() const;
@@ -187,6 +193,10 @@ class FlightProgram {
   bool was_heard_ = false;
   Time wait_due_{};  // when it is next looked for the reason of the autopilot's silence
 
+  mutable std::mutex team_mutex_;
+  std::optional<TeamInFlight> team_;  // until guidance has it; guarded by team_mutex_
+  FlightToObjects to_objects_;        // the same
+
   std::mutex vision_mutex_;  // held while the vision works
 
   // Used by the vision's thread only.
@@ -196,6 +206,7 @@ class FlightProgram {
 
   std::atomic<int> repeated_frames_{0}, frames_{0}, detections_{0}, messages_{0};
   std::atomic<TargetPhase> phase_{TargetPhase::kSearching};
+  std::atomic<int> ended_mark_{0};  // see Guidance::ended
   std::atomic<GuidancePhase> guidance_phase_{GuidancePhase::kIdle};
   std::atomic<int> set_points_{0};
   std::atomic<int> orders_{0};

@@ -62,6 +62,7 @@ bool GuidedFlight::Fly(Time now, const TrackSnapshot& track, const PoseHistory& 
   if (!schedule_.IsDue(now, is_news)) return false;
   KnowAutopilot(now);
   if (kind_ == AutopilotKind::kUnknown) return false;
+  PredictOthers(now);
   GuidanceInput input = Input(now, track, poses);
   has_pose_ = input.uav.has_value();
   WatchMode(input, now);
@@ -159,6 +160,13 @@ void GuidedFlight::CheckPermission(const GuidanceInput& input, Time now) {
   }
 }
 
+void GuidedFlight::PredictOthers(Time now) {
+  constexpr double kLongest_s = 2;  // who is not heard for longer stands still for all we know
+  const double ahead_s = std::clamp(ToSeconds(now - team_.time), 0.0, kLongest_s);
+  others_ = team_.others;
+  for (OtherUav& other : others_) other.position += ahead_s * other.velocity;
+}
+
 GuidanceInput GuidedFlight::Input(Time now, const TrackSnapshot& track,
                                   const PoseHistory& poses) const {
   GuidanceInput input;
@@ -176,6 +184,11 @@ GuidanceInput GuidedFlight::Input(Time now, const TrackSnapshot& track,
   input.mark = track.mark;
   input.order = order_;
   input.gripper = {autopilot_.gripper_answers(), autopilot_.is_gripper_accepted()};
+  input.others = others_;
+  input.layer = team_.layer;
+  if (box_ && autopilot_.origin()) {
+    input.box = LocalFromGlobal(kind_, *autopilot_.origin(), *box_).head<2>();
+  }
   input.can_hold = !is_position_by_pad_;
   input.is_armed = autopilot_.is_armed();
   input.is_landed = autopilot_.landed_state() == LandedState::kOnGround;

@@ -6,6 +6,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "kestrel/comms/mavlink/autopilot.h"
 #include "kestrel/comms/mavlink/connection.h"
@@ -39,6 +41,16 @@ class GuidedFlight {
   // Takes a person's order on what is marked.
   void Take(const FollowOrder& order) { order_ = order; }
 
+  // The others of the UAV's team, who are where they fly on to until this is called again.
+  void Take(TeamInFlight team) { team_ = std::move(team); }
+  // Where objects are delivered.
+  void set_box(const GlobalPosition& box) { box_ = box; }
+  // See Guidance.
+  ObjectEnd ended() const { return guidance_->ended(); }
+  bool is_at_work() const { return is_flying() && guidance_->is_at_work(); }
+  bool is_in_air() const { return autopilot_.is_armed() && IsInFlight(autopilot_.landed_state()); }
+  bool wants_object() const { return is_flying() && guidance_->wants_object(); }
+
   // The autopilot's position comes from the pad, and is a guess without it.
   void set_position_by_pad() { is_position_by_pad_ = true; }
   bool is_position_by_pad() const { return is_position_by_pad_; }
@@ -66,6 +78,7 @@ class GuidedFlight {
 
  private:
   void KnowAutopilot(Time now);
+  void PredictOthers(Time now);
   void WatchMode(const GuidanceInput& input, Time now);
   void WarnOfRefusal(bool is_flying, Time now);
   void CheckPermission(const GuidanceInput& input, Time now);
@@ -91,6 +104,9 @@ class GuidedFlight {
   Duration video_delay_{};
   bool has_pose_ = false;
   FollowOrder order_;  // the newest one
+  TeamInFlight team_;
+  std::vector<OtherUav> others_;  // now
+  std::optional<GlobalPosition> box_;
   AutopilotKind kind_ = AutopilotKind::kUnknown;
   SendSchedule schedule_;
 

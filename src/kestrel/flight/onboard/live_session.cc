@@ -102,6 +102,8 @@ class Flight : public LiveSession {
   void ResumePointing() override { program_->ResumePointing(); }
   void Confirm() override;
   void StopFollowing() override { program_->Order(0); }
+  void Take(const TeamGoal& goal) override { program_->Take(goal); }
+  FlightToObjects ToObjects() const override { return program_->ToObjects(); }
   void BetweenFrames(const std::function<void()>& action) override {
     program_->BetweenFrames(action);
   }
@@ -347,6 +349,7 @@ FlightParts Flight::ProgramParts() {
           .tracking = autopilot_ && vision().takes_marks() ? &live_.calibration : nullptr,
           .stream = options_.stream ? &*options_.stream : nullptr,
           .guidance = Guide(),
+          .box = options_.box,
           .sends_pad_position = options_.sends_pad_position,
           .without_position = options_.without_position,
           .source_has_poses = live_.has_poses,

@@ -109,13 +109,13 @@ TEST_F(PadPlaceTest, CovarianceHoldsErrorOfAttitude) {
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(sum(i, i) / pose.covariance(i, i), 1, 0.15) << i;
 }
 
-TEST(ParsePadOrigin, ReadsPlacesOnEarthOnly) {
-  const auto origin = ParsePadOrigin("47.5,-8.25");
+TEST(ParseGlobalPosition, ReadsPlacesOnEarthOnly) {
+  const auto origin = ParseGlobalPosition("47.5,-8.25");
   ASSERT_TRUE(origin);
   EXPECT_EQ(origin->latitude_e7, 475000000);
   EXPECT_EQ(origin->longitude_e7, -82500000);
   for (const char* text : {"", "47.5", "47.5,", "91,8", "47,181", "nan,8", "0,0", "a,b", "1,2,3"}) {
-    EXPECT_FALSE(ParsePadOrigin(text)) << text;
+    EXPECT_FALSE(ParseGlobalPosition(text)) << text;
   }
 }
 

@@ -33,20 +33,6 @@ constexpr unsigned kPx4UsesPlace = 1;
 
 }  // namespace
 
-std::optional<GlobalPosition> ParsePadOrigin(const std::string& text) {
-  constexpr double kPerDegree = 1e7;
-  const std::size_t comma = text.find(',');
-  if (comma == std::string::npos) return std::nullopt;
-  const auto latitude = ParseNumber<double>(std::string_view(text).substr(0, comma));
-  const auto longitude = ParseNumber<double>(std::string_view(text).substr(comma + 1));
-  if (!latitude || !longitude || !(std::abs(*latitude) <= 90) || !(std::abs(*longitude) <= 180)) {
-    return std::nullopt;
-  }
-  if (*latitude == 0 && *longitude == 0) return std::nullopt;  // autopilots refuse it
-  return GlobalPosition{static_cast<std::int32_t>(std::lround(kPerDegree * *latitude)),
-                        static_cast<std::int32_t>(std::lround(kPerDegree * *longitude)), 0};
-}
-
 PadPosition::PadPosition(std::optional<GlobalPosition> origin, Autopilot* autopilot,
                          Connection* connection, std::function<void(const std::string&)> report)
     : origin_(origin),

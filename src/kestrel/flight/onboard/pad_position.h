@@ -16,9 +16,6 @@
 
 namespace kestrel {
 
-// Parses "LATITUDE,LONGITUDE" in degrees; nothing: it is something else, or 0,0.
-std::optional<GlobalPosition> ParsePadOrigin(const std::string& text);
-
 // Sends the UAV's place over a pad that stands to the autopilot, as its external navigation: one
 // ODOMETRY for each frame that shows the pad. Used by the link's thread only.
 class PadPosition {

@@ -11,6 +11,7 @@
 #include <opencv2/core.hpp>
 
 #include "kestrel/comms/mavlink/target_profile.h"
+#include "kestrel/comms/team/team_goal.h"
 #include "kestrel/flight/guidance/go_job.h"
 #include "kestrel/flight/guidance/relative_guidance.h"
 #include "kestrel/flight/onboard/camera_stream.h"
@@ -49,6 +50,7 @@ struct SessionOptions {
   bool guides = false;
   // The job at the object of the task, where the UAV flies to one; needs 'guides'.
   GoJob job = {};
+  std::optional<GlobalPosition> box = {};  // where a job that delivers takes the objects
   // Points the camera's gimbal at the target; 'guides' does so, too. Needs a calibration with a
   // gimbal.
   bool points = false;
@@ -116,6 +118,9 @@ class LiveSession : public Session {
   // Throws InputError when guidance does not fly, or nothing is marked.
   virtual void Confirm() = 0;
   virtual void StopFollowing() = 0;
+  // Takes what the team wants of this UAV, and returns what it does, where it flies to objects.
+  virtual void Take(const TeamGoal& goal) = 0;
+  virtual FlightToObjects ToObjects() const = 0;
   // Calls 'action' between two frames: the vision waits for it.
   virtual void BetweenFrames(const std::function<void()>& action) = 0;
   // Starts and stops recordings.

@@ -90,6 +90,8 @@ class HuntVision : public Vision {
   Observation Process(const Frame& frame) override;
   TrackSnapshot snapshot() const override { return snapshot_; }
   bool seeks_object() const override { return pipeline_.sought() != nullptr; }
+  void Assign(const AssignedObject& object) override { pipeline_.Assign(object); }
+  void Leave(int number) override { pipeline_.Leave(number); }
   const ObjectMap* map() const override { return &pipeline_.map(); }
   bool has_world() const override { return has_world_ && !pipeline_.options().still; }
   void Change(const TaskOptions& options, std::optional<double> altitude_m) override;

@@ -89,6 +89,9 @@ class LiveTeamSharing : public TeamSharing {
 
   void Take(const Observation& observation) override { copies_.Take(observation); }
 
+  // The team, for the flight of this UAV. Used by the thread that calls Share.
+  using TeamSharing::team;
+
   // Shares what is new, and exchanges messages. Called often, by the thread of Session::Run.
   void Share();
 

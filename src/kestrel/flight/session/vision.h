@@ -20,6 +20,7 @@
 #include "kestrel/flight/session/track_snapshot.h"
 #include "kestrel/io/recording/frame.h"
 #include "kestrel/vision/mapping/object_map.h"
+#include "kestrel/vision/pipeline/sought_object.h"
 
 namespace kestrel {
 
@@ -55,6 +56,9 @@ class Vision {
   virtual std::optional<TargetTrackerOptions> marked() const { return std::nullopt; }
   // True when it seeks an object for the UAV to go to.
   virtual bool seeks_object() const { return false; }
+  // Seeks from now on what is assigned, or not any more the object of this number.
+  virtual void Assign(const AssignedObject& /*object*/) {}
+  virtual void Leave(int /*number*/) {}
   // The map of the objects; null: none. Changes with the next frame.
   virtual const ObjectMap* map() const { return nullptr; }
   // True when results have places in the world, which are kept from frame to frame.

@@ -212,11 +212,14 @@ std::uint8_t AutopilotModel::OperateGripper(float motion) {
   const Eigen::Vector3d feet = truth().world_from_body * Eigen::Vector3d(0, 0, -options_.uav.leg_m);
   if (motion == mavlink::kGripperRelease) {
     result_.released_at = feet;
+    if (std::exchange(result_.holds_object, false)) result_.put_down.push_back(feet);
     return mavlink::kResultAccepted;
   }
   if (motion != mavlink::kGripperGrab) return mavlink::kResultDenied;
   ++result_.grabs;
+  if (result_.holds_object) return mavlink::kResultAccepted;
   result_.grab = world_.field().Close(world_.SceneTime(truth().time), feet);
+  result_.holds_object = result_.grab && result_.grab->is_taken;
   return mavlink::kResultAccepted;
 }
 

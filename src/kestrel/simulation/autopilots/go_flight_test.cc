@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "kestrel/simulation/autopilots/test_go_flight.h"
+#include "kestrel/simulation/autopilots/test_team_flight.h"
 
 namespace kestrel {
 namespace {
@@ -71,6 +71,23 @@ TEST_P(GoFlightTest, PilotTakesTheUavBack) {
   flight.Fly(20);
   EXPECT_EQ(flight.phase(), GuidancePhase::kIdle);
   EXPECT_LT(flight.model.result().last_set_point_after_s, 0.2);
+}
+
+// Two UAVs, and a radio that loses messages.
+TEST_P(GoFlightTest, TeamDeliversEachDiscOnce) {
+  const Eigen::Vector2d box(0, -10);
+  std::vector<GoFlightSetup> setups(2, SetupOf(GetParam(), "red"));
+  for (std::size_t i = 0; i < setups.size(); ++i) {
+    setups[i].box = box;
+    setups[i].model.pilot.offset_east_m = i == 0 ? -6 : 6;
+  }
+  TeamGoFlights flights(setups);
+  flights.radio().loss = 0.2;
+  const auto delivered = [&] { return flights.CountDelivered(box, /*radius_m=*/0.7); };
+  while (flights.seconds() < 300 && delivered() < 3) flights.Fly(1);
+  EXPECT_EQ(delivered(), 3) << flights.uavs[0]->reported << flights.uavs[1]->reported;
+  EXPECT_EQ(flights.CountTaken(), 3);
+  EXPECT_GT(flights.nearest_m, 4);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "kestrel/simulation/autopilots/object_field.h"
 #include "kestrel/simulation/autopilots/simulated_uav.h"
@@ -31,6 +32,8 @@ struct SitlResult {
   int grabs = 0;                               // number of times that it was closed
   std::optional<ObjectField::Grab> grab;       // the last one; nothing: there were no objects
   std::optional<Eigen::Vector3d> released_at;  // where it was opened last, m in the world
+  bool holds_object = false;
+  std::vector<Eigen::Vector3d> put_down;  // where it was opened with an object, m in the world
 
   // Distance of the feet's middle from the pattern's centre, m; only with a contact.
   double offset_m() const { return contact->feet_in_pattern.head<2>().norm(); }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <memory>
@@ -24,17 +25,11 @@
 
 namespace kestrel {
 
-// A field of discs for one flight, which may take them.
-struct OwnField {
-  OwnField(const std::vector<std::string>& settings, std::uint64_t seed)
-      : field_world(Options(settings), kTestStart, seed) {}
-
-  static VehicleWorldOptions Options(const std::vector<std::string>& settings) {
-    return ReadVehicleWorld("hunt", settings);
-  }
-
-  VehicleWorld field_world;
-};
+// A field of discs, which may be taken.
+inline std::unique_ptr<VehicleWorld> MakeField(const std::vector<std::string>& settings,
+                                               std::uint64_t seed) {
+  return std::make_unique<VehicleWorld>(ReadVehicleWorld("hunt", settings), kTestStart, seed);
+}
 
 // A flight to an object of a class.
 struct GoFlightSetup {
@@ -43,8 +38,19 @@ struct GoFlightSetup {
   std::vector<std::string> field = {};  // settings of the field
   std::string class_name = "red";
   std::string job = "pick";
+  std::optional<Eigen::Vector2d> box = {};  // m, world
   FlightOptions flight = {};
   std::uint64_t seed = 1;
+  VehicleWorld* world = nullptr;  // with the field of several UAVs; null: one of its own
+};
+
+// The field of a flight that has it for itself.
+struct OwnField {
+  explicit OwnField(const GoFlightSetup& setup) {
+    if (setup.world == nullptr) own_field = MakeField(setup.field, setup.seed);
+  }
+
+  std::unique_ptr<VehicleWorld> own_field;
 };
 
 // A linked flight to an object of a field.
@@ -67,13 +73,17 @@ class GoFlight : private OwnField, public LinkedFlight {
 
  protected:
   explicit GoFlight(const GoFlightSetup& setup)
-      : OwnField(setup.field, setup.seed),
-        LinkedFlight(setup.firmware, setup.model, &field_world, setup.seed, HuntCalibration()) {
-    Guide(setup.flight, {}, [this, job = ParseGoJob(setup.job)](const GuidanceOptions& guidance) {
+      : OwnField(setup),
+        LinkedFlight(setup.firmware, setup.model, own_field ? own_field.get() : setup.world,
+                     setup.seed, HuntCalibration()) {
+    GoJob job = ParseGoJob(setup.job);
+    job.delivers = setup.box.has_value();
+    Guide(setup.flight, {}, [this, job](const GuidanceOptions& guidance) {
       auto made = std::make_unique<GoGuidance>(guidance, job);
       flown_ = made.get();
       return made;
     });
+    if (setup.box) guided_->set_box(BoxOf(setup));
   }
 
   void Show(Time captured, const SoughtObject& sought) {
@@ -85,6 +95,16 @@ class GoFlight : private OwnField, public LinkedFlight {
   }
 
  private:
+  static GlobalPosition BoxOf(const GoFlightSetup& setup) {
+    const GlobalOrigin& origin = setup.model.origin;
+    const GlobalPosition at{static_cast<std::int32_t>(std::lround(1e7 * origin.latitude_deg)),
+                            static_cast<std::int32_t>(std::lround(1e7 * origin.longitude_deg)),
+                            origin.altitude_m};
+    const AutopilotKind kind =
+        setup.firmware == AutopilotFirmware::kPx4 ? AutopilotKind::kPx4 : AutopilotKind::kArduPilot;
+    return GlobalFromLocal(kind, at, {setup.box->x(), setup.box->y(), 0});
+  }
+
   const GoGuidance* flown_ = nullptr;
 };
 
@@ -135,6 +155,10 @@ class SightedGoFlight : public GoFlight {
         lens_(camera_.intrinsics),
         random_(setup.seed),
         sought_(objects_, setup.class_name, {}) {}
+
+ protected:
+  ObjectModel objects_ = DefaultObjectModel();
+  ObjectMap map_{objects_, {}};
 
  private:
   struct Sight {
@@ -212,9 +236,12 @@ class SightedGoFlight : public GoFlight {
     view.lens = &lens_;
     view.camera_from_world = world_from_camera.Inverse();
     map_.Update(image.captured, measurements, view);
+    LeaveEnded();
     sought_.Update(image.captured, sightings, map_);
     Show(image.captured, sought_);
   }
+
+  virtual void LeaveEnded() { sought_.Leave(guided_->ended().mark); }
 
   double Focal() const { return camera_.intrinsics.fx_px; }
 
@@ -227,9 +254,11 @@ class SightedGoFlight : public GoFlight {
 
   CameraModel lens_;
   Random random_;
-  ObjectModel objects_ = DefaultObjectModel();
-  ObjectMap map_{objects_, {}};
+
+ protected:
   SoughtObject sought_;
+
+ private:
   LateImages<Image> images_;
 };
 

@@ -48,6 +48,8 @@ class HuntPipeline::Impl {
   void Seek(const std::string& class_name) {
     sought_.emplace(detector_.model(), class_name, options_.map);
   }
+  void Assign(const AssignedObject& object) { sought_->Assign(object); }
+  void Leave(int number) { sought_->Leave(number); }
   const HuntObservation& Process(const cv::Mat& image, Time time);
 
   const SoughtObject* sought() const { return sought_ ? &*sought_ : nullptr; }
@@ -322,6 +324,8 @@ const HuntObservation& HuntPipeline::Process(const cv::Mat& image, Time time) {
   return impl_->Process(image, time);
 }
 void HuntPipeline::Seek(const std::string& class_name) { impl_->Seek(class_name); }
+void HuntPipeline::Assign(const AssignedObject& object) { impl_->Assign(object); }
+void HuntPipeline::Leave(int number) { impl_->Leave(number); }
 const SoughtObject* HuntPipeline::sought() const { return impl_->sought(); }
 const ObjectDetector& HuntPipeline::detector() const { return impl_->detector(); }
 const ObjectMap& HuntPipeline::map() const { return impl_->map(); }

@@ -22,6 +22,7 @@ namespace kestrel {
 
 struct GroundHeight;
 class SoughtObject;
+struct AssignedObject;
 
 struct HuntPipelineOptions {
   static constexpr int kPoseCapacity = 1000;  // poses that are kept
@@ -117,6 +118,9 @@ class HuntPipeline {
   // that one alone (the paper's tracking mode), and completely only where it is not found. Throws
   // InputError when the model has no such class.
   void Seek(const std::string& class_name);
+  // As of SoughtObject, which is there.
+  void Assign(const AssignedObject& object);
+  void Leave(int number);
   // The object that is sought, after the last frame; null: none is.
   const SoughtObject* sought() const;
 

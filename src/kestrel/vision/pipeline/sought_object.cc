@@ -13,6 +13,7 @@
 namespace kestrel {
 namespace {
 
+constexpr std::size_t kMostLeft = 256;
 constexpr double kMostSigma_m = 3;  // one that drove away unseen is not sought any more
 
 TargetTrackerOptions TrackerOf(const ObjectModel& model, const std::string& name) {
@@ -52,12 +53,18 @@ SoughtObject::SoughtObject(const ObjectModel& model, const std::string& name,
       name_(name),
       motion_(map.motion()),
       no_track_(TrackerOf(model, name)),
-      tracker_(TrackerOf(model, name)) {}  // a copy would have no room reserved
+      tracker_(TrackerOf(model, name)) {  // a copy would have no room reserved
+  left_.reserve(kMostLeft);
+}
 
 void SoughtObject::Update(Time time, std::span<const ObjectSighting> sightings,
                           const ObjectMap& map) {
-  Choose(time, map);
-  if (id_ != 0) Track(time, sightings);
+  if (assigned_) {
+    TakeAssigned(time, map);
+  } else {
+    Choose(time, map);
+  }
+  if (number_ != 0) Track(time, sightings);
 }
 
 bool SoughtObject::IsSought(std::optional<std::size_t> class_index) const {
@@ -76,19 +83,55 @@ void SoughtObject::Choose(Time time, const ObjectMap& map) {
     if (!IsSought(ClassOf(object, model_))) return;
     PredictObject(time, motion_, &object);
     if (object.sigma_m() > kMostSigma_m) return;
+    if (std::ranges::find(left_, object.id) != left_.end()) return;
     if (object.id == id_) mapped_ = object;
     if (!best || ScoreOf(object, model_) > ScoreOf(*best, model_)) best = object;
   };
   map.VisitConfirmed(std::ref(choose));  // a reference fits into std::function
   if (id_ != 0 && (mapped_ || IsTracked(time))) return;
-  id_ = 0;
-  tracker_ = no_track_;
-  seen_.reset();
+  Forget();
   if (!best) return;
   id_ = best->id;
+  number_ = static_cast<int>(id_);
   class_index_ = *ClassOf(*best, model_);
   mapped_ = best;
   seen_ = best->last_seen;
+}
+
+void SoughtObject::Forget() {
+  id_ = number_ = 0;
+  tracker_ = no_track_;
+  seen_.reset();
+}
+
+// The map has an object more precisely than those who have not seen it from here.
+void SoughtObject::TakeAssigned(Time time, const ObjectMap& map) {
+  if (assigned_->number != number_) Forget();
+  number_ = assigned_->number;
+  id_ = assigned_->id;
+  mapped_.reset();
+  if (number_ == 0) return;
+  class_index_ = ClassOf(assigned_->object, model_).value_or(0);
+  std::optional<Time> seen;
+  const auto find = [&](const MappedObject& object) {
+    if (object.id != id_) return;
+    mapped_ = object;
+    seen = object.last_seen;
+  };
+  map.VisitConfirmed(std::ref(find));
+  if (!mapped_) mapped_ = assigned_->object;
+  PredictObject(time, motion_, &*mapped_);
+  if (mapped_->sigma_m() > kMostSigma_m) mapped_.reset();
+  if (!seen_) seen_ = seen;
+}
+
+void SoughtObject::Leave(int number) {
+  if (number == 0 || number != number_) return;
+  if (!assigned_) {
+    if (left_.size() == left_.capacity()) left_.erase(left_.begin());
+    left_.push_back(id_);
+  }
+  Forget();
 }
 
 // Takes the nearest sighting, unless another object is as likely there.
@@ -112,7 +155,7 @@ void SoughtObject::Track(Time time, std::span<const ObjectSighting> sightings) {
 }
 
 std::optional<TargetEstimate> SoughtObject::At(Time time) const {
-  if (id_ == 0) return std::nullopt;
+  if (number_ == 0) return std::nullopt;
   if (IsTracked(time)) return tracker_.Predict(time);
   if (!mapped_) return std::nullopt;
   MappedObject object = *mapped_;
@@ -121,7 +164,7 @@ std::optional<TargetEstimate> SoughtObject::At(Time time) const {
 }
 
 TrackState SoughtObject::StateAt(Time time) const {
-  if (id_ == 0) return TrackState::kSearching;
+  if (number_ == 0) return TrackState::kSearching;
   return IsTracked(time) ? tracker_.StateAt(time) : TrackState::kPredicting;
 }
 

@@ -100,5 +100,33 @@ TEST(SoughtObjectTest, UnknownClassIsRefused) {
                   HasSubstr("no class 'purple', expected red, green, blue, yellow, orange")));
 }
 
+TEST(SoughtObjectTest, AssignedObjectIsWhereOthersHaveSeenItUntilItIsSeen) {
+  Search search("red");
+  search.See({Red({0, 0, 0})}, 12);
+  AssignedObject assigned;
+  assigned.number = 4;
+  assigned.object = search.map.Confirmed().front();
+  assigned.object.state.head<3>() = Vector3d(6, 0, 0);
+  search.sought.Assign(assigned);
+  search.See({Red({0, 0, 0})});
+  EXPECT_EQ(search.sought.number(), 4);
+  EXPECT_LT((search.Place() - Vector3d(6, 0, 0)).norm(), 0.01);
+  search.See({Red({0, 0, 0}), Red({6.2, 0, 0})}, 12);
+  EXPECT_LT((search.Place() - Vector3d(6.2, 0, 0)).norm(), 0.05);
+  search.sought.Assign({});
+  search.See({Red({0, 0, 0}), Red({6.2, 0, 0})});
+  EXPECT_EQ(search.sought.number(), 0);
+}
+
+TEST(SoughtObjectTest, ObjectThatIsLeftIsNotSoughtAgain) {
+  Search search("red");
+  search.See({Red({0, 0, 0})}, 12);
+  search.sought.Leave(search.sought.number());
+  search.See({Red({0, 0, 0})}, 12);
+  EXPECT_EQ(search.sought.number(), 0);
+  search.See({Red({0, 0, 0}), Red({5, 0, 0})}, 12);
+  EXPECT_LT((search.Place() - Vector3d(5, 0, 0)).norm(), 0.05);
+}
+
 }  // namespace
 }  // namespace kestrel

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/guidance/keep_apart.h"
+
+#include <algorithm>
+
+namespace kestrel {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double kGain = 0.5;  // 1/s, speed towards another UAV per metre beyond the distance
+// Further away from the distance nobody is gone around yet.
+constexpr double kAround_m = 6;
+
+double DistanceTo(const OtherUav& other) { return other.goes_first ? kGiveWay_m : kApart_m; }
+
+// How a velocity brings a UAV nearer to another one.
+struct Nearing {
+  Nearing(const Vector2d& position, const Vector2d& velocity, const OtherUav& other) {
+    const Vector2d way = other.position - position;
+    const double distance_m = std::max(way.norm(), 1e-3);
+    to = way / distance_m;
+    free_m = distance_m - DistanceTo(other);
+    const double most_mps = kGain * free_m + std::min(other.velocity.dot(to), 0.0);
+    excess_mps = std::max(velocity.dot(to) - most_mps, 0.0);
+  }
+
+  Vector2d to;        // unit vector to the other one
+  double free_m;      // from here to the distance
+  double excess_mps;  // speed beyond the largest that is safe
+};
+
+}  // namespace
+
+void KeepApart(const Vector2d& position, const Vector2d& destination,
+               std::span<const OtherUav> others, SetPoint* command) {
+  const double wanted_mps = command->velocity.head<2>().norm();
+  Vector2d velocity = command->velocity.head<2>();
+  for (const OtherUav& other : others) {
+    const Nearing nearing(position, velocity, other);
+    velocity -= nearing.excess_mps * nearing.to;
+    const bool is_at_destination = (destination - other.position).norm() < DistanceTo(other);
+    if (is_at_destination || nearing.free_m > kAround_m) continue;
+    // To the right, as all do, so that two that meet do not go to the same side.
+    velocity +=
+        std::min(nearing.excess_mps, wanted_mps) * Vector2d(nearing.to.y(), -nearing.to.x());
+  }
+  // The way around one may be near another one.
+  for (const OtherUav& other : others) {
+    const Nearing nearing(position, velocity, other);
+    velocity -= nearing.excess_mps * nearing.to;
+  }
+  if (velocity == Vector2d(command->velocity.head<2>())) return;
+  command->velocity.head<2>() = velocity;
+  command->acceleration.head<2>().setZero();
+}
+
+}  // namespace kestrel

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+
+#include <Eigen/Core>
+
+#include "kestrel/core/poses/set_point.h"
+#include "kestrel/flight/guidance/other_uav.h"
+
+namespace kestrel {
+
+// Horizontal distance that a UAV keeps from the others of its team (m), and from those to which it
+// gives way: it is they who decide how near the two come to each other.
+inline constexpr double kApart_m = 5;
+inline constexpr double kGiveWay_m = 6.5;
+
+// Limits the horizontal velocity of a set-point for a UAV at 'position' (m, world) on its way to
+// 'destination': it comes to others no faster than it can stop before the distance, goes around
+// those that are in its way, waits for those that are at its destination, and moves off from those
+// that come to it. No allocation.
+void KeepApart(const Eigen::Vector2d& position, const Eigen::Vector2d& destination,
+               std::span<const OtherUav> others, SetPoint* command);
+
+}  // namespace kestrel

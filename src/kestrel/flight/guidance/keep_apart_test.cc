@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/guidance/keep_apart.h"
+
+#include <algorithm>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace kestrel {
+namespace {
+
+using Eigen::Vector2d;
+
+// Flies to a place at 4 m/s among others; returns the least distance from the first of them.
+double FlyTo(const Vector2d& place, std::vector<OtherUav> others, Vector2d* position,
+             double seconds) {
+  constexpr double kStep_s = 0.05, kSpeed_mps = 4;
+  double nearest_m = 1e9;
+  for (double t = 0; t < seconds; t += kStep_s) {
+    SetPoint command;
+    const Vector2d way = place - *position;
+    command.velocity.head<2>() = way * std::min(1.0, kSpeed_mps / std::max(way.norm(), 1e-9));
+    KeepApart(*position, place, others, &command);
+    *position += kStep_s * command.velocity.head<2>();
+    for (OtherUav& other : others) other.position += kStep_s * other.velocity;
+    nearest_m = std::min(nearest_m, (others[0].position - *position).norm());
+  }
+  return nearest_m;
+}
+
+TEST(KeepApartTest, GoesAroundUavInItsWay) {
+  Vector2d position(-20, 0.1);
+  EXPECT_GT(FlyTo({20, 0}, {{.position = {0, 0}, .goes_first = true}}, &position, 40), 6);
+  EXPECT_LT((position - Vector2d(20, 0)).norm(), 0.5);
+}
+
+TEST(KeepApartTest, WaitsForUavAtItsDestination) {
+  Vector2d position(-20, 0);
+  EXPECT_GT(FlyTo({0, 0}, {{.position = {0, 0}, .goes_first = true}}, &position, 30), 6);
+  EXPECT_LT((position - Vector2d(-6.5, 0)).norm(), 0.5);
+}
+
+TEST(KeepApartTest, MovesOffFromUavThatComes) {
+  Vector2d position(0, 0);
+  const OtherUav coming{.position = {20, 0}, .velocity = {-3, 0}, .goes_first = true};
+  EXPECT_GT(FlyTo({0, 0}, {coming}, &position, 12), 5);
+}
+
+TEST(KeepApartTest, LeavesCommandAloneFarFromOthers) {
+  SetPoint command;
+  command.velocity = {3, 1, -1};
+  command.acceleration = {0.5, 0, 0};
+  const std::vector<OtherUav> others = {{.position = {40, 0}}, {.position = {-8, 0}}};
+  KeepApart({0, 0}, {10, 0}, others, &command);
+  EXPECT_EQ(command.velocity, Eigen::Vector3d(3, 1, -1));
+  EXPECT_EQ(command.acceleration, Eigen::Vector3d(0.5, 0, 0));
+}
+
+}  // namespace
+}  // namespace kestrel

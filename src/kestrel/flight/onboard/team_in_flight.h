@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "kestrel/comms/team/team_goal.h"
+#include "kestrel/core/base/time.h"
+#include "kestrel/core/poses/pose_history.h"
+#include "kestrel/flight/guidance/other_uav.h"
+#include "kestrel/flight/onboard/guided_flight.h"
+
+namespace kestrel {
+
+// Returns what guidance needs of a goal that was found at 'now'.
+TeamInFlight InFlight(const TeamGoal& goal, Time now);
+
+// Returns what the team needs of a flight at 'now'.
+FlightToObjects ToObjects(const GuidedFlight& guided, const PoseHistory& poses, Time now);
+
+}  // namespace kestrel
