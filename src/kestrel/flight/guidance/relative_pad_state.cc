@@ -29,6 +29,8 @@ constexpr double kThrustAtFirst = 2;  // m/s^2: a hover thrust that is wrong by 
 // Also what an attitude of another time than the frame, by some ms, is wrong by: the estimate is
 // slower from higher up, where that would make the UAV swing.
 constexpr double kAttitudeNoise = Radians(0.5);
+// What a camera near the pad is wrong by, that its pixels do not show, and its stamps.
+constexpr double kPlaceNoise_m = 0.003, kStampNoise_s = 0.005;
 constexpr double kThrustLag_s = 0.12;
 constexpr double kContradiction = 25;  // squared, in variances
 constexpr double kContradicted_s = 0.5;
@@ -36,6 +38,11 @@ constexpr double kSubStep_s = 0.05;
 constexpr double kLargestGap_s = 0.3;  // between two attitudes
 
 double SquareOf(double value) { return value * value; }
+
+double NoiseOf(const Axis& axis, double variance) {
+  return variance + SquareOf(kPlaceNoise_m) +
+         SquareOf(kStampNoise_s * axis.mean(RelativePadState::kVelocity));
+}
 
 }  // namespace
 
@@ -145,13 +152,13 @@ void RelativePadState::Begin(Time time, const Vector3d& way, const Vector3d& var
 bool RelativePadState::Correct(const Vector3d& way, const Vector3d& variance) {
   for (int i = 0; i < 3; ++i) {
     const Axis& axis = axes_[static_cast<std::size_t>(i)];
-    const double expected = axis.covariance(kWay, kWay) + variance(i);
+    const double expected = axis.covariance(kWay, kWay) + NoiseOf(axis, variance(i));
     if (SquareOf(way(i) - axis.mean(kWay)) > kContradiction * expected) return false;
   }
   for (int i = 0; i < 3; ++i) {
     Axis& axis = axes_[static_cast<std::size_t>(i)];
     const Eigen::Vector4d gain =
-        axis.covariance.col(kWay) / (axis.covariance(kWay, kWay) + variance(i));
+        axis.covariance.col(kWay) / (axis.covariance(kWay, kWay) + NoiseOf(axis, variance(i)));
     axis.mean += gain * (way(i) - axis.mean(kWay));
     const Eigen::RowVector4d row = axis.covariance.row(kWay);
     axis.covariance -= gain * row;

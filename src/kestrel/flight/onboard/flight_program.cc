@@ -419,9 +419,9 @@ Duration FlightProgram::VideoDelay() const {
 }
 
 // A position that comes from the pad ends with its sight: the autopilot's own guess goes on for
-// seconds.
+// seconds. Where it has none, what it sends is a guess from the first.
 void FlightProgram::TakeAutopilotPose(const PoseSample& pose) {
-  if (parts_.source_has_poses) return;
+  if (parts_.source_has_poses || no_position_) return;
   if (pad_position_ && !pad_position_->is_known(Now())) return;
   poses_.Add(pose);
   TakePose(pose);

@@ -120,28 +120,15 @@ void GuidedFlight::WatchMode(const GuidanceInput& input, Time now) {
   was_armed_ = input.is_armed;
   if (!is_begun_ && now >= permission_due_) CheckPermission(input, now);
   const bool is_flying = input.is_armed && IsInFlight(autopilot_.landed_state());
-  WarnOfRefusal(is_flying, now);
+  if (warning_.IsDue(is_flying, is_begun_ || may_begin_, now)) {
+    Notify(mavlink::kSeverityWarning, "guidance would be refused now: " + refusal_);
+  }
   if (!is_given_ || is_begun_ || !is_flying) return;
   CheckPermission(input, now);
   is_begun_ = may_begin_;
   is_given_ = false;
   if (const auto home = HomeOf(autopilot_)) guidance_->SetFenceCenter(*home);
   if (!is_begun_) Notify(mavlink::kSeverityWarning, "guidance refused: " + refusal_);
-}
-
-// Warns once a flight, before the pilot tries: PX4 refuses OFFBOARD without set-points, and reports
-// no reason.
-void GuidedFlight::WarnOfRefusal(bool is_flying, Time now) {
-  constexpr double kPatience_s = 4;
-  if (!is_flying) warned_of_refusal_ = false;
-  if (!is_flying || may_begin_) {
-    refused_since_.reset();
-    return;
-  }
-  if (!refused_since_) refused_since_ = now;
-  if (warned_of_refusal_ || ToSeconds(now - *refused_since_) < kPatience_s) return;
-  warned_of_refusal_ = true;
-  Notify(mavlink::kSeverityWarning, "guidance would be refused now: " + refusal_);
 }
 
 void GuidedFlight::CheckPermission(const GuidanceInput& input, Time now) {

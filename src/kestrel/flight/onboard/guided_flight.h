@@ -15,6 +15,7 @@
 #include "kestrel/core/poses/pose_history.h"
 #include "kestrel/flight/guidance/guidance.h"
 #include "kestrel/flight/onboard/flight_options.h"
+#include "kestrel/flight/onboard/refusal_warning.h"
 #include "kestrel/flight/onboard/send_schedule.h"
 #include "kestrel/flight/onboard/target_reporter.h"
 #include "kestrel/vision/tracking/target_tracker.h"
@@ -80,7 +81,6 @@ class GuidedFlight {
   void KnowAutopilot(Time now);
   void PredictOthers(Time now);
   void WatchMode(const GuidanceInput& input, Time now);
-  void WarnOfRefusal(bool is_flying, Time now);
   void CheckPermission(const GuidanceInput& input, Time now);
   GuidanceInput Input(Time now, const TrackSnapshot& track, const PoseHistory& poses) const;
   std::optional<TargetEstimate> Target(Time now, const TrackSnapshot& track) const;
@@ -116,10 +116,9 @@ class GuidedFlight {
   bool was_armed_ = false;
   std::optional<Time> left_on_deck_;  // the mode was left in contact, without a position
   Time permission_due_{};
-  bool may_begin_ = false;             // guidance may begin
-  std::string refusal_;                // reason why it may not
-  std::optional<Time> refused_since_;  // in flight
-  bool warned_of_refusal_ = false;     // in this flight
+  bool may_begin_ = false;  // guidance may begin
+  std::string refusal_;     // reason why it may not
+  RefusalWarning warning_;
   bool knows_parameters_ = false;
 
   Time reported_frame_;  // the newest frame used for a set-point

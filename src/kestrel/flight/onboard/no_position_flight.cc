@@ -106,12 +106,16 @@ void NoPositionFlight::WatchMode(Time now, bool is_seen) {
     permission_due_ = now + kCheckPeriod;
     refusal_ = WhyNot(now);
   }
+  const bool is_flying = is_armed && IsInFlight(autopilot_.landed_state());
+  if (warning_.IsDue(is_flying, is_begun_ || refusal_.empty(), now)) {
+    Notify(mavlink::kSeverityWarning, "guidance would be refused now: " + refusal_);
+  }
   const bool is_other = autopilot_.is_guided_mode() && !is_mode;
   if (is_other && !std::exchange(was_refused_mode_, is_other)) {
     Notify(mavlink::kSeverityWarning, "GUIDED needs a position: give GUIDED_NOGPS");
   }
   was_refused_mode_ = is_other;
-  if (!is_given_ || is_begun_ || !is_armed || !IsInFlight(autopilot_.landed_state())) return;
+  if (!is_given_ || is_begun_ || !is_flying) return;
   is_given_ = false;
   refusal_ = WhyNot(now);
   if (!refusal_.empty()) {

@@ -13,6 +13,7 @@
 #include "kestrel/flight/guidance/relative_guidance.h"
 #include "kestrel/flight/guidance/relative_pad_state.h"
 #include "kestrel/flight/onboard/flight_options.h"
+#include "kestrel/flight/onboard/refusal_warning.h"
 #include "kestrel/flight/onboard/send_schedule.h"
 #include "kestrel/flight/session/track_snapshot.h"
 
@@ -76,6 +77,7 @@ class NoPositionFlight {
   bool was_refused_mode_ = false;  // the one that needs a position
   Time permission_due_{};
   std::string refusal_ = "the autopilot is not known yet";
+  RefusalWarning warning_;
   Time request_due_{};
   GuidancePhase reported_phase_ = GuidancePhase::kIdle;
   std::string reported_reason_;
