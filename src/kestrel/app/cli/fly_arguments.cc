@@ -207,8 +207,7 @@ KestrelOptions FlyArguments::ReadOptions() {
   if (no_position && (floor.empty() || ceiling.empty())) {
     throw InputError(
         "--no-position: expected --floor still or moves, and --ceiling yes or no: without a "
-        "position "
-        "they decide what a lost pad costs");
+        "position they decide what a lost pad costs");
   }
   job = ParseGoJob(then);
   if (!box.empty()) {

@@ -111,7 +111,8 @@ void AutopilotStatus::Handle(const mavlink::Packet& packet, const TimeSync& cloc
 
 void AutopilotStatus::HandleAltitude(const mavlink::Altitude& message) {
   const double altitude_m = message.altitude_amsl - message.altitude_local;
-  if (std::isfinite(altitude_m)) frame_altitude_m_ = altitude_m;
+  constexpr double kHighest_m = 1e5;
+  if (std::abs(altitude_m) < kHighest_m) frame_altitude_m_ = altitude_m;
 }
 
 bool AutopilotStatus::HasPilot(Time now) const {

@@ -93,7 +93,9 @@ mavlink::SetAttitudeTarget LeanMessage(const LeanSetPoint& set_point, double max
   const Eigen::AngleAxisd turn(set_point.yaw, Eigen::Vector3d::UnitZ());
   const Eigen::Quaterniond in_ned = NedFrdFromEnuFlu((lean * turn).normalized());
   const double fastest_mps = set_point.climb_mps > 0 ? max_climb_mps : max_sink_mps;
-  const double part = std::clamp(set_point.climb_mps / fastest_mps, -1.0, 1.0);
+  constexpr double kSlowest_mps = 0.1;  // a limit of 0 is none to divide by
+  const double part =
+      std::clamp(set_point.climb_mps / std::max(fastest_mps, kSlowest_mps), -1.0, 1.0);
   mavlink::SetAttitudeTarget message;
   message.time_boot_ms = boot_ms;
   message.target_system = system;

@@ -19,6 +19,7 @@ constexpr double kOldestMode_s = 3.5;      // after so long without a report the
 constexpr double kAttitudeDelay_s = 0.15;  // from a commanded lean to the lean
 constexpr double kFastest_mps = 0.8;       // towards the pad
 constexpr double kJerk = 8;                // m/s^3, of the commanded acceleration
+constexpr double kMostVertical = 3;        // m/s^2, commanded
 constexpr double kStepLimit_s = 0.2;
 constexpr double kStill_mps = 0.25;
 constexpr double kKnown_mps = 0.45;  // standard deviation of a velocity that is followed
@@ -63,9 +64,8 @@ RelativeGuidance::Gains RelativeGuidance::GainsFor(double delay_s) {
 }
 
 RelativeOutput RelativeGuidance::Update(const RelativeInput& input) {
-  const bool has_link = input.is_link_up && input.mode_age_s <= kOldestMode_s;
   RelativeOutput output;
-  if (has_link) {
+  if (HasLink(input)) {
     FollowMode(input);
     if (is_active_ && !input.pad) GiveUp(input, "the attitude was not sent: lands where it is");
     if (is_active_) ChoosePhase(input);
@@ -74,7 +74,7 @@ RelativeOutput RelativeGuidance::Update(const RelativeInput& input) {
       if (phase_ == GuidancePhase::kLanded) output.request = GuidanceRequest::kLand;
     } else if (has_given_up_) {
       output.request = RequestEnd(input);
-    } else if (may_stream_) {
+    } else if (may_stream_ && !input.is_guided) {
       output.set_point = RelativeSetPoint{};
     }
   }
@@ -86,21 +86,35 @@ RelativeOutput RelativeGuidance::Update(const RelativeInput& input) {
   return output;
 }
 
+// The pilot may have left the mode while there was no link: its next report decides.
+bool RelativeGuidance::HasLink(const RelativeInput& input) {
+  if (!input.is_link_up || input.mode_age_s > kOldestMode_s) {
+    mode_wanted_since_ = input.now;
+    return false;
+  }
+  if (!mode_wanted_since_) return true;
+  if (input.mode_age_s > ToSeconds(input.now - *mode_wanted_since_)) return false;
+  mode_wanted_since_.reset();
+  return true;
+}
+
 void RelativeGuidance::FollowMode(const RelativeInput& input) {
   const bool was_guided = was_guided_.value_or(input.is_guided);
   was_guided_ = input.is_guided;
   if (input.is_guided && !was_guided) Start(input);
   if (input.is_guided || !was_guided) return;
-  End(phase_ == GuidancePhase::kLanded ? "landed; guidance has ended"
-                                       : "the mode was left: give it anew to begin again");
+  const char* const left = streams_ ? "the mode was left: disarm before it is given again"
+                                    : "the mode was left: give it anew to begin again";
+  End(phase_ == GuidancePhase::kLanded ? "landed; guidance has ended" : left);
   has_given_up_ = false;
 }
 
 void RelativeGuidance::Start(const RelativeInput& input) {
   may_stream_ = false;
   if (!input.is_armed || input.is_landed) return End("refused: the UAV is on the ground");
+  if (!input.is_allowed) return GiveUp(input, "refused: ends the mode");
   const bool is_seen = input.pad && input.pad_age_s < kLost_s;
-  if (!is_seen || input.pad->Sigma(State::kVelocity) > kKnown_mps) {
+  if (!is_seen || !(input.pad->Sigma(State::kVelocity) <= kKnown_mps)) {
     return GiveUp(input, "refused: the pad is not in view, or not for long enough");
   }
   is_active_ = true;
@@ -164,7 +178,7 @@ void RelativeGuidance::Lose(const RelativeInput& input) {
     lost_after_s_ += 0.25;
   }
   sunk_m_ = 0;
-  height_m_ = -pad.way().z();
+  lost_height_m_ = -pad.way().z();
   Enter(GuidancePhase::kSearch, "the pad is lost: level, against the wind as it was", input.now);
 }
 
@@ -172,7 +186,7 @@ void RelativeGuidance::FollowLoss(const RelativeInput& input) {
   constexpr double kFound_s = 0.15;
   const double age_s = input.pad_age_s;
   if (age_s < kFound_s && input.pad->Sigma(State::kVelocity) < kKnown_mps) {
-    height_m_ = -input.pad->way().z();
+    if (job_.lands) height_m_ = -input.pad->way().z();
     return Enter(GuidancePhase::kApproach, "the pad is back", input.now);
   }
   if (age_s <= kWiden_s) return;
@@ -185,7 +199,7 @@ void RelativeGuidance::FollowLoss(const RelativeInput& input) {
 // the autopilot controls the climb rate.
 void RelativeGuidance::EndLoss(const RelativeInput& input) {
   if (input.has_pilot) return GiveUp(input, "the pad is lost: fly by hand, or it lands");
-  const bool is_low = height_m_ - sunk_m_ - options_.leg_m < kLandBelow_m;
+  const bool is_low = lost_height_m_ - sunk_m_ - options_.leg_m < kLandBelow_m;
   if (is_low || streams_) {
     return GiveUp(input, "the pad is lost: lands where it is");
   }
@@ -249,19 +263,25 @@ RelativeSetPoint RelativeGuidance::Fly(const RelativeInput& input) {
   const double step_s = std::clamp(ToSeconds(input.now - last_), 0.0, kStepLimit_s);
   RelativeSetPoint command;
   Vector2d wanted = phase_ == GuidancePhase::kLanded ? Vector2d(0, 0) : WantedAcceleration(input);
-  const Vector2d before = sent_.value_or(Vector2d(-input.pad->bias().head<2>()));
+  const Vector2d before = sent_.value_or(Limited(-input.pad->bias().head<2>(), MostLevel()));
   wanted = before + Limited(wanted - before, kJerk * step_s);
   command.climb_mps = WantedClimb(input);
   if (phase_ == GuidancePhase::kSearch) sunk_m_ -= step_s * command.climb_mps;
   const Vector3d velocity = input.pad->velocity();
   command.acceleration << wanted,
-      kClimbGain * (command.climb_mps + velocity.z()) - input.pad->bias().z();
+      std::clamp(kClimbGain * (command.climb_mps + velocity.z()) - input.pad->bias().z(),
+                 -kMostVertical, kMostVertical);
   return command;
 }
 
-Vector2d RelativeGuidance::WantedAcceleration(const RelativeInput& input) const {
+// The largest level acceleration, m/s^2.
+double RelativeGuidance::MostLevel() const {
   constexpr double kTilt = Radians(20);
-  const double most = kGravity * std::tan(std::min(kTilt, Radians(options_.limits.max_tilt_deg)));
+  return kGravity * std::tan(std::min(kTilt, Radians(options_.limits.max_tilt_deg)));
+}
+
+Vector2d RelativeGuidance::WantedAcceleration(const RelativeInput& input) const {
+  const double most = MostLevel();
   const RelativePadState::Estimate& pad = *input.pad;
   const Vector2d against_bias = Limited(-pad.bias().head<2>(), most);
   const bool is_followed = phase_ != GuidancePhase::kSearch &&

@@ -25,8 +25,9 @@ struct RelativeInput {
   Time now;  // never earlier than the one before
   // Predicted to when a set-point takes effect; nothing: the pad was not seen yet.
   std::optional<RelativePadState::Estimate> pad;
-  double pad_age_s = 0;    // since the newest frame that showed the pad
+  double pad_age_s = 0;    // since the newest frame that showed the pad, without its usual delay
   bool is_guided = false;  // the mode in which the autopilot obeys these set-points
+  bool is_allowed = true;  // false: there is a reason against it, and the mode is to be ended
   bool is_armed = false;
   bool is_landed = false;   // the autopilot reports that it is on the ground
   bool is_link_up = true;   // messages come from the autopilot, and its attitude
@@ -66,7 +67,9 @@ class RelativeGuidance {
   RelativeOutput Update(const RelativeInput& input);
 
   // Allows set-points before the mode is given again, after the pilot has left it.
-  void Rearm() { may_stream_ = streams_; }
+  void Rearm() {
+    if (!is_active_) may_stream_ = streams_;
+  }
 
   GuidancePhase phase() const { return phase_; }
   bool is_active() const { return is_active_; }
@@ -79,6 +82,7 @@ class RelativeGuidance {
   };
   static Gains GainsFor(double delay_s);
 
+  bool HasLink(const RelativeInput& input);
   void FollowMode(const RelativeInput& input);
   void Start(const RelativeInput& input);
   void End(const char* reason);
@@ -95,6 +99,7 @@ class RelativeGuidance {
   bool IsAbove(const RelativeInput& input, double radius_m, double speed_mps) const;
   double WantedClimb(const RelativeInput& input) const;
   RelativeSetPoint Fly(const RelativeInput& input);
+  double MostLevel() const;
   Eigen::Vector2d WantedAcceleration(const RelativeInput& input) const;
   GuidanceRequest RequestEnd(const RelativeInput& input) const;
 
@@ -109,9 +114,11 @@ class RelativeGuidance {
   bool has_given_up_ = false;
   Time gave_up_;
   std::optional<bool> was_guided_;
-  double height_m_ = 0;  // of the body above the pad, to hold
-  // Without the pad: its age from which the UAV sinks, and how far it has sunk.
-  double lost_after_s_ = 0, sunk_m_ = 0;
+  std::optional<Time> mode_wanted_since_;  // the link was gone until then
+  double height_m_ = 0;                    // of the body above the pad, to hold
+  // Without the pad: its age from which the UAV sinks, the height of the loss, and how far it has
+  // sunk.
+  double lost_after_s_ = 0, lost_height_m_ = 0, sunk_m_ = 0;
   std::optional<Eigen::Vector2d> sent_;  // the last acceleration
   Time last_;
 };

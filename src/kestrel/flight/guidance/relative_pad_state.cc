@@ -35,7 +35,8 @@ constexpr double kThrustLag_s = 0.12;
 constexpr double kContradiction = 25;  // squared, in variances
 constexpr double kContradicted_s = 0.5;
 constexpr double kSubStep_s = 0.05;
-constexpr double kLargestGap_s = 0.3;  // between two attitudes
+constexpr double kLargestGap_s = 0.5;  // between two attitudes
+constexpr double kLongestCoast_s = 60;
 
 double SquareOf(double value) { return value * value; }
 
@@ -59,12 +60,12 @@ RelativePadState::RelativePadState(bool pad_moves) : pad_moves_(pad_moves) {}
 
 // The heading follows the gyros from the attitude before: a compass that turns the autopilot's
 // world does not turn this frame.
-void RelativePadState::AddAttitude(Time time, const Quaterniond& world_from_body,
+bool RelativePadState::AddAttitude(Time time, const Quaterniond& world_from_body,
                                    const Vector3d& rate_in_body) {
   double step_s = 0;
   if (size_ > 0) {
     step_s = ToSeconds(time - InputAt(size_ - 1).time);
-    if (!(step_s > 0)) return;
+    if (!(step_s > 0)) return false;
     if (step_s > kLargestGap_s) {
       size_ = 0;
       sighted_.reset();
@@ -73,6 +74,7 @@ void RelativePadState::AddAttitude(Time time, const Quaterniond& world_from_body
     heading_ +=
         HeadingOf(last_attitude_ * RotationBy(turned_s * rate_in_body)) - HeadingOf(last_attitude_);
   }
+  if (sighted_ && ToSeconds(time - *sighted_) > kLongestCoast_s) sighted_.reset();
   last_attitude_ = world_from_body;
   thrust_ += (1 - std::exp(-step_s / kThrustLag_s)) * (commanded_ - thrust_);
   const Eigen::AngleAxisd turn(heading_ - HeadingOf(world_from_body), Vector3d::UnitZ());
@@ -81,15 +83,16 @@ void RelativePadState::AddAttitude(Time time, const Quaterniond& world_from_body
   Vector3d acceleration = (kGravity + thrust_) / std::max(up.z(), 0.5) * up;
   acceleration.z() = thrust_;
   if (size_ == kInputs) {
-    if (sighted_ && *sighted_ < InputAt(1).time) {
-      Propagate(*sighted_, InputAt(1).time, &axes_);
-      sighted_ = InputAt(1).time;
+    if (sighted_ && state_time_ < InputAt(1).time) {
+      Propagate(state_time_, InputAt(1).time, &axes_);
+      state_time_ = InputAt(1).time;
     }
     first_ = (first_ + 1) % kInputs;
     --size_;
   }
   inputs_[(first_ + size_) % kInputs] = {time, level_from_body, acceleration};
   ++size_;
+  return true;
 }
 
 void RelativePadState::ForgetThrust() {
@@ -102,7 +105,7 @@ void RelativePadState::ForgetThrust() {
 bool RelativePadState::AddSight(Time exposure, const Vector3d& pad_in_body,
                                 const Matrix3d& covariance) {
   const auto index = IndexAt(exposure);
-  if (!index || (sighted_ && exposure <= *sighted_)) return false;
+  if (!index || (sighted_ && exposure <= state_time_)) return false;
   const Quaterniond level_from_body = LevelFromBody(exposure, *index);
   const Matrix3d rotation = level_from_body.toRotationMatrix();
   const Vector3d way = rotation * pad_in_body;
@@ -116,16 +119,15 @@ bool RelativePadState::AddSight(Time exposure, const Vector3d& pad_in_body,
     return true;
   }
   const std::array<Axis, 3> before = axes_;
-  Propagate(*sighted_, exposure, &axes_);
+  Propagate(state_time_, exposure, &axes_);
   if (Correct(way, variance)) {
-    sighted_ = exposure;
+    sighted_ = state_time_ = exposure;
     contradicted_.reset();
     return true;
   }
   axes_ = before;
   if (!contradicted_) contradicted_ = exposure;
   if (ToSeconds(exposure - *contradicted_) < kContradicted_s) return false;
-  ++restarts_;
   Begin(exposure, way, variance);
   return true;
 }
@@ -144,7 +146,7 @@ void RelativePadState::Begin(Time time, const Vector3d& way, const Vector3d& var
     axis.covariance.diagonal() << variance(i), SquareOf(pad_moves_ ? kDriving_mps : kStanding_mps),
         SquareOf(pad_moves_ ? kDriving : kGusts), bias_variance;
   }
-  sighted_ = time;
+  sighted_ = state_time_ = time;
   contradicted_.reset();
 }
 
@@ -170,7 +172,7 @@ bool RelativePadState::Correct(const Vector3d& way, const Vector3d& variance) {
 std::optional<RelativePadState::Estimate> RelativePadState::At(Time time) const {
   if (!sighted_ || size_ == 0) return std::nullopt;
   Estimate estimate{axes_};
-  Propagate(*sighted_, std::max(time, *sighted_), &estimate.axes);
+  Propagate(state_time_, std::max(time, state_time_), &estimate.axes);
   // Into the axes of the heading. The two horizontal filters hardly differ in their covariance.
   const Eigen::Rotation2Dd turn(-heading_);
   for (const int index : {kWay, kVelocity, kAcceleration, kBias}) {

@@ -51,7 +51,8 @@ class RelativePadState {
   explicit RelativePadState(bool pad_moves);
 
   // The autopilot's attitude, and its turn rate in the body (rad/s). In order of time.
-  void AddAttitude(Time time, const Eigen::Quaterniond& world_from_body,
+  // False when it was not used: it is not later than the one before.
+  bool AddAttitude(Time time, const Eigen::Quaterniond& world_from_body,
                    const Eigen::Vector3d& rate_in_body);
   // From now on the rotors are commanded to accelerate the UAV upwards by so much (m/s^2).
   void set_climb_acceleration(double acceleration) { commanded_ = acceleration; }
@@ -62,11 +63,9 @@ class RelativePadState {
   // or it contradicts the estimate; after half a second of contradictions the estimate begins anew.
   bool AddSight(Time exposure, const Eigen::Vector3d& pad_in_body,
                 const Eigen::Matrix3d& covariance);
-  void Reset() { sighted_.reset(); }
 
   // Time of the newest frame that was used; nothing: there is no estimate.
   const std::optional<Time>& sighted() const { return sighted_; }
-  int restarts() const { return restarts_; }  // how often it has begun anew after contradictions
   // Nothing: no frame has shown the pad, or there are no attitudes.
   std::optional<Estimate> At(Time time) const;
 
@@ -88,13 +87,13 @@ class RelativePadState {
   void Step(double seconds, const Eigen::Vector3d& acceleration, std::array<Axis, 3>* axes) const;
 
   bool pad_moves_;
-  std::array<Axis, 3> axes_;  // at sighted_
+  std::array<Axis, 3> axes_;  // at state_time_
+  Time state_time_{};         // of the newest frame, or of the oldest attitude that is kept
   std::optional<Time> sighted_;
   std::optional<Time> contradicted_;  // since when
-  int restarts_ = 0;
-  double commanded_ = 0;  // upwards
-  double thrust_ = 0;     // the same after the lag of attitude and motors
-  double heading_ = 0;    // of the body in the frame
+  double commanded_ = 0;              // upwards
+  double thrust_ = 0;                 // the same after the lag of attitude and motors
+  double heading_ = 0;                // of the body in the frame
   Eigen::Quaterniond last_attitude_ = Eigen::Quaterniond::Identity();
   std::array<Input, kInputs> inputs_;
   std::size_t first_ = 0, size_ = 0;

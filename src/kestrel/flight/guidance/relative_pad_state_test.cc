@@ -161,10 +161,25 @@ TEST(RelativePadStateTest, OtherPadIsTakenAfterHalfASecond) {
   };
   EXPECT_TRUE(see(2, {0, 0, -3}));
   EXPECT_FALSE(see(0.3, {2, 0, -3}));
-  EXPECT_EQ(state.restarts(), 0);
   EXPECT_TRUE(see(0.5, {2, 0, -3}));
-  EXPECT_EQ(state.restarts(), 1);
   EXPECT_NEAR(state.At(at(s))->way().x(), 2, 0.05);
+}
+
+// As often as the attitude may come: the ring of attitudes is shorter than the loss.
+TEST(RelativePadStateTest, AgeOfSightGrowsWithoutPad) {
+  State state(false);
+  const auto at = [](int i) { return TimeFromNanoseconds(10'000'000'000 + 2'000'000LL * i); };
+  state.AddAttitude(at(0), Quaterniond::Identity(), Vector3d::Zero());
+  ASSERT_TRUE(state.AddSight(at(0), {0, 0, -3}, 1e-4 * Matrix3d::Identity()));
+  for (int i = 1; i <= 5000; ++i) {  // ten seconds
+    state.AddAttitude(at(i), Quaterniond::Identity(), Vector3d::Zero());
+  }
+  EXPECT_EQ(state.sighted(), at(0));
+  EXPECT_TRUE(state.At(at(5000)));
+  for (int i = 5001; i <= 32000; ++i) {
+    state.AddAttitude(at(i), Quaterniond::Identity(), Vector3d::Zero());
+  }
+  EXPECT_FALSE(state.sighted());  // a minute later it is nowhere
 }
 
 TEST(RelativePadStateTest, SightWithoutAttitudeIsNotUsed) {

@@ -516,7 +516,9 @@ LandingWatchInput FlightProgram::LandingInput(Time now) {
   }
   if (no_position_) {
     input.has_contact = input.has_contact || no_position_->phase() == GuidancePhase::kLanded;
-    input.gave_up = no_position_->gave_up();
+    if (no_position_->is_flying()) gave_up_.clear();
+    if (const std::string reason = no_position_->gave_up(); !reason.empty()) gave_up_ = reason;
+    input.gave_up = gave_up_;
   }
   if (!guided_) return input;
   input.has_contact = input.has_contact || guided_->phase() == GuidancePhase::kLanded;

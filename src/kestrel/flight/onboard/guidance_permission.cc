@@ -123,7 +123,8 @@ std::string WhyNotGuide(const Autopilot& autopilot, const GuidanceOptions& optio
   }
   auto home = HomeOf(autopilot);
   // PX4 has none without a global position.
-  if (!home && is_position_by_pad) home = position.head<2>();
+  if (!home && is_position_by_pad && autopilot.kind() == AutopilotKind::kPx4)
+    home = position.head<2>();
   if (!home) return "the autopilot has no home position";
   if (!autopilot.parameters().is_done()) return "the autopilot's limits are not read yet";
   if (const std::vector<std::string> beyond = ViolationsOf(LimitsOf(autopilot), limits);

@@ -11,6 +11,7 @@
 #include "kestrel/comms/mavlink/set_point_message.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/geometry/rigid_transform.h"
+#include "kestrel/flight/guidance/guidance.h"
 #include "kestrel/flight/onboard/guidance_permission.h"
 #include "kestrel/flight/onboard/target_sender.h"
 
@@ -48,18 +49,21 @@ void NoPositionFlight::TakeAttitude(const PoseSample& attitude) {
   const Eigen::Vector3d rate =
       attitude.motion ? attitude.motion->rate_in_body : Eigen::Vector3d(0, 0, 0);
   const Eigen::Quaterniond& rotation = attitude.world_from_body.rotation;
-  pad_.AddAttitude(attitude.time, rotation, rate);
+  if (!pad_.AddAttitude(attitude.time, rotation, rate)) return;
   attitude_time_ = attitude.time;
   heading_ = HeadingOf(rotation);
-  turn_rate_ = (rotation * rate).z();
 }
 
 bool NoPositionFlight::Fly(Time now, const TrackSnapshot& track) {
   const bool is_news = track.sight && track.sight->time != reported_frame_;
   if (is_news) {
     reported_frame_ = track.sight->time;
-    pad_.AddSight(track.sight->time, track.sight->target_from_body.Inverse().translation,
-                  track.sight->covariance);
+    const bool is_used =
+        pad_.AddSight(track.sight->time, track.sight->target_from_body.Inverse().translation,
+                      track.sight->covariance);
+    if (is_used) {
+      delay_s_ = std::min(ToSeconds(now - track.sight->time), GuidanceInput::kMostVideoDelay_s);
+    }
   }
   if (!schedule_.IsDue(now, is_news)) return false;
   KnowAutopilot(now);
@@ -67,11 +71,14 @@ bool NoPositionFlight::Fly(Time now, const TrackSnapshot& track) {
   RelativeInput input = Input(now);
   WatchMode(now, input.pad.has_value());
   input.is_guided = is_begun_;
+  input.is_allowed = refusal_.empty();
   const RelativeOutput output = guidance_->Update(input);
   ReportPhase(output);
   Request(output.request, now);
-  if (!output.set_point || !(is_begun_ || refusal_.empty())) return false;
-  if (!Send(*output.set_point, now)) return false;
+  // The pad's estimate counts on what is sent.
+  pad_.set_climb_acceleration(0);
+  const bool may_send = is_begun_ || (refusal_.empty() && !IsMode());
+  if (!output.set_point || !may_send || !Send(*output.set_point, now)) return false;
   ++set_points_;
   return is_news && is_begun_;
 }
@@ -85,6 +92,10 @@ void NoPositionFlight::KnowAutopilot(Time now) {
   guidance_.emplace(options_.guidance, job_, /*streams=*/is_px4);
   permission_due_ = now;
   was_mode_ = IsMode();
+  if (was_mode_ && autopilot_.is_armed()) {
+    Notify(mavlink::kSeverityWarning,
+           fmt::format("{} was on before: leave it and give it again", autopilot_.mode_name()));
+  }
 }
 
 bool NoPositionFlight::IsMode() const {
@@ -111,16 +122,15 @@ void NoPositionFlight::WatchMode(Time now, bool is_seen) {
     Notify(mavlink::kSeverityWarning, "guidance would be refused now: " + refusal_);
   }
   const bool is_other = autopilot_.is_guided_mode() && !is_mode;
-  if (is_other && !std::exchange(was_refused_mode_, is_other)) {
+  if (is_other && !was_refused_mode_) {
     Notify(mavlink::kSeverityWarning, "GUIDED needs a position: give GUIDED_NOGPS");
   }
   was_refused_mode_ = is_other;
   if (!is_given_ || is_begun_ || !is_flying) return;
   is_given_ = false;
   refusal_ = WhyNot(now);
-  if (!refusal_.empty()) {
-    return Notify(mavlink::kSeverityWarning, "guidance refused: " + refusal_);
-  }
+  // Guidance then ends the mode, in which the UAV would drift.
+  if (!refusal_.empty()) Notify(mavlink::kSeverityWarning, "guidance refused: " + refusal_);
   is_begun_ = true;
   yaw_ = heading_;
   // The autopilot's own height control flew so far, and its thrust was not commanded.
@@ -154,7 +164,9 @@ RelativeInput NoPositionFlight::Input(Time now) {
   RelativeInput input;
   input.now = now;
   input.pad = pad_.At(now + link_delay);
-  if (pad_.sighted()) input.pad_age_s = ToSeconds(now - *pad_.sighted());
+  if (pad_.sighted()) {
+    input.pad_age_s = std::max(ToSeconds(now - *pad_.sighted()) - delay_s_, 0.0);
+  }
   input.is_armed = autopilot_.is_armed();
   input.is_landed = autopilot_.landed_state() == LandedState::kOnGround;
   input.is_link_up = ToSeconds(now - attitude_time_) < kAttitudeAge_s;
@@ -165,18 +177,20 @@ RelativeInput NoPositionFlight::Input(Time now) {
 }
 
 bool NoPositionFlight::Send(const RelativeSetPoint& set_point, Time now) {
-  const double ahead_s = std::clamp(ToSeconds(now - attitude_time_), 0.0, kAttitudeAge_s);
-  const Eigen::AngleAxisd world_from_level(heading_ + ahead_s * turn_rate_,
-                                           Eigen::Vector3d::UnitZ());
+  const Eigen::AngleAxisd world_from_level(heading_, Eigen::Vector3d::UnitZ());
   LeanSetPoint sent;
   sent.acceleration = world_from_level * set_point.acceleration;
   sent.climb_mps = set_point.climb_mps;
   sent.yaw = is_begun_ ? yaw_ : heading_;
   const AutopilotLimits limits = LimitsOf(autopilot_);
-  const bool is_commanded = is_begun_ && kind_ == AutopilotKind::kPx4;
-  pad_.set_climb_acceleration(is_commanded ? set_point.acceleration.z() : 0);
-  return SendSetPoint(sent, limits.max_climb_mps.value_or(kClimb_mps),
-                      limits.max_sink_mps.value_or(kSink_mps), autopilot_, now, connection_);
+  if (!SendSetPoint(sent, limits.max_climb_mps.value_or(kClimb_mps),
+                    limits.max_sink_mps.value_or(kSink_mps), autopilot_, now, connection_)) {
+    return false;
+  }
+  if (is_begun_ && kind_ == AutopilotKind::kPx4) {
+    pad_.set_climb_acceleration(set_point.acceleration.z());
+  }
+  return true;
 }
 
 void NoPositionFlight::Request(GuidanceRequest request, Time now) {

@@ -39,10 +39,9 @@ class NoPositionFlight {
   }
   bool is_flying() const { return guidance_->is_active() && !is_at_deck(); }
   int set_points() const { return set_points_; }  // sent
+  bool has_given_up() const { return guidance_->has_given_up(); }
   // Why guidance gave up; empty: it flies, the pilot has taken over since, or it has not begun.
-  std::string gave_up() const { return guidance_->has_given_up() ? reported_reason_ : ""; }
-  // The pad by the estimate; nothing: it was not seen yet.
-  const RelativePadState& pad() const { return pad_; }
+  std::string gave_up() const { return has_given_up() ? reported_reason_ : ""; }
 
  private:
   void KnowAutopilot(Time now);
@@ -66,9 +65,9 @@ class NoPositionFlight {
   SendSchedule schedule_;
 
   Time attitude_time_{};
-  double heading_ = 0;    // by the autopilot, rad from east to north
-  double turn_rate_ = 0;  // rad/s
-  double yaw_ = 0;        // where the nose is to point
+  double heading_ = 0;  // by the autopilot, rad from east to north
+  double delay_s_ = 0;  // of the newest frame that was used
+  double yaw_ = 0;      // where the nose is to point
   Time reported_frame_{};
   bool was_mode_ = false;
   bool is_given_ = false;  // the pilot has given the mode, and guidance has not begun yet

@@ -74,7 +74,8 @@ void PadPosition::Send(Time now, const TrackSnapshot& track) {
   WatchPad(pose);
   if (is_moving_) return known_.reset();
   known_ = sight->time;
-  is_used_ = is_used_ || autopilot_.is_position_good(now).value_or(true);
+  const bool counts_unreported = autopilot_.kind() != AutopilotKind::kPx4;
+  is_used_ = is_used_ || autopilot_.is_position_good(now).value_or(counts_unreported);
   if (!first_) first_ = now;
   connection_->Send(
       OdometryOf(pose, autopilot_.kind(), static_cast<std::uint64_t>(stamp_ns / kNsPerUs)));

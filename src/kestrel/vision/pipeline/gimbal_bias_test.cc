@@ -38,8 +38,8 @@ Quaterniond LookFrom(const Vector3d& position) {
   return Quaterniond(axes);
 }
 
-// From 12 m beside the pad to 3 m, a quarter around it, by a gimbal that is a degree off in each
-// axis.
+// From 12 m beside the pad to 3 m, a quarter around it, by a gimbal that is half a degree off in
+// each axis.
 Outcome Fly(std::uint64_t seed) {
   Random random(seed);
   const Vector3d angles = Normal(Radians(0.6), &random);
