@@ -35,9 +35,9 @@ WorldAlignment OwnFromWorld(const TeamView& view, const UavKey& self, const UavK
 const TeamGoal& GoalChooser::Update(const TeamView& view, const FlightToObjects& flight, Time local,
                                     TeamMember* member) {
   const bool is_at_work = flight.at && flight.at->is_at_work;
-  member->SetFlight(flight.at);
-  FindMates(view, is_at_work, local, *member);
-  if (goal_.number != 0 && flight.ended == goal_.number) Leave(flight.has_taken, local, member);
+  FindMates(view, flight, local, *member);
+  if (!flight.at) left_.clear();
+  if (!names_.empty() && flight.ended == numbers_) Leave(flight.has_taken, local, member);
   if (!flight.at || !flight.wants_object) {
     member->SetClaim(std::nullopt);
     goal_.number = 0;
@@ -59,7 +59,8 @@ const TeamGoal& GoalChooser::Update(const TeamView& view, const FlightToObjects&
 
 void GoalChooser::Take(const TeamView& view, std::size_t index, const UavKey& self) {
   std::vector<ObjectRef> names = NamesOf(view, index);
-  if (goal_.number == 0 || !HaveCommon(names, names_)) goal_.number = ++numbers_;
+  if (!HaveCommon(names, names_)) ++numbers_;
+  goal_.number = numbers_;
   names_ = std::move(names);
   goal_.object = view.objects[index];
   goal_.own_id = 0;
@@ -72,34 +73,39 @@ bool GoalChooser::MayChoose(const TeamView& view, std::size_t index, const UavKe
   const MappedObject& object = view.objects[index];
   const auto class_index = ClassOf(object, model_);
   if (!class_index || model_.classes[*class_index].name != class_name_) return false;
+  if (object.sigma_m() > kMostSoughtSigma_m) return false;
   if (!left_.empty() && HaveCommon(NamesOf(view, index), left_)) return false;
   // Of two UAVs that have chosen at once, the first by key stays.
   const bool is_own = view.holders[index] == self;
   for (std::size_t i = 0; i < view.objects.size(); ++i) {
     const std::optional<UavKey>& holder = view.holders[i];
     if (!holder || holder == self || (is_own && self < *holder)) continue;
-    if (i == index || (view.objects[i].position() - object.position()).norm() < kApart_m) {
+    if (i == index || (view.objects[i].position() - object.position()).norm() < kObjectsApart_m) {
       return false;
     }
   }
   return true;
 }
 
-void GoalChooser::FindMates(const TeamView& view, bool is_at_work, Time local,
+void GoalChooser::FindMates(const TeamView& view, const FlightToObjects& flight, Time local,
                             const TeamMember& member) {
-  goal_.rank = 0;
+  const bool is_at_work = flight.at && flight.at->is_at_work;
+  int rank = 0;
+  goal_.time = local;
   goal_.mates.clear();
   for (const UavKey& uav : member.Known()) {
     const auto other = uav == member.self() ? std::nullopt : member.FlightOf(uav, local);
     if (!other) continue;
     const bool is_before = uav < member.self();
-    if (is_before) ++goal_.rank;
+    if (is_before) ++rank;
     const WorldAlignment own_from_world = OwnFromWorld(view, member.self(), uav);
     TeamMate& mate = goal_.mates.emplace_back();
     mate.position = own_from_world * other->position;
     mate.velocity = own_from_world * (other->position + other->velocity) - mate.position;
     mate.goes_first = other->is_at_work == is_at_work ? is_before : other->is_at_work;
   }
+  // Those that are not heard any more are still there.
+  goal_.rank = flight.at ? std::max(goal_.rank, rank) : rank;
 }
 
 void GoalChooser::Leave(bool is_taken, Time local, TeamMember* member) {
@@ -107,6 +113,7 @@ void GoalChooser::Leave(bool is_taken, Time local, TeamMember* member) {
     if (is_taken) member->SetGone(ref, local);
     if (!is_taken) left_.push_back(ref);
   }
+  names_.clear();
   goal_.number = 0;
   member->SetClaim(std::nullopt);
 }

@@ -37,22 +37,24 @@ struct TeamGoal {
   int number = 0;           // of its object: each has another one, from 1; 0: there is none
   std::int64_t own_id = 0;  // of that object in the own map; 0: it is not there
   MappedObject object;      // the same in the team's map, in the own world and on the own clock
-  int rank = 0;             // number of UAVs that fly and come before it by their keys
+  int rank = 0;  // number of UAVs that fly and come before it by their keys; in flight the largest
+  Time time;     // when the mates were where they are here, on the own clock
   std::vector<TeamMate> mates;
 };
 
 // Chooses the objects of one class to which a UAV goes one after the other, so that no two UAVs go
-// to one object, or to two that are nearer than kApart_m to each other. One thread at a time.
+// to one object, or to two that are nearer than kObjectsApart_m to each other. One thread at a
+// time.
 class GoalChooser {
  public:
-  static constexpr double kApart_m = 7;
+  static constexpr double kObjectsApart_m = 7;
 
   // 'class_name': of one class of the model, or of several.
   GoalChooser(ObjectModel model, std::string class_name)
       : model_(std::move(model)), class_name_(std::move(class_name)) {}
 
   // Chooses and claims; call it as often as digests are sent. A UAV that wants no object has no
-  // claim.
+  // claim. The member has the place of the flight from its SetFlight.
   const TeamGoal& Update(const TeamView& view, const FlightToObjects& flight, Time local,
                          TeamMember* member);
   const TeamGoal& goal() const { return goal_; }
@@ -61,14 +63,15 @@ class GoalChooser {
   void Leave(bool is_taken, Time local, TeamMember* member);
   bool MayChoose(const TeamView& view, std::size_t index, const UavKey& self) const;
   void Take(const TeamView& view, std::size_t index, const UavKey& self);
-  void FindMates(const TeamView& view, bool is_at_work, Time local, const TeamMember& member);
+  void FindMates(const TeamView& view, const FlightToObjects& flight, Time local,
+                 const TeamMember& member);
 
   ObjectModel model_;
   std::string class_name_;
   TeamGoal goal_;
   int numbers_ = 0;               // that were given so far
-  std::vector<ObjectRef> names_;  // of the goal's object, in all maps
-  std::vector<ObjectRef> left_;   // objects that this UAV will not try again
+  std::vector<ObjectRef> names_;  // of the newest number's object, in all maps, until it is left
+  std::vector<ObjectRef> left_;   // objects that this UAV will not try again in this flight
 };
 
 }  // namespace kestrel

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/comms/team/team_goal.h"
 
+#include <chrono>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -40,6 +43,7 @@ struct Team {
     const Time local = radio.LocalTime(i);
     for (MappedObject& object : uav.map) object.time = object.last_seen = local;
     if (uav.sees) member.Share(uav.map, local);
+    member.SetFlight(uav.flight.at);
     uav.goal = uav.chooser.Update(ViewTeam(member, local, &uav.fusion), uav.flight, local, &member);
   }
   void Leave(std::size_t i, bool is_taken) {
@@ -112,6 +116,72 @@ TEST(TeamGoalTest, ObjectThatIsLeftIsForTheOthers) {
   team.Run(2);
   EXPECT_EQ(team.uavs[0].goal.number, 0);
   EXPECT_NE(team.uavs[1].goal.number, 0);
+}
+
+TEST(TeamGoalTest, ObjectThatIsLeftIsTriedAgainInTheNextFlight) {
+  Team team(1);
+  team.uavs[0].map = {Red(1, {5, 0, 0})};
+  team.Run(1);
+  team.Leave(0, /*is_taken=*/false);
+  team.Run(1);
+  const auto at = std::exchange(team.uavs[0].flight.at, std::nullopt);
+  team.Run(1);
+  team.uavs[0].flight.at = at;
+  team.Run(1);
+  EXPECT_NE(team.uavs[0].goal.number, 0);
+}
+
+TEST(TeamGoalTest, JobThatEndsWhileThereIsNoGoalIsReported) {
+  Team team(2);
+  team.uavs[0].map = {Red(1, {5, 0, 0})};
+  team.Run(2);
+  const int number = team.uavs[0].goal.number;
+  team.uavs[0].flight.wants_object = false;
+  team.Run(1);
+  EXPECT_EQ(team.uavs[0].goal.number, 0);
+  ASSERT_NE(team.uavs[1].goal.number, 0);
+  team.uavs[0].sees = false;
+  team.uavs[0].flight.ended = number;
+  team.uavs[0].flight.has_taken = true;
+  team.Run(1);
+  EXPECT_EQ(team.uavs[1].goal.number, 0);
+}
+
+TEST(TeamGoalTest, ObjectKeepsItsNumber) {
+  Team team(1);
+  team.uavs[0].map = {Red(1, {5, 0, 0})};
+  team.Run(1);
+  const int number = team.uavs[0].goal.number;
+  team.uavs[0].flight.wants_object = false;
+  team.Run(1);
+  team.uavs[0].flight.wants_object = true;
+  team.Run(1);
+  EXPECT_EQ(team.uavs[0].goal.number, number);
+}
+
+TEST(TeamGoalTest, ObjectThatMayBeAnywhereIsNotChosen) {
+  Team team(1);
+  team.uavs[0].map = {TestDisc(5, {5, 0, 0}, Time(), /*sigma_m=*/4)};
+  team.Run(1);
+  EXPECT_EQ(team.uavs[0].goal.number, 0);
+}
+
+TEST(TeamGoalTest, LayerAndPlacesOutlastTheRadio) {
+  Team team(2);
+  team.uavs[0].flight.at->velocity = {1, 0, 0};
+  team.Run(2);
+  EXPECT_EQ(team.uavs[1].goal.rank, 1);
+  team.radio.is_cut = [](auto, auto) { return true; };
+  team.Run(4);
+  ASSERT_EQ(team.uavs[1].goal.mates.size(), 1u);
+  EXPECT_NEAR(team.uavs[1].goal.mates[0].position.x(), 2, 0.3);  // of 2 s
+  EXPECT_EQ(team.uavs[1].goal.time, team.radio.LocalTime(1) - std::chrono::milliseconds(250));
+  team.Run(6);
+  EXPECT_TRUE(team.uavs[1].goal.mates.empty());
+  EXPECT_EQ(team.uavs[1].goal.rank, 1);
+  team.uavs[1].flight.at.reset();
+  team.Run(0.25);
+  EXPECT_EQ(team.uavs[1].goal.rank, 0);
 }
 
 TEST(TeamGoalTest, UavAtWorkGoesFirst) {

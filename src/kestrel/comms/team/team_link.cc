@@ -142,6 +142,7 @@ void TeamLink::Finish(std::vector<MappedObject> objects, const std::function<boo
   const Duration silence = DurationFromSeconds(options_.team.silence_s);
   Share(std::move(objects));
   member_.SetDone();
+  flight_.wants_object = false;  // the flight has ended
   bool was_reported = false;
   Time awaited = Now();  // last time at which a UAV was not done
   Time lacking = Now();  // last time at which data were missing or changed

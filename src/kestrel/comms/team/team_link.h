@@ -66,8 +66,11 @@ class TeamLink {
   // From now on the UAV goes to objects of a class, one after the other: it claims them whatever
   // the options say. 'class_name': as of GoalChooser.
   void Seek(const std::string& class_name) { goals_.emplace(model_, class_name); }
-  // What it does, for the next goal.
-  void SetFlight(const FlightToObjects& flight) { flight_ = flight; }
+  // What it does, for the next goal; where it is, for the next digest.
+  void SetFlight(const FlightToObjects& flight) {
+    flight_ = flight;
+    member_.SetFlight(flight.at);
+  }
   // Its goal; null: it does not seek.
   const TeamGoal* goal() const { return goals_ ? &goals_->goal() : nullptr; }
 

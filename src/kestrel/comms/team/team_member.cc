@@ -27,6 +27,15 @@ bool HaveSameIds(const Contents& a, const Contents& b) {
                     [](const auto& x, const auto& y) { return x.first == y.first; });
 }
 
+// Returns the first ids, at most so many.
+std::vector<std::int64_t> IdsOf(const std::map<std::int64_t, Time>& times, std::size_t most) {
+  std::vector<std::int64_t> ids;
+  for (const auto& [id, time] : times) {
+    if (ids.size() < most) ids.push_back(id);
+  }
+  return ids;
+}
+
 // True when a beat comes after another: the count wraps around.
 bool IsLater(std::uint32_t beat, std::uint32_t other) {
   return static_cast<std::int32_t>(beat - other) > 0;
@@ -83,6 +92,7 @@ void TeamMember::SetFlight(const std::optional<UavFlight>& flight) {
 }
 
 void TeamMember::SetGone(const ObjectRef& object, Time local) {
+  peers_[object.uav].gone.erase(object.id);  // it may have been there again meanwhile
   AddGone(object.uav, object.id, local);
   has_news_ = true;
 }
@@ -255,9 +265,11 @@ std::optional<Claim> TeamMember::ClaimOf(const UavKey& uav, Time local) const {
 std::optional<UavFlight> TeamMember::FlightOf(const UavKey& uav, Time local) const {
   const auto peer = peers_.find(uav);
   if (peer == peers_.end() || !peer->second.flight || !IsAlive(uav, local)) return std::nullopt;
+  constexpr double kLongest_s = 2;  // who is not heard for longer stands still for all we know
   UavFlight flight = *peer->second.flight;
   if (peer->second.beat_at) {
-    flight.position += ToSeconds(local - *peer->second.beat_at) * flight.velocity;
+    const double ahead_s = std::min(ToSeconds(local - *peer->second.beat_at), kLongest_s);
+    flight.position += ahead_s * flight.velocity;
   }
   return flight;
 }
@@ -315,6 +327,7 @@ void TeamMember::MergeOwn(const PartMessage& own, Time local) {
 void TeamMember::SendDigest(Time local, const Send& send) {
   Digest digest;
   std::size_t room = kMaxMissing;
+  std::size_t gone_room = kMaxGone - std::min(kMaxGone, peers_[self_].gone.size());
   peers_[self_].beat += 1;
   for (auto& [uav, peer] : peers_) {
     const TeamMap::Part* const part = map_.Find(uav);
@@ -324,13 +337,14 @@ void TeamMember::SendDigest(Time local, const Send& send) {
     if (part != nullptr) line.version = part->contents.version;
     line.is_done = peer.is_done && !(uav == self_ && unsent_);
     line.claim = ClaimOf(uav, local);
-    line.flight = IsAlive(uav, local) ? peer.flight : std::nullopt;
+    line.flight = FlightOf(uav, local);
     if (part != nullptr) line.missing = part->Missing(room);
     std::erase_if(peer.gone, [part](const auto& gone) {
       return part == nullptr || !part->contents.objects.contains(gone.first);
     });
-    for (const auto& [id, since] : peer.gone) line.gone.push_back(id);
+    line.gone = IdsOf(peer.gone, uav == self_ ? kMaxGone : gone_room);
     room -= line.missing.size();
+    if (uav != self_) gone_room -= line.gone.size();
     peer.tries = IsBehind(uav, peer) ? std::min(peer.tries + 1, kMaxTries) : 0;
     line.tries = peer.tries;
     digest.push_back(std::move(line));

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/comms/team/team_member.h"
 
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <variant>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -61,6 +67,42 @@ TEST(TeamMember, MapsAgreeSoonAfterLastChange) {
   Fly(&team, 5);
   EXPECT_LT(UntilEqual(&team), 1);
   ExpectAllWhole(team, kTeam);
+}
+
+TEST(TeamMember, DigestHasRoomForOwnTakenObjectsFirst) {
+  SimulatedTeam team(1);
+  for (const char* name : {"a", "b"}) team.Add({name, 1});
+  for (auto& uav : team.uavs) {
+    Random random(1);
+    uav.member->Share(TestField(400, &random, team.now), team.now);
+  }
+  UntilEqual(&team, 60);
+  TeamMember& member = *team.uavs[1].member;
+  for (const char* name : {"a", "b"}) {
+    for (std::int64_t id = 1; id <= 400; ++id) member.SetGone({{name, 1}, id}, team.LocalTime(1));
+  }
+  std::optional<TeamMessage> message;
+  member.Tick(team.LocalTime(1) + std::chrono::seconds(2),
+              [&](std::span<const std::uint8_t> bytes) {
+                if (!message) message = ParseMessage(bytes);
+              });
+  ASSERT_TRUE(message);
+  const auto& lines = std::get<Digest>(message->body);
+  ASSERT_THAT(lines, SizeIs(2));
+  EXPECT_THAT(lines[1].gone, SizeIs(400));
+  EXPECT_THAT(lines[0].gone, SizeIs(kMaxGone - 400));
+}
+
+TEST(TeamMember, ObjectThatIsTakenAgainIsGoneSinceThen) {
+  SimulatedTeam team(1);
+  team.Add({"a", 1});
+  TeamMember& member = *team.uavs[0].member;
+  member.Share({TestDisc(1, {0, 0, 0}, team.now)}, team.now);
+  team.Run(1);
+  member.SetGone({{"a", 1}, 1}, team.now);
+  team.Run(1);
+  member.SetGone({{"a", 1}, 1}, team.now);
+  EXPECT_EQ(member.GoneSince({{"a", 1}, 1}), team.now);
 }
 
 TEST(TeamMember, RecoversFromLossAndDelay) {

@@ -225,14 +225,18 @@ void ReadFlags(ByteReader* in, DigestLine* line) {
 
 void Write(const UavFlight& flight, Bytes* out) {
   for (const double value : flight.position) Put(value, out);
-  for (const double value : flight.velocity) PutSingle(value, out);
+  for (const double value : flight.velocity) {
+    PutSingle(std::clamp(value, -kMaxSpeed_mps, kMaxSpeed_mps), out);
+  }
 }
 
 void Read(ByteReader* in, UavFlight* flight) {
   for (double& value : flight->position) {
     value = ReadBounded(in->Fixed<double>(), kMaxPosition_m, in);
   }
-  for (double& value : flight->velocity) value = ReadSingle(in);
+  for (double& value : flight->velocity) {
+    value = ReadBounded(in->Fixed<float>(), kMaxSpeed_mps, in);
+  }
 }
 
 // A claim refers to the UAV by its line, because names are long.

@@ -99,6 +99,8 @@ inline constexpr std::size_t kMaxTeamMessage = 16384;  // bytes
 inline constexpr std::size_t kMaxUavs = 128;
 inline constexpr std::size_t kMaxSentObjects = 512;  // per UAV
 inline constexpr std::size_t kMaxMissing = 1024;     // in one digest
+inline constexpr std::size_t kMaxGone = 512;         // the same
+inline constexpr double kMaxSpeed_mps = 50;          // on each axis
 inline constexpr std::uint64_t kMaxVersion = std::uint64_t{1} << 48;
 inline constexpr int kMaxTries = 255;
 

@@ -92,6 +92,15 @@ TEST(TeamMessage, DigestRoundTrips) {
   EXPECT_FALSE(lines[1].claim);
 }
 
+TEST(TeamMessage, SpeedIsBounded) {
+  Digest digest(1);
+  digest[0].uav = {"a", 1};
+  digest[0].flight = UavFlight{{0, 0, 6}, {60, -1e6, 1}, false};
+  const auto message = ParseMessage(EncodeMessage({{"a", 1}, digest}));
+  ASSERT_TRUE(message);
+  EXPECT_EQ(std::get<Digest>(message->body)[0].flight->velocity, Eigen::Vector3d(50, -50, 1));
+}
+
 TEST(TeamMessage, StandingObjectTakesAtMost120Bytes) {
   EXPECT_THAT(EncodeObject(TestDisc(1000, {0, 0, 0}, kNow - std::chrono::seconds(30)), kNow),
               SizeIs(Lt(121)));

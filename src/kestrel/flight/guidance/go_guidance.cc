@@ -46,7 +46,9 @@ constexpr double kClimbOff_m = 6;  // near the ground, from a UAV at work that g
 // and the gripper opens within the last one while it stands still.
 constexpr double kAtBox_m = 1.5, kNearBox_m = 3, kOverBox_m = 0.4, kOverBox_mps = 0.4;
 constexpr double kSame_m = 0.5;  // an object that stands is no further from where it was gripped
+constexpr double kDown_m = 0.1;  // from the lowest height, which the UAV comes to ever more slowly
 constexpr double kGone_s = 2;    // an object that is not seen for so long from above is gone
+constexpr double kUnseen_s = 5;  // the same, of one that may never have been seen by this UAV
 
 // True when a UAV that goes first is within the distance.
 bool MustGiveWay(const Vector2d& place, std::span<const OtherUav> others, double distance_m) {
@@ -119,13 +121,25 @@ const char* GoGuidance::WhyGiveUp(const GuidanceInput& input) {
   if (phase() == GuidancePhase::kSearch && IsSearchOver(input.now)) {
     return "the object was not found again: gave up";
   }
+  const bool is_high = phase() == GuidancePhase::kSearch || phase() == GuidancePhase::kApproach;
+  if (is_high && input.box && !IsInFence(*input.box)) {
+    return "the box is outside of the geofence: gave up";
+  }
   if (phase() != GuidancePhase::kApproach || !input.target || carries_) return nullptr;
-  Vector3d above = input.uav->world_from_body.translation;
-  above.head<2>() = input.target->motion.position().head<2>();
-  if (limits().Contains(above)) return nullptr;
+  const Vector2d object = input.target->motion.position().head<2>();
+  if (IsInFence(object)) {
+    const bool is_in_box = input.box && (object - *input.box).norm() < kAtBox_m;
+    if (is_in_box) Leave(false, "the object is in the box: goes on to the next one");
+    return nullptr;
+  }
   if (!job_.delivers) return "the object is outside of the geofence: gave up";
   Leave(false, "the object is outside of the geofence: goes on to the next one");
   return nullptr;
+}
+
+// Whatever the height.
+bool GoGuidance::IsInFence(const Vector2d& place) const {
+  return limits().Contains({place.x(), place.y(), options().limits.floor_m});
 }
 
 Guidance::Wish GoGuidance::Choose(const GuidanceInput& input) {
@@ -148,40 +162,41 @@ Guidance::Wish GoGuidance::Choose(const GuidanceInput& input) {
     return {};
   }
   const Situation now = Look(input);
-  travel_m_ = options().search_altitude_m + kLayer_m * input.layer;
+  travel_m_ = std::min(options().search_altitude_m + kLayer_m * input.layer,
+                       options().limits.ceiling_m - options().leg_m);
   ChoosePhase(input, now);
   Wish wish;
   wish.follows_target = input.target.has_value() && !carries_;
   if (input.gripper.number == answers_before_) wish.request = motion_;
   wish.set_point = Command(input, now);
   wish.set_point.yaw = yaw_;
-  if (!is_at_work()) {
-    KeepApart(now.feet.head<2>(), going_to_, input.others, &wish.set_point);
-  }
+  KeepAway(input, now, &wish.set_point);
   return wish;
+}
+
+// Near the ground, and where the gripper opens, there is no way to the sides. At work the others
+// keep away, except those that go first.
+void GoGuidance::KeepAway(const GuidanceInput& input, const Situation& now, SetPoint* command) {
+  const bool is_near_ground = input.target && now.height_m < options().sight_height_m;
+  if (is_near_ground || phase() == GuidancePhase::kAct) return;
+  if (!is_at_work()) return KeepApart(now.feet.head<2>(), going_to_, input.others, command);
+  for (const OtherUav& other : input.others) {
+    if (other.goes_first) KeepApart(now.feet.head<2>(), going_to_, {&other, 1}, command);
+  }
 }
 
 void GoGuidance::ChoosePhase(const GuidanceInput& input, const Situation& now) {
   if (is_done_) return;
   if (carries_) return Deliver(input, now);
   if (input.target) KeepPlace(input, now);
-  if (IsLow() && MustGiveWay(now.feet.head<2>(), input.others, kClimbOff_m)) {
-    return Enter(GuidancePhase::kApproach, "gives way to another UAV of the team");
+  if (MayGiveWay() && MustGiveWay(now.feet.head<2>(), input.others, kClimbOff_m)) {
+    return Enter(GuidancePhase::kGoAround, "gives way to another UAV of the team");
   }
   if (phase() == GuidancePhase::kAct) return Act(input);
   if (phase() == GuidancePhase::kGoAround) return ChooseClimb(input, now);
-  if (phase() == GuidancePhase::kLook) return LookWhetherGone(input);
+  if (phase() == GuidancePhase::kLook) return LookWhetherGone(input, now);
   if (!FindObject(input)) return;
-  if (phase() == GuidancePhase::kApproach && now.off_m < kConePart * Cone(now.height_m)) {
-    if (MustGiveWay(now.feet.head<2>(), input.others, kGiveWay_m)) {
-      set_reason("waits above the object: another UAV of the team is near");
-    } else if (MayDescend(now)) {
-      waits_since_.reset();
-      Enter(GuidancePhase::kDescend, "above the object, which is in sight");
-    } else {
-      set_reason("waits above the object: it is not in sight, or not known well enough");
-    }
-  }
+  if (phase() == GuidancePhase::kApproach) ChooseApproach(input, now);
   if (phase() == GuidancePhase::kDescend) ChooseDescent(input, now);
   if (phase() == GuidancePhase::kCommit) ChooseCommit(input, now);
 }
@@ -198,11 +213,29 @@ bool GoGuidance::FindObject(const GuidanceInput& input) {
   }
   object_z_m_ = input.target->motion.position().z();
   if (phase() == GuidancePhase::kSearch || input.mark != mark_) {
+    if (job_.delivers && input.mark != mark_) failures_ = 0;
     mark_ = input.mark;
     pursuit().Reset();
     Enter(GuidancePhase::kApproach, "flies to the object");
   }
   return true;
+}
+
+// An object that only others have seen may not be there any more.
+void GoGuidance::ChooseApproach(const GuidanceInput& input, const Situation& now) {
+  const bool is_above = now.off_m < kConePart * Cone(now.height_m);
+  Remember(is_above && input.is_camera_up && !now.is_in_sight, input.now, &waits_since_);
+  if (!is_above) return;
+  if (MustGiveWay(now.feet.head<2>(), input.others, kGiveWay_m)) {
+    set_reason("waits above the object: another UAV of the team is near");
+  } else if (MayDescend(now)) {
+    waits_since_.reset();
+    Enter(GuidancePhase::kDescend, "above the object, which is in sight");
+  } else if (IsLongerThan(kUnseen_s, waits_since_, input.now)) {
+    Leave(false, "the object is not seen from above: goes on to the next one");
+  } else {
+    set_reason("waits above the object: it is not in sight, or not known well enough");
+  }
 }
 
 void GoGuidance::ChooseDescent(const GuidanceInput& input, const Situation& now) {
@@ -317,12 +350,13 @@ bool GoGuidance::IsWhereGripped(const GuidanceInput& input) const {
   return std::isnan(off_m) || off_m < kSame_m;
 }
 
-// Images without the object count only while images come.
-void GoGuidance::LookWhetherGone(const GuidanceInput& input) {
+// Images without the object count only while they come, and show where it was.
+void GoGuidance::LookWhetherGone(const GuidanceInput& input, const Situation& now) {
   const double looked_s = ToSeconds(input.now - entered());
   const double seen_s = input.target_age_s + GuidanceInput::kMostVideoDelay_s;
   if (seen_s < looked_s && IsWhereGripped(input)) return TryAgain("the object is still there");
-  if (input.is_camera_up) unseen_s_ += SecondsSinceLast(input.now);
+  const bool is_above = (now.feet.head<2>() - place()).norm() < kBelow_m;
+  if (input.is_camera_up && is_above) unseen_s_ += SecondsSinceLast(input.now);
   if (unseen_s_ >= kGone_s) Finish();
 }
 
@@ -344,6 +378,7 @@ void GoGuidance::Finish() {
     is_near_box_ = false;
     return Enter(GuidancePhase::kApproach, "carries the object to the box");
   }
+  if (job_.action == GoAction::kPick) ended_ = {mark_, true};
   is_done_ = true;
   Enter(GuidancePhase::kLook, InWords(job_.action));
 }
@@ -374,7 +409,7 @@ void GoGuidance::Deliver(const GuidanceInput& input, const Situation& now) {
   }
   if (!input.box) return set_reason("carries the object; the place of the box is not known yet");
   const double off_m = (now.feet.head<2>() - *input.box).norm();
-  const bool is_down = now.feet.z() < options().limits.floor_m;
+  const bool is_down = now.feet.z() < options().limits.floor_m + kDown_m;
   if (off_m > kOverBox_m || now.velocity.norm() > kOverBox_mps || !is_down) return;
   gripped_.reset();
   Enter(GuidancePhase::kAct, "opens the gripper above the box");
@@ -389,6 +424,11 @@ bool GoGuidance::is_at_work() const {
 bool GoGuidance::is_at_deck() const {
   return (phase() == GuidancePhase::kCommit || phase() == GuidancePhase::kAct) && !carries_ &&
          job_.height_m < options().commit_height_m;
+}
+
+// Once the gripper moves the UAV does not leave the object.
+bool GoGuidance::MayGiveWay() const {
+  return IsLow() && !(phase() == GuidancePhase::kAct && job_.grips());
 }
 
 bool GoGuidance::IsLow() const {
@@ -439,15 +479,18 @@ SetPoint GoGuidance::Stay(const Vector2d& place, double height_m, const Situatio
   return command;
 }
 
-// Up to its layer, to above the box, and down to the lowest height without a target.
+// Up to its layer, to above the box, and down to the lowest height without a target; up again where
+// another UAV goes first.
 SetPoint GoGuidance::Carry(const GuidanceInput& input, const Situation& now) {
   if (!input.box) return Stay(place(), travel_m_, now);
   going_to_ = *input.box;
   const double off_m = (now.feet.head<2>() - going_to_).norm();
   is_near_box_ = off_m < kNearBox_m;
-  if (off_m > kAtBox_m) {
+  const bool gives_way =
+      phase() != GuidancePhase::kAct && MustGiveWay(now.feet.head<2>(), input.others, kClimbOff_m);
+  if (off_m > kAtBox_m || gives_way) {
     const bool is_up = now.feet.z() > travel_m_ - kLayer_m || is_near_box_;
-    return Stay(is_up ? going_to_ : place(), travel_m_, now);
+    return Stay(is_up ? going_to_ : now.feet.head<2>(), travel_m_, now);
   }
   return Stay(going_to_, options().limits.floor_m - options().leg_m, now);
 }

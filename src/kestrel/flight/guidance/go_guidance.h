@@ -31,7 +31,7 @@ class GoGuidance : public DescentGuidance {
   bool is_at_deck() const override;
   ObjectEnd ended() const override { return ended_; }
   bool is_at_work() const override;
-  bool wants_object() const override { return !carries_; }
+  bool wants_object() const override { return !carries_ && !is_done_; }
 
  private:
   void Begin(const GuidanceInput& input) override;
@@ -43,6 +43,7 @@ class GoGuidance : public DescentGuidance {
   // Choice of the phase.
   void ChoosePhase(const GuidanceInput& input, const Situation& now);
   bool FindObject(const GuidanceInput& input);
+  void ChooseApproach(const GuidanceInput& input, const Situation& now);
   void ChooseDescent(const GuidanceInput& input, const Situation& now);
   void ChooseCommit(const GuidanceInput& input, const Situation& now);
   bool IsAbove(const Situation& now, double grip_m) const;
@@ -52,17 +53,20 @@ class GoGuidance : public DescentGuidance {
   void ChooseClimb(const GuidanceInput& input, const Situation& now);
   void RememberGrip(const GuidanceInput& input);
   bool IsWhereGripped(const GuidanceInput& input) const;
-  void LookWhetherGone(const GuidanceInput& input);
+  void LookWhetherGone(const GuidanceInput& input, const Situation& now);
   void TryAgain(const char* reason);
   void Finish();
   void Lose(Time now);
   void Leave(bool is_taken, const char* reason);
   void Deliver(const GuidanceInput& input, const Situation& now);
   bool IsLow() const;  // in a phase near the object
+  bool MayGiveWay() const;
+  bool IsInFence(const Eigen::Vector2d& place) const;
   // Requests a motion of the gripper; true once the autopilot has accepted it.
   bool Operate(const GuidanceInput& input, GuidanceRequest motion);
 
   // Set-points.
+  void KeepAway(const GuidanceInput& input, const Situation& now, SetPoint* command);
   SetPoint Command(const GuidanceInput& input, const Situation& now);
   SetPoint Pursue(const GuidanceInput& input, const Situation& now);
   SetPoint Stay(const Eigen::Vector2d& place, double height_m, const Situation& now);

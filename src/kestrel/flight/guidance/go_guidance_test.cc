@@ -285,6 +285,111 @@ TEST(GoGuidanceTest, GivesWayNearTheGround) {
   EXPECT_TRUE(flight.FlyUntilDone()) << flight.output.reason;
 }
 
+TEST(GoGuidanceTest, ClimbsBeforeItGivesWayOnTheGround) {
+  GoFlight flight("pick");
+  ASSERT_TRUE(flight.FlyUntil([&] { return flight.FromObject().z() < 0.3; }));
+  flight.others = {
+      {.position = flight.uav.position().head<2>() + Eigen::Vector2d(4, 0), .goes_first = true}};
+  double off_m = 0;
+  ASSERT_TRUE(flight.FlyUntil(
+      [&] {
+        off_m = std::max(off_m, flight.FromObject().head<2>().norm());
+        return flight.FromObject().z() > 1.9;
+      },
+      10));
+  EXPECT_LT(off_m, 0.2);
+  EXPECT_EQ(flight.grabs, 0);
+  flight.FlyUntil([] { return false; }, 10);
+  EXPECT_GT((flight.uav.position().head<2>() - flight.others[0].position).norm(), 5.5);
+}
+
+TEST(GoGuidanceTest, KeepsTheObjectInTheGripperWhenAnotherUavComes) {
+  GoFlight flight(Delivery());
+  flight.box = {{15, -8}};
+  ASSERT_TRUE(flight.FlyUntil([&] { return flight.grabs == 1; }));
+  flight.others = {
+      {.position = flight.uav.position().head<2>() + Eigen::Vector2d(4, 0), .goes_first = true}};
+  const double released_m = flight.released_at.z();  // before the pick
+  flight.FlyUntil([] { return false; }, 15);
+  EXPECT_FALSE(flight.guidance.ended().is_taken) << "it does not see whether the object is gone";
+  flight.others.clear();
+  ASSERT_TRUE(flight.FlyUntil([&] { return flight.guidance.ended().is_taken; }, 30));
+  EXPECT_EQ(flight.grabs, 1);
+  EXPECT_EQ(flight.released_at.z(), released_m);
+}
+
+TEST(GoGuidanceTest, MovesAwayAtWorkFromUavThatGoesFirst) {
+  GoFlight flight(Delivery());
+  flight.box = {{15, -8}};
+  ASSERT_TRUE(flight.FlyUntil([&] { return flight.guidance.ended().mark == 7; }));
+  ASSERT_TRUE(flight.FlyUntil(
+      [&] { return flight.guidance.is_at_work() && flight.uav.position().z() < 6; }));
+  const Eigen::Vector3d before = flight.released_at;
+  flight.others = {{.position = *flight.box + Eigen::Vector2d(4, 0), .goes_first = true}};
+  flight.FlyUntil([] { return false; }, 10);
+  EXPECT_EQ(flight.released_at, before);
+  EXPECT_GT((flight.uav.position().head<2>() - flight.others[0].position).norm(), 5.5);
+  EXPECT_GT(flight.uav.position().z(), 8);
+  flight.others.clear();
+  ASSERT_TRUE(flight.FlyUntil([&] { return flight.guidance.wants_object(); }, 60));
+  EXPECT_LT((flight.released_at.head<2>() - *flight.box).norm(), 0.5);
+}
+
+TEST(GoGuidanceTest, PickThatIsDoneIsReported) {
+  GoFlight flight("pick");
+  EXPECT_TRUE(flight.guidance.wants_object());
+  ASSERT_TRUE(flight.FlyUntilDone());
+  EXPECT_FALSE(flight.guidance.wants_object());
+  EXPECT_EQ(flight.guidance.ended().mark, 7);
+  EXPECT_TRUE(flight.guidance.ended().is_taken);
+}
+
+TEST(GoGuidanceTest, GoesOnFromObjectThatIsNotSeenFromAbove) {
+  GoFlight flight("pick");
+  const auto unseen = [](GuidanceInput& input) { input.target_age_s = 1e3; };
+  const auto leaves = [&] { return flight.guidance.ended().mark == 7; };
+  EXPECT_FALSE(flight.FlyUntil(leaves, 60, [&](GuidanceInput& input) {
+    unseen(input);
+    input.is_camera_up = static_cast<int>(10 * flight.time_s) % 40 > 0;  // now and then
+  }));
+  ASSERT_TRUE(flight.FlyUntil(leaves, 10, unseen));
+  EXPECT_FALSE(flight.guidance.ended().is_taken);
+  EXPECT_FALSE(flight.guidance.has_given_up());
+}
+
+TEST(GoGuidanceTest, ObjectInTheBoxIsLeft) {
+  GoFlight flight(Delivery());
+  flight.box = flight.object.Position(0).head<2>() + Eigen::Vector2d(1, 0);
+  ASSERT_TRUE(flight.FlyUntil([&] { return flight.guidance.ended().mark == 7; }, 2));
+  EXPECT_FALSE(flight.guidance.ended().is_taken);
+}
+
+TEST(GoGuidanceTest, BoxOutsideOfGeofenceIsGivenUp) {
+  GoFlight flight(Delivery());
+  flight.box = {{120, 0}};
+  ASSERT_TRUE(flight.FlyUntil([&] { return flight.guidance.has_given_up(); }, 1));
+  EXPECT_THAT(flight.output.reason, HasSubstr("the box is outside of the geofence"));
+}
+
+TEST(GoGuidanceTest, DeliversInLayerAboveTheCeilingAndWithoutLegs) {
+  GuidanceOptions options;
+  options.leg_m = 0;
+  options.limits.ceiling_m = 11;
+  GoFlight flight(Delivery(), kAtRest, options);
+  flight.box = {{15, -8}};
+  double highest_m = 0;
+  ASSERT_TRUE(flight.FlyUntil([&] { return flight.guidance.ended().is_taken; }));
+  const auto high = [](GuidanceInput& input) { input.layer = 4; };
+  ASSERT_TRUE(flight.FlyUntil(
+      [&] {
+        highest_m = std::max(highest_m, flight.uav.position().z());
+        return flight.guidance.wants_object();
+      },
+      90, high))
+      << flight.output.reason;
+  EXPECT_LT(highest_m, 11.2);
+}
+
 TEST(GoGuidanceTest, TravelsInItsLayer) {
   GoFlight flight("hover");
   const auto above = [](GuidanceInput& input) {

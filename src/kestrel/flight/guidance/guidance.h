@@ -125,11 +125,11 @@ class Guidance {
   const FollowingDemand& demand() const { return demand_.demand(); }
   // TouchdownHeading::error of a landing.
   virtual std::optional<double> heading_error() const { return std::nullopt; }
-  // The last job that ended at an object, where guidance goes on to the next one.
+  // The last job that ended at an object: it is taken, or guidance goes on to the next one.
   virtual ObjectEnd ended() const { return {}; }
   // True while the other UAVs of the team keep away.
   virtual bool is_at_work() const { return false; }
-  // False while no object would help, because it carries one.
+  // False while no object would help: it carries one, or is done.
   virtual bool wants_object() const { return true; }
   // Wind, drag and the autopilot's answer, as learnt in flight.
   const FlightModel& model() const { return model_; }

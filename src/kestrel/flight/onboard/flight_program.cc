@@ -251,6 +251,7 @@ void FlightProgram::See() {
     if (parts_.cameras == 1 && !parts_.sees_repeated && IsFrozen(frame)) continue;
     latency_.step(kVision).Add(Now() - frame.time);
     if (camera_) camera_->ApplyMarks(Now(), parts_.vision);
+    AssignObject();
     parts_.vision->Leave(ended_mark_);
     const TrackSnapshot snapshot = See(frame);
     latency_.step(kDetection).Add(snapshot.detect_time);
@@ -265,6 +266,15 @@ void FlightProgram::See() {
     WarnOnce();
     ReportCameras();
   }
+}
+
+void FlightProgram::AssignObject() {
+  std::optional<AssignedObject> assigned;
+  {
+    const std::lock_guard lock(team_mutex_);
+    assigned = std::exchange(assigned_, std::nullopt);
+  }
+  if (assigned) parts_.vision->Assign(*assigned);
 }
 
 TrackSnapshot FlightProgram::See(const Frame& frame) {
@@ -306,9 +316,10 @@ void FlightProgram::ReportCameras() {
 }
 
 void FlightProgram::Take(const TeamGoal& goal) {
-  BetweenFrames([&] { parts_.vision->Assign({goal.number, goal.own_id, goal.object}); });
+  TeamInFlight team = InFlight(goal);
   const std::lock_guard lock(team_mutex_);
-  team_ = InFlight(goal, Now());
+  team_ = std::move(team);
+  assigned_ = AssignedObject{goal.number, goal.own_id, goal.object};
 }
 
 FlightToObjects FlightProgram::ToObjects() const {
@@ -396,7 +407,7 @@ void FlightProgram::Fly(Time now, const TrackSnapshot& track) {
   {
     const std::lock_guard lock(team_mutex_);
     if (auto team = std::exchange(team_, std::nullopt)) guided_->Take(*std::move(team));
-    to_objects_ = kestrel::ToObjects(*guided_, poses_, now);
+    to_objects_ = kestrel::ToObjects(*guided_, poses_, now, to_objects_);
   }
   guided_->set_video_delay(VideoDelay());
   if (guided_->Fly(now, track, poses_)) latency_.step(kSetPoint).Add(Now() - track.captured);

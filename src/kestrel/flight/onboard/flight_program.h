@@ -41,6 +41,7 @@
 #include "kestrel/flight/session/vision.h"
 #include "kestrel/io/recording/euroc/truth_rows.h"
 #include "kestrel/vision/pipeline/repeated_image.h"
+#include "kestrel/vision/pipeline/sought_object.h"
 
 namespace kestrel {
 
@@ -132,6 +133,7 @@ class FlightProgram {
   void NotifyServiceManager(Time now);
   void Capture();
   void See();
+  void AssignObject();
   TrackSnapshot See(const Frame& frame);
   void Communicate();
 
@@ -194,8 +196,9 @@ class FlightProgram {
   Time wait_due_{};  // when it is next looked for the reason of the autopilot's silence
 
   mutable std::mutex team_mutex_;
-  std::optional<TeamInFlight> team_;  // until guidance has it; guarded by team_mutex_
-  FlightToObjects to_objects_;        // the same
+  std::optional<TeamInFlight> team_;        // until guidance has it; guarded by team_mutex_
+  FlightToObjects to_objects_;              // the same
+  std::optional<AssignedObject> assigned_;  // the same, until the vision has it
 
   std::mutex vision_mutex_;  // held while the vision works
 

@@ -137,6 +137,7 @@ void GuidedFlight::CheckPermission(const GuidanceInput& input, Time now) {
                  ? WhyNotGuide(autopilot_, options_.guidance,
                                input.uav->world_from_body.translation, now, is_position_by_pad_)
                  : "no position is sent";
+  if (refusal_.empty()) refusal_ = WhyNotDeliver();
   may_begin_ = refusal_.empty();
   if (knows_parameters_ || !autopilot_.parameters().is_done()) return;
   knows_parameters_ = true;
@@ -173,9 +174,7 @@ GuidanceInput GuidedFlight::Input(Time now, const TrackSnapshot& track,
   input.gripper = {autopilot_.gripper_answers(), autopilot_.is_gripper_accepted()};
   input.others = others_;
   input.layer = team_.layer;
-  if (box_ && autopilot_.origin()) {
-    input.box = LocalFromGlobal(kind_, *autopilot_.origin(), *box_).head<2>();
-  }
+  input.box = Box();
   input.can_hold = !is_position_by_pad_;
   input.is_armed = autopilot_.is_armed();
   input.is_landed = autopilot_.landed_state() == LandedState::kOnGround;
@@ -184,6 +183,22 @@ GuidanceInput GuidedFlight::Input(Time now, const TrackSnapshot& track,
   input.mode_age_s = ToSeconds(now - autopilot_.mode_reported());
   input.link_delay_s = ToSeconds(LinkDelay(options_, autopilot_));
   return input;
+}
+
+// In the world, once that is known.
+std::optional<Eigen::Vector2d> GuidedFlight::Box() const {
+  if (!box_ || !autopilot_.origin()) return std::nullopt;
+  return LocalFromGlobal(kind_, *autopilot_.origin(), *box_).head<2>();
+}
+
+std::string GuidedFlight::WhyNotDeliver() const {
+  const auto box = Box(), home = HomeOf(autopilot_);
+  if (!box || !home) return {};
+  const double distance_m = (*box - *home).norm();
+  const double radius_m = options_.guidance.limits.geofence_radius_m;
+  if (distance_m <= radius_m) return {};
+  return fmt::format("the box is {:.0f} m from home, limits.geofence_radius_m is {:g}", distance_m,
+                     radius_m);
 }
 
 std::optional<TargetEstimate> GuidedFlight::Target(Time now, const TrackSnapshot& track) const {

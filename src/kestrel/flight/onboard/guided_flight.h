@@ -49,7 +49,10 @@ class GuidedFlight {
   // See Guidance.
   ObjectEnd ended() const { return guidance_->ended(); }
   bool is_at_work() const { return is_flying() && guidance_->is_at_work(); }
-  bool is_in_air() const { return autopilot_.is_armed() && IsInFlight(autopilot_.landed_state()); }
+  // True from the take-off on, and where the autopilot does not report what it does.
+  bool is_in_air() const {
+    return autopilot_.is_armed() && autopilot_.landed_state() != LandedState::kOnGround;
+  }
   bool wants_object() const { return is_flying() && guidance_->wants_object(); }
 
   // The autopilot's position comes from the pad, and is a guess without it.
@@ -83,6 +86,8 @@ class GuidedFlight {
   void WatchMode(const GuidanceInput& input, Time now);
   void CheckPermission(const GuidanceInput& input, Time now);
   GuidanceInput Input(Time now, const TrackSnapshot& track, const PoseHistory& poses) const;
+  std::optional<Eigen::Vector2d> Box() const;
+  std::string WhyNotDeliver() const;  // to the box, which is outside of the geofence
   std::optional<TargetEstimate> Target(Time now, const TrackSnapshot& track) const;
   void Request(Time now, GuidanceRequest request);
   bool RequestGripper(GuidanceRequest request);

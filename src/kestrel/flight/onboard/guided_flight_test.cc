@@ -265,6 +265,15 @@ TEST_F(GuidedFlightTest, RefusesInOneLineBeforeFlight) {
   }
 }
 
+TEST_F(GuidedFlightTest, RefusesBoxOutsideOfGeofence) {
+  Start(mavlink::kAutopilotArduPilot);
+  guided_->set_box({.latitude_e7 = 473997420, .longitude_e7 = 85455940});
+  Pass(2);
+  heartbeat_.custom_mode = kGuided;
+  EXPECT_EQ(SetPointsDuring(2), 0);
+  EXPECT_THAT(reported_, HasSubstr("guidance refused: the box is 222 m from home"));
+}
+
 // Without set-points PX4 does not take the mode, and the pilot would not learn why.
 TEST_F(GuidedFlightTest, WarnsOfRefusalOnceBeforeModeIsGiven) {
   Start(mavlink::kAutopilotPx4);

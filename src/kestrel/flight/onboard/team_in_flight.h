@@ -9,10 +9,12 @@
 
 namespace kestrel {
 
-// Returns what guidance needs of a goal that was found at 'now'.
-TeamInFlight InFlight(const TeamGoal& goal, Time now);
+// Returns what guidance needs of a goal.
+TeamInFlight InFlight(const TeamGoal& goal);
 
-// Returns what the team needs of a flight at 'now'.
-FlightToObjects ToObjects(const GuidedFlight& guided, const PoseHistory& poses, Time now);
+// Returns what the team needs of a flight at 'now'. 'before': the same, the last time: without a
+// pose the UAV stays there for the others until it is on the ground.
+FlightToObjects ToObjects(const GuidedFlight& guided, const PoseHistory& poses, Time now,
+                          const FlightToObjects& before);
 
 }  // namespace kestrel

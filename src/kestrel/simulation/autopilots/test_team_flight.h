@@ -33,14 +33,18 @@ class TeamGoFlight : public SightedGoFlight {
     const Time local = team_.LocalTime(index_);
     if (now >= share_due_) {
       share_due_ = now + DurationFromSeconds(TeamOptions::kSendPeriod_s);
-      if (track_.captured > Time()) member.Share(Known(), track_.captured);
+      if (track_.captured > Time()) member.Share(map_.Confirmed(), track_.captured);
     }
+    flight_ = ToObjects(*guided_, poses_, now, flight_);
+    member.SetFlight(flight_.at);
     if (now < choose_due_) return;
     choose_due_ = now + DurationFromSeconds(TeamOptions::kDigestPeriod_s);
-    const TeamGoal& goal = goals_.Update(ViewTeam(member, local, &fusion_),
-                                         ToObjects(*guided_, poses_, now), local, &member);
+    const TeamGoal& goal =
+        goals_.Update(ViewTeam(member, local, &fusion_), flight_, local, &member);
     sought_.Assign({goal.number, goal.own_id, goal.object});
-    guided_->Take(InFlight(goal, now));
+    TeamInFlight team = InFlight(goal);
+    team.time = now;  // the radio has another clock
+    guided_->Take(std::move(team));
   }
 
   const Eigen::Vector3d& place() const { return model.truth().world_from_body.translation; }
@@ -48,21 +52,11 @@ class TeamGoFlight : public SightedGoFlight {
  private:
   void LeaveEnded() override {}
 
-  // The map without the tracks of what drove away unseen, which would cost most of the time.
-  std::vector<MappedObject> Known() const {
-    constexpr double kMostSigma_m = 3;
-    std::vector<MappedObject> known = map_.Confirmed();
-    std::erase_if(known, [this](MappedObject object) {
-      PredictObject(track_.captured, ObjectMapOptions().motion(), &object);
-      return object.sigma_m() > kMostSigma_m;
-    });
-    return known;
-  }
-
   SimulatedTeam& team_;
   std::size_t index_;
   TeamFusion fusion_{{}, {}};
   GoalChooser goals_;
+  FlightToObjects flight_;
   Time share_due_{}, choose_due_{};
 };
 

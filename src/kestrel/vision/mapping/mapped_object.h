@@ -35,6 +35,9 @@ struct ExpectedPosition {
   Eigen::Matrix3d covariance;
 };
 
+// Largest sigma_m() of an object that is sought: one that drove away unseen is not sought any more.
+inline constexpr double kMostSoughtSigma_m = 3;
+
 // The map's knowledge of an object. It keeps likelihoods instead of a choice, because the next
 // detection may change it.
 struct MappedObject {

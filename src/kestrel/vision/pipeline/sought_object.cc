@@ -14,7 +14,6 @@ namespace kestrel {
 namespace {
 
 constexpr std::size_t kMostLeft = 256;
-constexpr double kMostSigma_m = 3;  // one that drove away unseen is not sought any more
 
 TargetTrackerOptions TrackerOf(const ObjectModel& model, const std::string& name) {
   const bool may_move = std::ranges::any_of(
@@ -82,7 +81,7 @@ void SoughtObject::Choose(Time time, const ObjectMap& map) {
   const auto choose = [&](MappedObject object) {
     if (!IsSought(ClassOf(object, model_))) return;
     PredictObject(time, motion_, &object);
-    if (object.sigma_m() > kMostSigma_m) return;
+    if (object.sigma_m() > kMostSoughtSigma_m) return;
     if (std::ranges::find(left_, object.id) != left_.end()) return;
     if (object.id == id_) mapped_ = object;
     if (!best || ScoreOf(object, model_) > ScoreOf(*best, model_)) best = object;
@@ -121,7 +120,7 @@ void SoughtObject::TakeAssigned(Time time, const ObjectMap& map) {
   map.VisitConfirmed(std::ref(find));
   if (!mapped_) mapped_ = assigned_->object;
   PredictObject(time, motion_, &*mapped_);
-  if (mapped_->sigma_m() > kMostSigma_m) mapped_.reset();
+  if (mapped_->sigma_m() > kMostSoughtSigma_m) mapped_.reset();
   if (!seen_) seen_ = seen;
 }
 
