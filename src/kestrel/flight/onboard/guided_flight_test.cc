@@ -271,7 +271,7 @@ TEST_F(GuidedFlightTest, RefusesBoxOutsideOfGeofence) {
   Pass(2);
   heartbeat_.custom_mode = kGuided;
   EXPECT_EQ(SetPointsDuring(2), 0);
-  EXPECT_THAT(reported_, HasSubstr("guidance refused: the box is 222 m from home"));
+  EXPECT_THAT(reported_, HasSubstr("guidance refused: the box is 223 m from home"));
 }
 
 // Without set-points PX4 does not take the mode, and the pilot would not learn why.
