@@ -12,17 +12,15 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "flight_arguments.h"
 #include "kestrel/simulation/autopilots/test_followed_flight.h"
 #include "report_main.h"
 
 namespace kestrel {
 namespace {
 
-struct Arguments {
-  int flights = 20;
-  std::uint64_t first_seed = 1;
+struct Arguments : FlightArguments {
   double seconds = 60;
-  std::string only;
 };
 
 // A vehicle or a person, and the way in which it is followed.
@@ -120,7 +118,7 @@ void Run(const Arguments& arguments) {
       "worst flight, % | largest error, m | in view, worst flight, % | lowest, m |\n"
       "|---|---|---|---|---|---|---|---|---|\n");
   for (const Case& flown : kCases) {
-    if (std::string(flown.name).find(arguments.only) == std::string::npos) continue;
+    if (!arguments.Wants(flown.name)) continue;
     for (const bool has_gimbal : {false, true}) {
       for (const auto firmware : {AutopilotFirmware::kArduPilot, AutopilotFirmware::kPx4}) {
         const bool is_px4 = firmware == AutopilotFirmware::kPx4;
@@ -137,12 +135,9 @@ void Run(const Arguments& arguments) {
 int main(int argc, char** argv) {
   CLI::App app{"Flights beside a car or a person, and how well they keep their distance"};
   kestrel::Arguments arguments;
-  app.add_option("--flights", arguments.flights, "Of each case, each with the next seed (20)")
-      ->check(CLI::Range(1, 1000));
-  app.add_option("--first-seed", arguments.first_seed, "Seed of the first flight (1)");
+  arguments.AddTo(&app);
   app.add_option("--seconds", arguments.seconds, "Duration of each, once it follows (60)")
       ->check(CLI::Range(1, 3600));
-  app.add_option("--case", arguments.only, "Only the cases with this text in their name");
   CLI11_PARSE(app, argc, argv);
   return kestrel::ReportMain([&] {
     kestrel::Run(arguments);

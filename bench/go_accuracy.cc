@@ -13,16 +13,14 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "flight_arguments.h"
 #include "kestrel/simulation/autopilots/test_team_flight.h"
 #include "report_main.h"
 
 namespace kestrel {
 namespace {
 
-struct Arguments {
-  int flights = 20;
-  std::uint64_t first_seed = 1;
-  std::string only;
+struct Arguments : FlightArguments {
   bool is_rendered = false;
   bool logs = false;
   int team = 0;  // UAVs; 0: flights of one, to one disc
@@ -120,7 +118,7 @@ void Run(const Arguments& arguments) {
       "| disc | autopilot | taken | grabs | within 0.05 m | within 0.10 m | offset, median, m | "
       "largest | time, median, s |\n|---|---|---|---|---|---|---|---|---|\n");
   for (const Case& flown : kCases) {
-    if (std::string(flown.name).find(arguments.only) == std::string::npos) continue;
+    if (!arguments.Wants(flown.name)) continue;
     for (const auto firmware : {AutopilotFirmware::kArduPilot, AutopilotFirmware::kPx4}) {
       const Row row = Fly(flown, firmware, arguments);
       const auto median = [](const std::vector<double>& sorted) {
@@ -193,7 +191,7 @@ void RunTeam(const Arguments& arguments) {
       "s "
       "|\n|---|---|---|---|---|---|---|---|---|\n");
   for (const char* class_name : {"red", "yellow"}) {
-    if (std::string(class_name).find(arguments.only) == std::string::npos) continue;
+    if (!arguments.Wants(class_name)) continue;
     for (const auto firmware : {AutopilotFirmware::kArduPilot, AutopilotFirmware::kPx4}) {
       FlyTeam(class_name, firmware, arguments);
     }
@@ -206,10 +204,7 @@ void RunTeam(const Arguments& arguments) {
 int main(int argc, char** argv) {
   CLI::App app{"Flights to discs, and how near to their middle the gripper closes"};
   kestrel::Arguments arguments;
-  app.add_option("--flights", arguments.flights, "Of each case, each with the next seed (20)")
-      ->check(CLI::Range(1, 1000));
-  app.add_option("--first-seed", arguments.first_seed, "Seed of the first flight (1)");
-  app.add_option("--case", arguments.only, "Only the cases with this text in their name");
+  arguments.AddTo(&app);
   app.add_flag("--rendered", arguments.is_rendered, "With rendered images, which takes minutes");
   app.add_flag("--log", arguments.logs, "Print what each flight reports");
   app.add_option("--team", arguments.team,

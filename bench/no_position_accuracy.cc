@@ -13,16 +13,14 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "flight_arguments.h"
 #include "kestrel/simulation/autopilots/test_no_position_flight.h"
 #include "report_main.h"
 
 namespace kestrel {
 namespace {
 
-struct Arguments {
-  int flights = 20;
-  std::uint64_t first_seed = 1;
-  std::string only;
+struct Arguments : FlightArguments {
   bool logs = false;
 };
 
@@ -67,7 +65,7 @@ class Report {
   void Each(const std::string& name, const NoPositionSetup& setup,
             const std::function<void(const NoPositionSetup&)>& fly,
             const std::function<std::string()>& print) {
-    if (name.find(arguments_.only) == std::string::npos) return;
+    if (!arguments_.Wants(name)) return;
     for (const auto firmware : {AutopilotFirmware::kArduPilot, AutopilotFirmware::kPx4}) {
       for (int i = 0; i < arguments_.flights; ++i) {
         NoPositionSetup one = setup;
@@ -248,10 +246,7 @@ class Report {
 int main(int argc, char** argv) {
   CLI::App app{"Flights over a pad without a position, and what becomes of them"};
   kestrel::Arguments arguments;
-  app.add_option("--flights", arguments.flights, "Of each case, each with the next seed (20)")
-      ->check(CLI::Range(1, 1000));
-  app.add_option("--first-seed", arguments.first_seed, "Seed of the first flight (1)");
-  app.add_option("--case", arguments.only, "Only the cases with this text in their name");
+  arguments.AddTo(&app);
   app.add_flag("--log", arguments.logs, "Print what each flight reports");
   CLI11_PARSE(app, argc, argv);
   return kestrel::ReportMain([&] {

@@ -26,6 +26,16 @@ std::uint32_t BootTime(const Autopilot& autopilot, Time now) {
   return static_cast<std::uint32_t>(std::max<std::int64_t>(remote_ms, 0));
 }
 
+mavlink::SetPositionTargetLocalNed InLocalFrame(std::uint8_t system, std::uint8_t component,
+                                                std::uint32_t boot_ms) {
+  mavlink::SetPositionTargetLocalNed message;
+  message.time_boot_ms = boot_ms;
+  message.target_system = system;
+  message.target_component = component;
+  message.coordinate_frame = mavlink::kFrameLocalNed;
+  return message;
+}
+
 }  // namespace
 
 mavlink::SetPositionTargetLocalNed SetPointMessage(const SetPoint& set_point, AutopilotKind kind,
@@ -33,11 +43,7 @@ mavlink::SetPositionTargetLocalNed SetPointMessage(const SetPoint& set_point, Au
                                                    std::uint32_t boot_ms) {
   const Eigen::Vector3f velocity = NedFromEnu(set_point.velocity).cast<float>();
   const Eigen::Vector3f acceleration = NedFromEnu(set_point.acceleration).cast<float>();
-  mavlink::SetPositionTargetLocalNed message;
-  message.time_boot_ms = boot_ms;
-  message.target_system = system;
-  message.target_component = component;
-  message.coordinate_frame = mavlink::kFrameLocalNed;
+  auto message = InLocalFrame(system, component, boot_ms);
   if (set_point.place) {
     const Eigen::Vector3f place = NedFromEnu(*set_point.place).cast<float>();
     message.type_mask = mavlink::kIgnoreVelocity;
@@ -111,11 +117,7 @@ mavlink::SetPositionTargetLocalNed AccelerationMessage(const LeanSetPoint& set_p
                                                        std::uint8_t system, std::uint8_t component,
                                                        std::uint32_t boot_ms) {
   const Eigen::Vector3f acceleration = NedFromEnu(set_point.acceleration).cast<float>();
-  mavlink::SetPositionTargetLocalNed message;
-  message.time_boot_ms = boot_ms;
-  message.target_system = system;
-  message.target_component = component;
-  message.coordinate_frame = mavlink::kFrameLocalNed;
+  auto message = InLocalFrame(system, component, boot_ms);
   message.type_mask = mavlink::kIgnorePosition | mavlink::kIgnoreVelocity | mavlink::kIgnoreYawRate;
   message.afx = acceleration.x();
   message.afy = acceleration.y();

@@ -75,7 +75,7 @@ bool GoalChooser::MayChoose(const TeamView& view, std::size_t index, const UavKe
   if (!class_index || model_.classes[*class_index].name != class_name_) return false;
   if (object.sigma_m() > kMostSoughtSigma_m) return false;
   if (!left_.empty() && HaveCommon(NamesOf(view, index), left_)) return false;
-  // Of two UAVs that have chosen at once, the first by key stays.
+  // Two UAVs may have chosen at once: the first by its key keeps its object.
   const bool is_own = view.holders[index] == self;
   for (std::size_t i = 0; i < view.objects.size(); ++i) {
     const std::optional<UavKey>& holder = view.holders[i];

@@ -32,7 +32,7 @@ struct FlightToObjects {
   bool has_taken = false;       // that object; false: it will not try again
 };
 
-// What the team means for the flight of one of its UAVs.
+// The object that a UAV goes to, and the others of the team that it keeps away from.
 struct TeamGoal {
   int number = 0;           // of its object: each has another one, from 1; 0: there is none
   std::int64_t own_id = 0;  // of that object in the own map; 0: it is not there

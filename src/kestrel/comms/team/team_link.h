@@ -66,7 +66,7 @@ class TeamLink {
   // From now on the UAV goes to objects of a class, one after the other: it claims them whatever
   // the options say. 'class_name': as of GoalChooser.
   void Seek(const std::string& class_name) { goals_.emplace(model_, class_name); }
-  // What it does, for the next goal; where it is, for the next digest.
+  // Sets the UAV's state for the next choice of a goal, and its place for the next digest.
   void SetFlight(const FlightToObjects& flight) {
     flight_ = flight;
     member_.SetFlight(flight.at);

@@ -48,7 +48,7 @@ struct Claim {
   bool operator==(const Claim&) const = default;
 };
 
-// Where a UAV flies, in its own world (m, m/s).
+// Place and velocity of a UAV in flight, in its own world (m, m/s).
 struct UavFlight {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();

@@ -50,7 +50,7 @@ struct GripperAnswers {
   bool is_accepted = false;  // the newest one; false as well when none came
 };
 
-// How the job at an object ended.
+// The end of the job at an object.
 struct ObjectEnd {
   int mark = 0;           // the object's number; 0: no job has ended yet
   bool is_taken = false;  // false: given up

@@ -14,7 +14,7 @@ constexpr double kAround_m = 6;
 
 double DistanceTo(const OtherUav& other) { return other.goes_first ? kGiveWay_m : kApart_m; }
 
-// How a velocity brings a UAV nearer to another one.
+// The approach of a UAV to another one, by its velocity.
 struct Nearing {
   Nearing(const Vector2d& position, const Vector2d& velocity, const OtherUav& other) {
     const Vector2d way = other.position - position;

@@ -170,7 +170,7 @@ void RelativeGuidance::ChoosePhase(const RelativeInput& input) {
   if (phase_ == GuidancePhase::kDescend) Descend(input);
 }
 
-// How long it may fly without the pad follows from how well the velocity and the bias are known.
+// The time that it may fly without the pad follows from how well velocity and bias are known.
 void RelativeGuidance::Lose(const RelativeInput& input) {
   lost_after_s_ = kFirstEnd_s;
   const RelativePadState::Estimate& pad = *input.pad;

@@ -13,7 +13,7 @@
 
 namespace kestrel {
 
-// What to do over a pad, and what only a person knows of the place. docs/indoors.md.
+// The job over a pad, and facts of the place that only a person knows (docs/indoors.md).
 struct RelativeJob {
   bool lands = true;         // otherwise it stays above the pad, at the height of the beginning
   bool pad_moves = false;    // the pad, or the floor below, may move
