@@ -274,11 +274,12 @@ std::optional<UavFlight> TeamMember::FlightOf(const UavKey& uav, Time local) con
   return flight;
 }
 
-std::optional<Time> TeamMember::GoneSince(const ObjectRef& object) const {
-  const auto peer = peers_.find(object.uav);
-  if (peer == peers_.end()) return std::nullopt;
-  const auto gone = peer->second.gone.find(object.id);
-  return gone == peer->second.gone.end() ? std::nullopt : std::optional(gone->second);
+std::vector<TeamMember::Gone> TeamMember::AllGone() const {
+  std::vector<Gone> all;
+  for (const auto& [uav, peer] : peers_) {
+    for (const auto& [id, since] : peer.gone) all.push_back({{uav, id}, since});
+  }
+  return all;
 }
 
 void TeamMember::Tick(Time local, const Send& send) {

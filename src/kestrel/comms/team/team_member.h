@@ -75,8 +75,12 @@ class TeamMember {
   std::optional<Claim> ClaimOf(const UavKey& uav, Time local) const;
   // Returns where a UAV that is alive flies now, by what it has sent last.
   std::optional<UavFlight> FlightOf(const UavKey& uav, Time local) const;
-  // Returns since when it is known here that an object was taken; nothing: it was not.
-  std::optional<Time> GoneSince(const ObjectRef& object) const;
+  // Returns the objects that were taken, as far as it is known here.
+  struct Gone {
+    ObjectRef object;
+    Time since;  // when it became known
+  };
+  std::vector<Gone> AllGone() const;
 
   std::size_t refused() const { return refused_; }  // number of messages
   // Returns warnings for the user since the last call.

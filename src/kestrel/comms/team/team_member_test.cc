@@ -102,7 +102,10 @@ TEST(TeamMember, ObjectThatIsTakenAgainIsGoneSinceThen) {
   member.SetGone({{"a", 1}, 1}, team.now);
   team.Run(1);
   member.SetGone({{"a", 1}, 1}, team.now);
-  EXPECT_EQ(member.GoneSince({{"a", 1}, 1}), team.now);
+  const std::vector<TeamMember::Gone> gone = member.AllGone();
+  ASSERT_EQ(gone.size(), 1u);
+  EXPECT_EQ(gone[0].object, (ObjectRef{{"a", 1}, 1}));
+  EXPECT_EQ(gone[0].since, team.now);
 }
 
 TEST(TeamMember, RecoversFromLossAndDelay) {

@@ -69,11 +69,11 @@ void FindHolders(const TeamMember& member, Time local, TeamView* view) {
 void FindGone(const TeamMember& member, Time local, Time now, TeamView* view) {
   constexpr Duration kSeenAfter = std::chrono::seconds(3);
   view->is_gone.resize(view->objects.size());
-  for (const auto& [ref, i] : view->index) {
-    const auto since = member.GoneSince(ref);
-    if (since && now - view->objects[i].last_seen + kSeenAfter > local - *since) {
-      view->is_gone[i] = true;
-    }
+  for (const TeamMember::Gone& gone : member.AllGone()) {
+    const auto found = view->index.find(gone.object);
+    if (found == view->index.end()) continue;
+    const std::size_t i = found->second;
+    if (now - view->objects[i].last_seen + kSeenAfter > local - gone.since) view->is_gone[i] = true;
   }
 }
 

@@ -43,7 +43,7 @@ std::vector<TeamObject> OwnMap(const TeamView& view);
 std::vector<TeamObject> CommonMap(const TeamMember& member, const TeamView& view,
                                   const TeamFusion& fusion);
 
-// Says whether an object of the view, by its index, may be chosen.
+// Returns whether an object of the view, by its index, may be chosen.
 using ObjectFilter = std::function<bool(std::size_t)>;
 
 // Chooses an object for the UAV at 'position' (in its own world), and claims it: the one with the
