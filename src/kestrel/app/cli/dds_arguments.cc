@@ -6,6 +6,7 @@
 #include "kestrel/comms/dds/dds_domain.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/parse_number.h"
+#include "kestrel/flight/ros/ros2_result_connection.h"
 
 namespace kestrel {
 
@@ -34,12 +35,33 @@ DdsSource::OpenNode DdsArguments::NodeOpener(const DdsOptions& options) const {
   return [this, options] { return OpenNode(options); };
 }
 
-RosFrames OwnFrames(const DdsOptions& options, bool has_world) {
+RosFrames OwnFrames(const DdsOptions& options, bool has_world,
+                    const std::vector<CameraCalibration>& further) {
   RosFrames frames;
   frames.camera = options.camera_frame;
   if (has_world) frames.world = options.world_frame;
   frames.body = options.body_frame;
+  for (const CameraCalibration& camera : further) {
+    frames.further.push_back(camera.name + "_optical_frame");
+  }
   return frames;
+}
+
+std::unique_ptr<RosResults> MakeRos2Results(const std::shared_ptr<Ros2Node>& node,
+                                            const KestrelOptions& options, const RosFrames& frames,
+                                            const Task& task, const CameraCalibration& calibration,
+                                            const std::vector<CameraCalibration>& further,
+                                            const ObjectModel& model) {
+  const std::string& name = options.dds.node;
+  auto results = std::make_unique<RosResults>(
+      std::make_shared<Ros2ResultConnection>(node, name, task.topics()), options.dds, frames,
+      calibration, options.landing, model);
+  for (const CameraCalibration& camera : further) {
+    results->AddCamera(std::make_shared<Ros2ResultConnection>(
+                           node, fmt::format("{}/{}", name, camera.name), kFurtherCameraTopics),
+                       camera);
+  }
+  return results;
 }
 
 }  // namespace kestrel

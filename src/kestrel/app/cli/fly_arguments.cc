@@ -51,7 +51,7 @@ void FlyArguments::AddTo(CLI::App* command) {
   source.AddTo(command);
   command->get_option("SOURCE")->required(false)->description(
       "A camera (/dev/video0, rtsp://...) or several, with a --camera FILE each, a GStreamer "
-      "pipeline, a topic of ROS 2 (dds:TOPIC), a "
+      "pipeline, a topic of ROS 2 (dds:TOPIC) or several, a "
       "simulated camera (sim:SCENARIO, as sim:standing or sim:figure8), or a recording, which is "
       "played in real time (default: fly.source of --config)");
   source.options.target.AddTo(command);

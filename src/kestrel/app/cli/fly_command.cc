@@ -40,7 +40,6 @@
 #include "kestrel/flight/onboard/session.h"
 #include "kestrel/flight/onboard/video_server.h"
 #include "kestrel/flight/onboard/video_sink.h"
-#include "kestrel/flight/ros/ros2_result_connection.h"
 #include "kestrel/flight/ros/ros_sink.h"
 #include "kestrel/flight/session/observation_sinks.h"
 #include "kestrel/flight/session/task.h"
@@ -254,21 +253,19 @@ class Flight {
   // Names of the frames, as the topic or the options have them; stamps are ROS' time.
   RosFrames Frames() const {
     if (source_.dds.frames()) return *source_.dds.frames();
-    RosFrames frames = OwnFrames(options_.dds, HasWorld());
+    RosFrames frames = OwnFrames(options_.dds, HasWorld(), source_.live.further);
     frames.to_stamps = RosTimeAhead();
     return frames;
   }
 
   void OpenDds() {
     if (!arguments_.source.dds.is_given()) return;
-    const DdsOptions& options = options_.dds;
     std::shared_ptr<Ros2Node> node = source_.dds.node();
-    if (!node) node = arguments_.source.dds.OpenNode(options);
-    sinks_.Add(MakeRosSink(
-        std::make_unique<RosResults>(
-            std::make_unique<Ros2ResultConnection>(node, options.node, task_->topics()), options,
-            Frames(), source_.live.calibration, options_.landing, ReadModel(arguments_.model)),
-        [this](const std::string& text) { Log(text); }));
+    if (!node) node = arguments_.source.dds.OpenNode(options_.dds);
+    sinks_.Add(
+        MakeRosSink(MakeRos2Results(node, options_, Frames(), *task_, source_.live.calibration,
+                                    source_.live.further, ReadModel(arguments_.model)),
+                    [this](const std::string& text) { Log(text); }));
   }
 
   void OpenMcap() {

@@ -11,7 +11,6 @@
 #include "kestrel/app/cli/progress_bar.h"
 #include "kestrel/app/foxglove/mcap_sink.h"
 #include "kestrel/core/base/error.h"
-#include "kestrel/flight/ros/ros2_result_connection.h"
 #include "kestrel/flight/ros/ros_sink.h"
 
 namespace kestrel {
@@ -51,11 +50,9 @@ void AddDdsSink(const SourceArguments& arguments, const OpenedSource& opened,
                 const KestrelOptions& options, const Task& task, bool has_world,
                 const ObjectModel& model, ObservationSinks* sinks) {
   if (!arguments.dds.is_given()) return;
-  auto connection = std::make_unique<Ros2ResultConnection>(arguments.dds.OpenNode(options.dds),
-                                                           options.dds.node, task.topics());
-  sinks->Add(MakeWaitingRosSink(std::make_unique<RosResults>(
-      std::move(connection), options.dds, OwnFrames(options.dds, has_world), opened.calibration,
-      options.landing, model)));
+  sinks->Add(MakeWaitingRosSink(MakeRos2Results(arguments.dds.OpenNode(options.dds), options,
+                                                OwnFrames(options.dds, has_world, opened.further),
+                                                task, opened.calibration, opened.further, model)));
 }
 
 void AddMcapSink(const SourceArguments& arguments, const OpenedSource& opened, const Task& task,

@@ -106,14 +106,6 @@ void RequireOrigin(const std::vector<double>& origin) {
   }
 }
 
-// Results on ROS are in the frame of one camera.
-void RequireOneCamera(const SourceArguments& arguments, const OpenedSource& opened) {
-  if (opened.further.empty() || !arguments.dds.is_given()) return;
-  throw InputError(
-      fmt::format("--dds: expected one camera, the folder {} of the recording as the source",
-                  opened.calibration.name));
-}
-
 // A team shares maps, so there must be one.
 std::unique_ptr<TeamLink> OpenTeam(const TaskArguments& arguments, const OpenedSource& opened,
                                    const KestrelOptions& options, const ObjectModel& model) {
@@ -141,7 +133,6 @@ void RunTask(const TaskKind& kind, const TaskArguments& arguments) {
   const TaskChoice choice = arguments.Choice();
   const std::unique_ptr<Task> task = kind.make(options, choice);
   const OpenedSource opened = source.OpenOrAssume(task->format(), task->takes_several_cameras());
-  RequireOneCamera(source, opened);
   opened.source->set_keeps_color(!source.annotate.empty() && task->format() == PixelFormat::kGray);
   std::unique_ptr<TeamLink> team = OpenTeam(arguments, opened, options, choice.model);
   const std::unique_ptr<Session> session = MakeSession(opened, *task, source.Session());

@@ -42,7 +42,7 @@ void FlySource::Open(const RecordingChoice& recording, bool is_looped) {
 void FlySource::Open(const std::vector<RecordingChoice>& cameras,
                      const std::function<void(const std::string&)>& notify) {
   for (const RecordingChoice& camera : cameras) RequireCalibration(camera);
-  live = OpenLiveCameras(cameras, camera_, notify);
+  live = OpenLiveCameras(cameras, camera_, notify, {dds.Scheme()});
 }
 
 }  // namespace kestrel

@@ -23,7 +23,7 @@ struct FlySource {
 
   // Throws InputError as OpenLiveSource does.
   void Open(const RecordingChoice& recording, bool is_looped);
-  // Opens several cameras, see OpenLiveCameras.
+  // Opens several cameras, or several topics of "dds:", see OpenLiveCameras.
   void Open(const std::vector<RecordingChoice>& cameras,
             const std::function<void(const std::string&)>& notify);
 

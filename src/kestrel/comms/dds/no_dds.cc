@@ -38,11 +38,11 @@ bool Ros2Node::Publish(std::size_t /*publisher*/, std::string_view /*bytes*/) { 
 void Ros2Node::Flush(Duration /*timeout*/) const {}
 
 std::size_t Ros2Node::Subscribe(const std::string& /*topic*/, std::string_view /*type*/,
-                                const Ros2Qos& /*qos*/) {
+                                const Ros2Qos& /*qos*/, std::size_t /*inbox*/) {
   return 0;
 }
 
-void Ros2Node::Take(Duration /*timeout*/, const TakeMessage& /*take*/) {}
+void Ros2Node::Take(Duration /*timeout*/, const TakeMessage& /*take*/, std::size_t /*inbox*/) {}
 
 std::vector<RosTopic> Ros2Node::Topics() const { return {}; }
 

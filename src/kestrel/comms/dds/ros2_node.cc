@@ -139,6 +139,11 @@ struct Ros2Node::Entities {
     const dds_topic_descriptor_t* type;
   };
 
+  struct Inbox {
+    dds_entity_t waitset;
+    std::vector<dds_entity_t> readers;
+  };
+
   Entities(int domain_number, Ros2NodeOptions node_options)
       : domain(domain_number), options(std::move(node_options)), opened(OpenDdsDomain(domain)) {
     constexpr std::string_view kEnclave = "enclave=/;";
@@ -147,7 +152,6 @@ struct Ros2Node::Entities {
     participant.id =
         Require(dds_create_participant(static_cast<dds_domainid_t>(domain), qos.get(), nullptr),
                 "participant (is there a network?)");
-    waitset = Require(dds_create_waitset(participant.id), "waitset");
     discovery = Require(
         dds_create_reader(participant.id, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr),
         "reader");
@@ -201,6 +205,13 @@ struct Ros2Node::Entities {
                                                                 : BytesOf<kGidSize>(info)));
   }
 
+  Inbox& InboxOf(std::size_t index) {
+    while (inboxes.size() <= index) {
+      inboxes.push_back({Require(dds_create_waitset(participant.id), "waitset"), {}});
+    }
+    return inboxes[index];
+  }
+
   static bool Publish(const Publisher& publisher, std::string_view bytes) {
     return WriteCdr(publisher.writer, *publisher.type, bytes);
   }
@@ -209,12 +220,11 @@ struct Ros2Node::Entities {
   Ros2NodeOptions options;
   std::shared_ptr<const void> opened;
   Participant participant;
-  dds_entity_t waitset = 0;
   dds_entity_t discovery = 0;  // receives what others publish
   Publisher info_publisher{};
   NodeInfo info;
   std::vector<Publisher> publishers;
-  std::vector<dds_entity_t> subscribers;
+  std::vector<Inbox> inboxes;
 };
 
 Ros2Node::Ros2Node(int domain, const Ros2NodeOptions& options)
@@ -251,27 +261,29 @@ void Ros2Node::Flush(Duration timeout) const {
   }
 }
 
-std::size_t Ros2Node::Subscribe(const std::string& topic, std::string_view type,
-                                const Ros2Qos& qos) {
+std::size_t Ros2Node::Subscribe(const std::string& topic, std::string_view type, const Ros2Qos& qos,
+                                std::size_t inbox) {
+  Entities::Inbox& subscribers = entities_->InboxOf(inbox);
   const dds_entity_t participant = entities_->participant.id;
   const dds_entity_t reader = entities_->Require(
       dds_create_reader(participant, entities_->TopicOf(DdsTopicName(topic), KnownType(type)),
                         MakeQos(qos, HashOf(type)).get(), nullptr),
       "reader");
   dds_set_status_mask(reader, DDS_DATA_AVAILABLE_STATUS);
-  entities_->Require(dds_waitset_attach(entities_->waitset, reader,
-                                        static_cast<dds_attach_t>(entities_->subscribers.size())),
+  entities_->Require(dds_waitset_attach(subscribers.waitset, reader,
+                                        static_cast<dds_attach_t>(subscribers.readers.size())),
                      "waiting for messages");
-  entities_->subscribers.push_back(reader);
+  subscribers.readers.push_back(reader);
   entities_->info.readers.push_back(Entities::GuidOf(reader));
   entities_->PublishInfo();
-  return entities_->subscribers.size() - 1;
+  return subscribers.readers.size() - 1;
 }
 
-void Ros2Node::Take(Duration timeout, const TakeMessage& take) {
-  dds_waitset_wait(entities_->waitset, nullptr, 0, timeout.count());
-  for (std::size_t i = 0; i < entities_->subscribers.size(); ++i) {
-    TakeCdr(entities_->subscribers[i], [&](std::string_view bytes) { take(i, bytes); });
+void Ros2Node::Take(Duration timeout, const TakeMessage& take, std::size_t inbox) {
+  const Entities::Inbox& subscribers = entities_->inboxes[inbox];
+  dds_waitset_wait(subscribers.waitset, nullptr, 0, timeout.count());
+  for (std::size_t i = 0; i < subscribers.readers.size(); ++i) {
+    TakeCdr(subscribers.readers[i], [&](std::string_view bytes) { take(i, bytes); });
   }
 }
 

@@ -35,7 +35,8 @@ struct Ros2NodeOptions {
 // A node of ROS 2 without ROS: its topics go over Eclipse Cyclone DDS, by the names and types of
 // ROS, and `ros2 node list` and `ros2 topic list` show them. Messages are plain CDR, as
 // serialization.h writes and reads it. Publish and Take do not throw and may be called by different
-// threads; the other functions are called before, by one thread.
+// threads; the other functions are called before, by one thread. Subscriptions lie in inboxes, 0, 1
+// and so on: each may have a thread of its own that takes from it.
 class Ros2Node {
  public:
   // Throws InputError when there is no such domain (0 to 232), no network, or DDS is not part of
@@ -58,13 +59,14 @@ class Ros2Node {
   // Waits until all subscribers have what was published reliably, but not longer than 'timeout'.
   void Flush(Duration timeout) const;
 
-  // Returns the index of the subscription; otherwise as Advertise.
-  std::size_t Subscribe(const std::string& topic, std::string_view type, const Ros2Qos& qos);
+  // Returns the index of the subscription in its inbox; otherwise as Advertise.
+  std::size_t Subscribe(const std::string& topic, std::string_view type, const Ros2Qos& qos,
+                        std::size_t inbox = 0);
 
   using TakeMessage = std::function<void(std::size_t subscriber, std::string_view bytes)>;
-  // Passes everything that has come to 'take', all of it of the topic's type; waits for it until
-  // 'timeout' has passed.
-  void Take(Duration timeout, const TakeMessage& take);
+  // Passes everything that has come into the inbox to 'take', all of it of the topic's type; waits
+  // for it until 'timeout' has passed. The inbox has a subscription.
+  void Take(Duration timeout, const TakeMessage& take, std::size_t inbox = 0);
 
   // Returns the topics of ROS that others publish, each name and type once, in the order of names.
   // They are complete only a moment after the node has begun.

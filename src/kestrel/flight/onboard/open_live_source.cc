@@ -26,6 +26,14 @@ void MeasureDelay(const GstreamerCameraOptions& options, OpenedLiveSource* opene
   opened->source = std::move(video);
 }
 
+// Returns the scheme of a URI; null: none has its prefix.
+const SourceScheme* SchemeOf(const std::string& uri, const std::vector<SourceScheme>& schemes) {
+  for (const SourceScheme& scheme : schemes) {
+    if (uri.starts_with(scheme.prefix)) return &scheme;
+  }
+  return nullptr;
+}
+
 OpenedLiveSource OpenCamera(const RecordingChoice& choice, const GstreamerCameraOptions& options,
                             const std::string& name = "") {
   if (choice.camera.empty() && !choice.may_assume_lens) {
@@ -66,11 +74,15 @@ OpenedLiveSource OpenReplay(const RecordingChoice& choice, bool is_looped) {
 }
 
 // Throws InputError for what cannot be one of several.
-void RequireCameras(const std::vector<RecordingChoice>& cameras) {
+void RequireOneKind(const std::vector<RecordingChoice>& cameras, const SourceScheme* scheme) {
   std::set<std::string> names;
   for (const RecordingChoice& camera : cameras) {
     const std::string& uri = camera.sources.front();
-    if (!IsCamera(uri)) {
+    if (scheme != nullptr && !uri.starts_with(scheme->prefix)) {
+      throw InputError(fmt::format("{}: expected {}..., as the first one", WithoutPassword(uri),
+                                   scheme->prefix));
+    }
+    if (scheme == nullptr && !IsCamera(uri)) {
       throw InputError(WithoutPassword(uri) +
                        ": expected a camera, as the others (/dev/video0, rtsp://...)");
     }
@@ -85,7 +97,7 @@ std::string NameOf(std::size_t camera) { return fmt::format("cam{}", camera); }
 // Returns whether one file has the calibrations of all. Throws InputError when it lacks one.
 bool HaveOneFile(const std::vector<RecordingChoice>& cameras) {
   const std::string& file = cameras.front().camera;
-  if (cameras.size() < 2 || cameras[1].camera != file) return false;
+  if (cameras.size() < 2 || file.empty() || cameras[1].camera != file) return false;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     if (ReadCalibration(file, NameOf(i)).name == NameOf(i)) continue;
     throw InputError(file +
@@ -100,6 +112,7 @@ OpenedLiveSource AsOne(std::vector<OpenedLiveSource> cameras) {
   OpenedLiveSource all;
   all.actuator = cameras.front().actuator;
   all.calibration = cameras.front().calibration;
+  all.has_poses = cameras.front().has_poses;
   std::vector<SeveralSources::Camera> sources;
   for (OpenedLiveSource& camera : cameras) {
     if (!sources.empty()) all.further.push_back(camera.calibration);
@@ -116,15 +129,19 @@ OpenedLiveSource AsOne(std::vector<OpenedLiveSource> cameras) {
 
 OpenedLiveSource OpenLiveCameras(const std::vector<RecordingChoice>& cameras,
                                  const GstreamerCameraOptions& options,
-                                 const std::function<void(const std::string&)>& notify) {
-  RequireCameras(cameras);
+                                 const std::function<void(const std::string&)>& notify,
+                                 const std::vector<SourceScheme>& schemes) {
+  const SourceScheme* const scheme = SchemeOf(cameras.front().sources.front(), schemes);
+  RequireOneKind(cameras, scheme);
   const bool is_one_file = HaveOneFile(cameras);
   std::vector<OpenedLiveSource> opened;
   std::string fault;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     const std::string name = NameOf(i);
     try {
-      opened.push_back(OpenCamera(cameras[i], options, is_one_file ? name : ""));
+      const std::string entry = is_one_file ? name : "";
+      opened.push_back(scheme != nullptr ? scheme->open({cameras[i], /*is_looped=*/false, entry})
+                                         : OpenCamera(cameras[i], options, entry));
       opened.back().calibration.name = name;
     } catch (const InputError& error) {
       fault = fmt::format("{}: {}", name, error.what());
@@ -145,9 +162,7 @@ CameraCalibration ChosenCalibration(const RecordingChoice& choice, const std::st
 OpenedLiveSource OpenLiveSource(const LiveSourceChoice& choice,
                                 const GstreamerCameraOptions& camera,
                                 const std::vector<SourceScheme>& schemes) {
-  for (const SourceScheme& scheme : schemes) {
-    if (choice.uri().starts_with(scheme.prefix)) return scheme.open(choice);
-  }
+  if (const SourceScheme* scheme = SchemeOf(choice.uri(), schemes)) return scheme->open(choice);
   if (IsCamera(choice.uri())) return OpenCamera(choice.recording, camera);
   return OpenReplay(choice.recording, choice.is_looped);
 }

@@ -58,6 +58,7 @@ struct OpenedLiveSource {
 struct LiveSourceChoice {
   RecordingChoice recording;  // its 'sources' has one element, the URI
   bool is_looped = false;     // a recording begins again after its end
+  std::string camera = {};    // its entry in a calibration file of several; empty: the only one
 
   const std::string& uri() const { return recording.sources.front(); }
 };
@@ -78,13 +79,14 @@ OpenedLiveSource OpenLiveSource(const LiveSourceChoice& choice,
                                 const GstreamerCameraOptions& camera,
                                 const std::vector<SourceScheme>& schemes = {});
 
-// Opens several cameras as one source: cam0, cam1 and so on. Their calibrations are files of one
-// camera each, or one file with an entry for each. One that cannot be opened is left out, with a
-// line to 'notify', as long as another one can. Throws InputError when none can be opened, when one
-// is no camera, or is given twice.
+// Opens several cameras, or several sources of one scheme, as one source: cam0, cam1 and so on.
+// Their calibrations are files of one camera each, or one file with an entry for each. One that
+// cannot be opened is left out, with a line to 'notify', as long as another one can. Throws
+// InputError when none can be opened, when one is of another kind, or is given twice.
 OpenedLiveSource OpenLiveCameras(const std::vector<RecordingChoice>& cameras,
                                  const GstreamerCameraOptions& options,
-                                 const std::function<void(const std::string&)>& notify);
+                                 const std::function<void(const std::string&)>& notify,
+                                 const std::vector<SourceScheme>& schemes = {});
 
 // Returns the calibration of the choice's file, with its clock offset, for sources that have none
 // of their own. 'name': of the camera, in a file with several. Throws InputError when the file is

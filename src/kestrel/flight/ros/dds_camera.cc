@@ -40,8 +40,10 @@ DdsCamera::DdsCamera(std::shared_ptr<Ros2Node> node, DdsCameraOptions options,
   std::vector<std::string> names = options_.topics;
   names.push_back(options_.image);
   const TopicChoice chosen = ChooseTopics(found, names, name_);
-  source_.emplace(TopicSourceOptions{
-      .format = options_.format, .poses_by_tf = !chosen.pose, .body_frame = options_.body_frame});
+  source_.emplace(TopicSourceOptions{.format = options_.format,
+                                     .poses_by_tf = options_.takes_poses && !chosen.pose,
+                                     .body_frame = options_.body_frame,
+                                     .from_stamps = options_.from_stamps});
   Subscribe(found, chosen);
   for (const Time end = Now() + DurationFromSeconds(options_.wait_s);
        !HasAll(chosen) && Now() < end;) {
@@ -60,11 +62,11 @@ DdsCamera::DdsCamera(std::shared_ptr<Ros2Node> node, DdsCameraOptions options,
 void DdsCamera::Subscribe(const std::vector<RosTopic>& found, const TopicChoice& chosen) {
   std::vector<std::size_t> heard{chosen.image};
   if (chosen.camera_info) heard.push_back(*chosen.camera_info);
-  if (chosen.pose) heard.push_back(*chosen.pose);
+  if (chosen.pose && options_.takes_poses) heard.push_back(*chosen.pose);
   heard.insert(heard.end(), chosen.transforms.begin(), chosen.transforms.end());
   for (const std::size_t index : heard) {
     topics_.push_back(found[index]);
-    node_->Subscribe(found[index].name, found[index].type, QosFor(found[index]));
+    node_->Subscribe(found[index].name, found[index].type, QosFor(found[index]), options_.inbox);
   }
 }
 
@@ -93,10 +95,14 @@ std::vector<RosTopic> DdsCamera::FindTopics() const {
 }
 
 bool DdsCamera::HasAll(const TopicChoice& chosen) const {
-  const bool wants_poses = chosen.pose || !chosen.transforms.empty();
   const bool needs_info = !options_.camera && chosen.camera_info;
-  return source_->has_images() && (source_->has_camera_info() || !needs_info) &&
-         (!wants_poses || (source_->has_poses() && mount()));
+  return source_->has_images() && (source_->has_camera_info() || !needs_info) && HasPlace(chosen);
+}
+
+// True when the camera has its place in the world, or nothing will give it one.
+bool DdsCamera::HasPlace(const TopicChoice& chosen) const {
+  const bool will_have = chosen.pose || !chosen.transforms.empty();
+  return !will_have || (mount() && (source_->has_poses() || !options_.takes_poses));
 }
 
 void DdsCamera::RequireAll(const TopicChoice& chosen) const {
@@ -114,13 +120,14 @@ void DdsCamera::RequireAll(const TopicChoice& chosen) const {
 }
 
 void DdsCamera::TakeMessages(Duration timeout) {
-  node_->Take(timeout, [this](std::size_t index, std::string_view bytes) {
+  const auto take = [this](std::size_t index, std::string_view bytes) {
     try {
       source_->Take(topics_[index], bytes);
     } catch (const InputError& error) {
       source_->Fail(error.what());
     }
-  });
+  };
+  node_->Take(timeout, take, options_.inbox);
 }
 
 std::optional<Event> DdsCamera::Next(Duration timeout) {

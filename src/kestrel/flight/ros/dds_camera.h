@@ -26,6 +26,11 @@ struct DdsCameraOptions {
   std::optional<CameraIntrinsics> camera = {};  // calibration given by the user; nothing: from
                                                 // camera_info
   double wait_s = 10;                           // longest wait for images, camera_info and mount
+
+  // Of a further camera of a session:
+  std::size_t inbox = 0;                     // of the node, for this camera's topics
+  bool takes_poses = true;                   // false: another camera gives them out
+  std::optional<Duration> from_stamps = {};  // as in TopicSourceOptions
 };
 
 // Live images and poses from a system of ROS 2. The topics are found and read like those of a bag:
@@ -44,6 +49,8 @@ class DdsCamera : public LiveSource {
   bool has_poses() const { return has_poses_; }
   const std::string& camera_frame() const { return source_->camera_frame(); }
   const std::string& world_frame() const { return source_->world_frame(); }  // empty: no poses
+  const std::string& body_frame() const { return source_->body_frame(); }
+  const std::string& camera_info_topic() const { return source_->camera_info_topic(); }
   Duration to_stamps() const { return -source_->from_stamps(); }
 
   // Leaves out broken messages and images out of order: error() has the reason until a good one
@@ -57,6 +64,7 @@ class DdsCamera : public LiveSource {
   void Subscribe(const std::vector<RosTopic>& found, const TopicChoice& chosen);
   void TakeMessages(Duration timeout);
   bool HasAll(const TopicChoice& chosen) const;
+  bool HasPlace(const TopicChoice& chosen) const;
   void RequireAll(const TopicChoice& chosen) const;
 
   std::shared_ptr<Ros2Node> node_;

@@ -6,30 +6,12 @@
 
 #include <fmt/format.h>
 
-#include "kestrel/flight/ros/dds_camera.h"
+#include "kestrel/core/base/error.h"
 
 namespace kestrel {
 namespace {
 
 constexpr std::string_view kPrefix = "dds:";
-
-DdsCameraOptions CameraOptions(const LiveSourceChoice& choice, const DdsOptions& options) {
-  DdsCameraOptions camera;
-  camera.image = choice.uri().substr(kPrefix.size());
-  camera.topics = choice.recording.bag.topics;
-  camera.format = choice.recording.format;
-  camera.body_frame = options.body_frame;
-  camera.wait_s = options.wait_s;
-  return camera;
-}
-
-RosFrames FramesOf(const DdsCamera& camera) {
-  RosFrames frames;
-  frames.camera = camera.camera_frame();
-  if (camera.has_poses()) frames.world = camera.world_frame();
-  frames.to_stamps = camera.to_stamps();
-  return frames;
-}
 
 }  // namespace
 
@@ -45,13 +27,29 @@ SourceScheme DdsSource::Scheme() {
   return {std::string(kPrefix), [this](const LiveSourceChoice& choice) { return Open(choice); }};
 }
 
+DdsCameraOptions DdsSource::CameraOptions(const LiveSourceChoice& choice) {
+  DdsCameraOptions camera;
+  camera.image = choice.uri().substr(kPrefix.size());
+  camera.topics = choice.recording.bag.topics;
+  camera.format = choice.recording.format;
+  camera.body_frame = frames_ ? body_frame_ : options_.body_frame;
+  camera.wait_s = options_.wait_s;
+  camera.inbox = inboxes_++;
+  camera.takes_poses = !frames_;
+  if (frames_) camera.from_stamps = -frames_->to_stamps;
+  return camera;
+}
+
 OpenedLiveSource DdsSource::Open(const LiveSourceChoice& choice) {
-  DdsCameraOptions options = CameraOptions(choice, options_);
   std::optional<CameraCalibration> given;
-  if (!choice.recording.camera.empty()) given = ChosenCalibration(choice.recording);
+  if (!choice.recording.camera.empty()) {
+    given = ChosenCalibration(choice.recording, choice.camera);
+  }
+  if (!node_) node_ = open_node_();
+  DdsCameraOptions options = CameraOptions(choice);
   if (given) options.camera = given->intrinsics;
-  node_ = open_node_();
   auto camera = std::make_unique<DdsCamera>(node_, options, notify_);
+  if (!given) RequireOwnLens(*camera, choice);
   OpenedLiveSource opened;
   opened.calibration = given ? *given : *camera->calibration();
   if (!opened.calibration.body_from_camera) opened.calibration.body_from_camera = camera->mount();
@@ -59,15 +57,36 @@ OpenedLiveSource DdsSource::Open(const LiveSourceChoice& choice) {
     opened.calibration.clock_offset = choice.recording.clock_offset;
   }
   opened.has_poses = camera->has_poses();
-  if (opened.has_poses && !opened.calibration.body_from_camera) {
+  NoteFrames(*camera);
+  if (frames_->world && !opened.calibration.body_from_camera) {
     notify_(
         fmt::format("no mount: no positions in the world; expected a static transform from {} to "
                     "{}, or --camera FILE with T_BS",
-                    options_.body_frame, camera->camera_frame()));
+                    options.body_frame, camera->camera_frame()));
   }
-  frames_ = FramesOf(*camera);
   opened.source = std::move(camera);
   return opened;
+}
+
+// The only camera_info of a system goes with any image: not with two.
+void DdsSource::RequireOwnLens(const DdsCamera& camera, const LiveSourceChoice& choice) {
+  if (used_infos_.insert(camera.camera_info_topic()).second) return;
+  throw InputError(
+      fmt::format("{}: {} is of another camera, expected a topic of sensor_msgs/CameraInfo beside "
+                  "the images; or --camera FILE",
+                  choice.uri(), camera.camera_info_topic()));
+}
+
+void DdsSource::NoteFrames(const DdsCamera& camera) {
+  if (frames_) {
+    frames_->further.push_back(camera.camera_frame());
+    return;
+  }
+  frames_.emplace();
+  frames_->camera = camera.camera_frame();
+  if (camera.has_poses()) frames_->world = camera.world_frame();
+  frames_->to_stamps = camera.to_stamps();
+  body_frame_ = camera.body_frame();
 }
 
 }  // namespace kestrel

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "kestrel/comms/dds/ros2_node.h"
 #include "kestrel/flight/onboard/open_live_source.h"
+#include "kestrel/flight/ros/dds_camera.h"
 #include "kestrel/flight/ros/dds_options.h"
 #include "kestrel/flight/ros/ros_results.h"
 
@@ -17,7 +20,8 @@ namespace kestrel {
 std::shared_ptr<Ros2Node> OpenRos2Node(int domain, const DdsOptions& options);
 
 // The scheme "dds:TOPIC" of live sources: images of ROS 2. It keeps the node, for results that go
-// back by the same one. Must outlive the scheme.
+// back by the same one. Opened again, it adds a further camera to the node: the poses, the body's
+// frame and the clock are then those of the first. Must outlive the scheme.
 class DdsSource {
  public:
   using OpenNode = std::function<std::shared_ptr<Ros2Node>()>;
@@ -27,7 +31,8 @@ class DdsSource {
             std::function<void(const std::string&)> notify);
 
   // The source takes calibration and mount from the topics beside the images, unless the user has
-  // given them. It throws InputError as DdsCamera does.
+  // given them. It throws InputError as DdsCamera does, and when the only camera_info is another
+  // camera's.
   SourceScheme Scheme();
 
   // The node of the source; null: none was opened.
@@ -37,12 +42,18 @@ class DdsSource {
 
  private:
   OpenedLiveSource Open(const LiveSourceChoice& choice);
+  DdsCameraOptions CameraOptions(const LiveSourceChoice& choice);
+  void RequireOwnLens(const DdsCamera& camera, const LiveSourceChoice& choice);
+  void NoteFrames(const DdsCamera& camera);
 
   DdsOptions options_;
   OpenNode open_node_;
   std::function<void(const std::string&)> notify_;
   std::shared_ptr<Ros2Node> node_;
   std::optional<RosFrames> frames_;
+  std::string body_frame_;            // of the UAV, as the first camera's poses name it
+  std::set<std::string> used_infos_;  // topics of camera_info
+  std::size_t inboxes_ = 0;           // of the node, in use
 };
 
 }  // namespace kestrel

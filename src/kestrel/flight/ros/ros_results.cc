@@ -6,6 +6,8 @@
 #include <thread>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "kestrel/io/ros_messages/frame_tree.h"
 #include "kestrel/io/ros_messages/serialization.h"
 
@@ -26,6 +28,12 @@ LandingResultsOptions ResultsOf(const DdsOptions& options, const RosFrames& fram
           .noise = landing.tracker.Noise()};
 }
 
+TransformStampedMessage StampedTransform(Time stamp, const std::string& parent,
+                                         const std::string& child,
+                                         const RigidTransform& parent_from_child) {
+  return {{0, stamp, parent}, child, TransformMessageOf(parent_from_child)};
+}
+
 }  // namespace
 
 Duration RosTimeAhead() {
@@ -34,52 +42,69 @@ Duration RosTimeAhead() {
   return ros - Now().time_since_epoch();
 }
 
+RosResults::Camera::Camera(std::shared_ptr<ResultConnection> to,
+                           const CameraCalibration& calibration, LandingResultsOptions results)
+    : frame(results.camera_frame),
+      lens(calibration.intrinsics),
+      body_from_camera(calibration.body_from_camera),
+      has_gimbal(calibration.gimbal.has_value()),
+      connection(std::move(to)),
+      landing(std::move(results), connection.get()) {}
+
 RosResults::RosResults(std::shared_ptr<ResultConnection> connection, const DdsOptions& options,
                        const RosFrames& frames, const CameraCalibration& calibration,
                        const LandingPipelineOptions& landing, ObjectModel model)
     : name_(options.node),
       publish_tf_(options.publish_tf),
       frames_(frames),
-      body_from_camera_(calibration.body_from_camera),
-      has_gimbal_(calibration.gimbal.has_value()),
-      camera_(calibration.intrinsics),
+      landing_(ResultsOf(options, frames, landing)),
       connection_(std::move(connection)),
-      landing_(ResultsOf(options, frames, landing), connection_.get()),
       hunt_({frames.camera, frames.world, std::move(model)}, connection_.get()),
       follow_({frames.camera, frames.world, options.target_frame}, connection_.get()) {
-  if (frames_.body && publish_tf_) PublishMount();
+  cameras_.emplace_back(connection_, calibration, landing_);
+  PublishMounts();
 }
 
-std::string RosResults::TransformBytes(Time stamp, const std::string& parent,
-                                       const std::string& child,
-                                       const RigidTransform& parent_from_child) const {
-  TfMessage message;
-  TransformStampedMessage& transform = message.transforms.emplace_back();
-  transform.header = {0, stamp, parent};
-  transform.child_frame_id = child;
-  transform.transform = TransformMessageOf(parent_from_child);
-  return SerializeMessage(message, WireFormat::kCdr);
+void RosResults::AddCamera(std::shared_ptr<ResultConnection> connection,
+                           const CameraCalibration& calibration) {
+  LandingResultsOptions results = landing_;
+  results.camera_frame = frames_.further[cameras_.size() - 1];
+  results.pattern_frame = fmt::format("{}_{}", calibration.name, landing_.pattern_frame);
+  results.apriltag_topics = false;
+  cameras_.emplace_back(std::move(connection), calibration, std::move(results));
+  PublishMounts();
 }
 
-void RosResults::PublishMount() {
-  if (!body_from_camera_ || has_gimbal_) return;
-  connection_->Publish(ResultTopic::kStaticTransforms,
-                       TransformBytes(Time(), *frames_.body, frames_.camera, *body_from_camera_));
+// All in one message: only the last one is kept for later subscribers.
+void RosResults::PublishMounts() {
+  if (!frames_.body || !publish_tf_) return;
+  TfMessage mounts;
+  for (const Camera& camera : cameras_) {
+    if (!camera.body_from_camera || camera.has_gimbal) continue;
+    mounts.transforms.push_back(
+        StampedTransform(Time(), *frames_.body, camera.frame, *camera.body_from_camera));
+  }
+  if (mounts.transforms.empty()) return;
+  connection_->Publish(ResultTopic::kStaticTransforms, SerializeMessage(mounts, WireFormat::kCdr));
 }
 
-// The body in the world, and the camera on the body where a gimbal turns it.
+// The body in the world, and the camera on the body where a gimbal turns it. Cameras whose images
+// are taken at once have one stamp, which tf takes once.
 template <class Observation>
-void RosResults::PublishTransforms(const Observation& observation) {
+void RosResults::PublishTransforms(const Camera& camera, const Observation& observation) {
   const auto& world_from_camera = observation.world_from_camera;
   const auto& camera_from_body = observation.camera_from_body;
   if (!publish_tf_ || !frames_.body || !world_from_camera || !camera_from_body) return;
   const auto publish = [&](const std::string& parent, const std::string& child,
                            const RigidTransform& parent_from_child) {
-    connection_->Publish(ResultTopic::kTransforms,
-                         TransformBytes(observation.time, parent, child, parent_from_child));
+    const TfMessage message{{StampedTransform(observation.time, parent, child, parent_from_child)}};
+    connection_->Publish(ResultTopic::kTransforms, SerializeMessage(message, WireFormat::kCdr));
   };
-  if (frames_.world) publish(*frames_.world, *frames_.body, *world_from_camera * *camera_from_body);
-  if (has_gimbal_) publish(*frames_.body, frames_.camera, camera_from_body->Inverse());
+  if (frames_.world && body_time_ != observation.time) {
+    publish(*frames_.world, *frames_.body, *world_from_camera * *camera_from_body);
+    body_time_ = observation.time;
+  }
+  if (camera.has_gimbal) publish(*frames_.body, camera.frame, camera_from_body->Inverse());
 }
 
 void RosResults::WaitForSubscribers(Duration timeout) const {
@@ -98,20 +123,20 @@ void RosResults::Publish(const Frame& frame, const LandingObservation& observati
   LandingObservation stamped = observation;
   stamped.time += frames_.to_stamps;
   if (stamped.target) stamped.target->time += frames_.to_stamps;
-  if (frame.camera > 0) return landing_.PublishTrack(stamped);
-  PublishTransforms(stamped);
-  landing_.PublishDetection(camera_, stamped);
+  Camera& camera = cameras_[frame.camera];
+  PublishTransforms(camera, stamped);
+  camera.landing.PublishDetection(camera.lens, stamped);
   Count(observation.report.detection.has_value(), frame.time, observation.detect_time);
-  landing_.PublishMarkers(stamped);
-  landing_.PublishTrack(stamped);
-  landing_.PublishImage(frame.image, camera_, stamped);
+  camera.landing.PublishMarkers(stamped);
+  cameras_.front().landing.PublishTrack(stamped);
+  camera.landing.PublishImage(frame.image, camera.lens, stamped);
 }
 
 void RosResults::Publish(const Frame& frame, const HuntObservation& observation) {
   const std::lock_guard lock(mutex_);
   HuntObservation stamped = observation;
   stamped.time += frames_.to_stamps;
-  PublishTransforms(stamped);
+  PublishTransforms(cameras_.front(), stamped);
   hunt_.PublishDetections(stamped);
   Count(!observation.report.detections.empty(), frame.time, observation.detect_time);
   hunt_.PublishMarkers(stamped);
@@ -123,7 +148,7 @@ void RosResults::Publish(const Frame& frame, const FollowObservation& observatio
   FollowObservation stamped = observation;
   stamped.time += frames_.to_stamps;
   if (stamped.target) stamped.target->time += frames_.to_stamps;
-  PublishTransforms(stamped);
+  PublishTransforms(cameras_.front(), stamped);
   const auto& region = observation.region;
   Count(region && region->state == RegionState::kFollowing, frame.time, observation.detect_time);
   follow_.PublishTrack(stamped);

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/camera/calibration.h"
@@ -28,9 +29,10 @@ namespace kestrel {
 // Frames in which the results are published.
 struct RosFrames {
   std::string camera;
-  std::optional<std::string> world;  // where there are poses
-  std::optional<std::string> body;   // publish the UAV and the mount on tf; nothing: others do
-  Duration to_stamps{};              // added to a frame's time to get its stamp
+  std::optional<std::string> world;       // where there are poses
+  std::optional<std::string> body;        // publish the UAV and the mount on tf; nothing: others do
+  Duration to_stamps{};                   // added to a frame's time to get its stamp
+  std::vector<std::string> further = {};  // those of the further cameras
 };
 
 // Returns the current difference between the ROS time (the time of day) and Now(): add it to a time
@@ -44,12 +46,16 @@ class RosResults {
   RosResults(std::shared_ptr<ResultConnection> connection, const DdsOptions& options,
              const RosFrames& frames, const CameraCalibration& calibration,
              const LandingPipelineOptions& landing, ObjectModel model);
+  // Adds the next further camera before the first results, with the next of the frames' further
+  // ones. Its own topics go to 'connection', with those of tf; its pattern's frame begins with the
+  // camera's name. Tags as of apriltag_ros are the first camera's alone.
+  void AddCamera(std::shared_ptr<ResultConnection> connection,
+                 const CameraCalibration& calibration);
 
   // Waits until somebody subscribes, at most 'timeout': subscribers are found only after a moment.
   void WaitForSubscribers(Duration timeout) const;
 
-  // The other topics are the first camera's: a further camera publishes the track alone, which all
-  // cameras share.
+  // The track is that of all cameras; the first one may have failed.
   void Publish(const Frame& frame, const LandingObservation& observation);
   void Publish(const Frame& frame, const HuntObservation& observation);
   void Publish(const Frame& frame, const FollowObservation& observation);
@@ -62,22 +68,31 @@ class RosResults {
   void Flush() const { connection_->Flush(); }
 
  private:
-  std::string TransformBytes(Time stamp, const std::string& parent, const std::string& child,
-                             const RigidTransform& parent_from_child) const;
-  void PublishMount();
+  struct Camera {
+    Camera(std::shared_ptr<ResultConnection> to, const CameraCalibration& calibration,
+           LandingResultsOptions results);
+
+    std::string frame;
+    CameraModel lens;
+    std::optional<RigidTransform> body_from_camera;
+    bool has_gimbal;
+    std::shared_ptr<ResultConnection> connection;
+    LandingResults landing;
+  };
+
+  void PublishMounts();
   void Count(bool found, Time time, Duration detect_time);
   template <class Observation>
-  void PublishTransforms(const Observation& observation);
+  void PublishTransforms(const Camera& camera, const Observation& observation);
 
   std::mutex mutex_;  // guards all but the connection
   std::string name_;  // node name
   bool publish_tf_;
   RosFrames frames_;
-  std::optional<RigidTransform> body_from_camera_;
-  bool has_gimbal_;
-  CameraModel camera_;
+  LandingResultsOptions landing_;  // of the first camera
   std::shared_ptr<ResultConnection> connection_;
-  LandingResults landing_;
+  std::vector<Camera> cameras_;
+  std::optional<Time> body_time_;  // stamp of the UAV's newest transform
   HuntResults hunt_;
   FollowResults follow_;
   Rate rate_;

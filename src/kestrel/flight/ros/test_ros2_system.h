@@ -70,19 +70,24 @@ class RosListener {
   std::thread thread_;
 };
 
-// A system of ROS 2 with a camera over the landing pattern, until it is destroyed. It publishes the
-// frames of a recording again and again, ten per second and stamped with the present time.
+// A system of ROS 2 with cameras over the landing pattern, until it is destroyed. Each publishes
+// the frames of a recording again and again, ten per second and stamped with the present time.
 class RosSystem {
  public:
-  RosSystem(int domain, const std::string& flight) : node_(domain, {"system"}) {
+  RosSystem(int domain, const std::string& flight,
+            const std::vector<std::string>& cameras = {"camera"})
+      : node_(domain, {"system"}) {
     const auto source = OpenSource({flight}, PixelFormat::kGray);
     for (Frame frame; source->Next(&frame);) frames_.push_back(frame);
     poses_ = source->poses();
     calibration_ = *source->calibration();
-    image_ = node_.Advertise("/camera/image_raw", ImageMessage::kType, kSensorDataQos);
-    info_ = node_.Advertise("/camera/camera_info", CameraInfoMessage::kType, kSensorDataQos);
+    for (const std::string& name : cameras) {
+      cameras_.push_back(
+          {name, node_.Advertise("/" + name + "/image_raw", ImageMessage::kType, kSensorDataQos),
+           node_.Advertise("/" + name + "/camera_info", CameraInfoMessage::kType, kSensorDataQos)});
+    }
     odometry_ = node_.Advertise("/odom", OdometryMessage::kType, kDefaultQos);
-    PublishMount();
+    PublishMounts();
     thread_ = std::thread([this] {
       for (std::size_t i = 0; !is_over_; ++i) {
         Publish(frames_[i % frames_.size()]);
@@ -98,13 +103,20 @@ class RosSystem {
   RosSystem& operator=(const RosSystem&) = delete;
 
  private:
-  void PublishMount() {
-    TfMessage mount;
-    TransformStampedMessage& transform = mount.transforms.emplace_back();
-    transform.header.frame_id = "base_link";
-    transform.child_frame_id = "camera";
-    transform.transform = TransformMessageOf(*calibration_.body_from_camera);
-    node_.Publish(node_.Advertise("/tf_static", TfMessage::kType, kLatchedQos), CdrBytesOf(mount));
+  struct Camera {
+    std::string frame;
+    std::size_t image = 0, info = 0;  // publishers
+  };
+
+  void PublishMounts() {
+    TfMessage mounts;
+    for (const Camera& camera : cameras_) {
+      TransformStampedMessage& transform = mounts.transforms.emplace_back();
+      transform.header.frame_id = "base_link";
+      transform.child_frame_id = camera.frame;
+      transform.transform = TransformMessageOf(*calibration_.body_from_camera);
+    }
+    node_.Publish(node_.Advertise("/tf_static", TfMessage::kType, kLatchedQos), CdrBytesOf(mounts));
   }
 
   void Publish(const Frame& frame) {
@@ -117,23 +129,28 @@ class RosSystem {
     odometry.child_frame_id = "base_link";
     odometry.pose.pose = PoseMessageOf(pose->world_from_body);
     node_.Publish(odometry_, CdrBytesOf(odometry));
+    for (const Camera& camera : cameras_) Publish(camera, frame.image, stamp);
+  }
+
+  void Publish(const Camera& camera, const cv::Mat& pixels, Time stamp) {
     CameraInfoMessage info = CameraInfoOf(calibration_.intrinsics);
-    info.header = {0, stamp, "camera"};
-    node_.Publish(info_, CdrBytesOf(info));
+    info.header = {0, stamp, camera.frame};
+    node_.Publish(camera.info, CdrBytesOf(info));
     ImageMessage image;
-    image.header = {0, stamp, "camera"};
-    image.height = static_cast<std::uint32_t>(frame.image.rows);
-    image.width = image.step = static_cast<std::uint32_t>(frame.image.cols);
+    image.header = {0, stamp, camera.frame};
+    image.height = static_cast<std::uint32_t>(pixels.rows);
+    image.width = image.step = static_cast<std::uint32_t>(pixels.cols);
     image.encoding = "mono8";
-    image.data = {reinterpret_cast<const char*>(frame.image.data), frame.image.total()};
-    node_.Publish(image_, CdrBytesOf(image));
+    image.data = {reinterpret_cast<const char*>(pixels.data), pixels.total()};
+    node_.Publish(camera.image, CdrBytesOf(image));
   }
 
   Ros2Node node_;
   std::vector<Frame> frames_;
   std::vector<PoseSample> poses_;
   CameraCalibration calibration_;
-  std::size_t image_ = 0, info_ = 0, odometry_ = 0;
+  std::vector<Camera> cameras_;
+  std::size_t odometry_ = 0;
   std::atomic<bool> is_over_ = false;
   std::thread thread_;
 };

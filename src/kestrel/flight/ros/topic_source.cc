@@ -74,7 +74,7 @@ void TopicSource::Begin(const CameraIntrinsics& camera) {
 // The first stamp sets the shift for all stamps: the time between images and poses is kept.
 Time TopicSource::TimeOf(Time stamp) {
   if (!from_stamps_) {
-    from_stamps_ = -RosTimeAhead();
+    from_stamps_ = options_.from_stamps.value_or(-RosTimeAhead());
     const Duration age = Now() - (stamp + *from_stamps_);
     if (std::chrono::abs(age) > kLiveStamps) from_stamps_ = Now() - stamp;
   }

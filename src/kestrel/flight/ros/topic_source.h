@@ -32,13 +32,15 @@ struct TopicSourceOptions {
   PixelFormat format = PixelFormat::kGray;
   bool poses_by_tf = false;     // tf has the poses, too; else it has the mount only
   std::string body_frame = {};  // frame of the UAV, where the poses do not name it
+  // Added to a stamp to get the time by Now(), where another camera has found that already.
+  std::optional<Duration> from_stamps = {};
 };
 
 // Live images and poses from serialized messages of ROS: raw or compressed images, camera_info,
 // poses by type or by tf (of the body in the root of its frames), and the mount by tf. Stamps are
-// the ROS time of this computer. Where they are far from it (a played bag, a simulation), the first
-// stamp maps to the time of its arrival. Any thread may call Next, error, Fail and counters, one
-// thread the others.
+// the ROS time of this computer, or on the given clock. Where they are far from it (a played bag, a
+// simulation), the first stamp maps to the time of its arrival. Any thread may call Next, error,
+// Fail and counters, one thread the others.
 class TopicSource : public LiveSource {
  public:
   explicit TopicSource(TopicSourceOptions options) : options_(std::move(options)) {}
@@ -62,6 +64,10 @@ class TopicSource : public LiveSource {
   bool has_poses() const { return newest_pose_.has_value(); }
   const std::string& camera_frame() const { return camera_frame_; }
   const std::string& world_frame() const { return world_frame_; }  // empty: no poses came
+  const std::string& body_frame() const {  // as the poses name it, else that of the options
+    return body_frame_.empty() ? options_.body_frame : body_frame_;
+  }
+  const std::string& camera_info_topic() const { return camera_info_topic_; }
   // Added to a stamp to get the time by Now(). Zero before the first stamp.
   Duration from_stamps() const { return from_stamps_.value_or(Duration::zero()); }
   // Arrival of the newest good image, by Now().

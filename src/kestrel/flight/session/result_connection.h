@@ -61,6 +61,9 @@ inline constexpr std::array kLandingTopics = {
     ResultTopic::kDetections, ResultTopic::kTargetPose, ResultTopic::kTrack,
     ResultTopic::kPrediction, ResultTopic::kMarkers,    ResultTopic::kAnnotatedImage,
     ResultTopic::kTransforms, ResultTopic::kDiagnostics};
+inline constexpr std::array kFurtherCameraTopics = {
+    ResultTopic::kDetections, ResultTopic::kTargetPose, ResultTopic::kMarkers,
+    ResultTopic::kAnnotatedImage, ResultTopic::kTransforms};
 inline constexpr std::array kFollowTopics = {ResultTopic::kTrack, ResultTopic::kAnnotatedImage,
                                              ResultTopic::kTransforms, ResultTopic::kDiagnostics};
 inline constexpr std::array kHuntTopics = {ResultTopic::kDetections, ResultTopic::kMarkers,
