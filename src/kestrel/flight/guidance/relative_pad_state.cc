@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/core/geometry/rigid_transform.h"
@@ -34,9 +35,13 @@ constexpr double kPlaceNoise_m = 0.003, kStampNoise_s = 0.005;
 constexpr double kThrustLag_s = 0.12;
 constexpr double kContradiction = 25;  // squared, in variances
 constexpr double kContradicted_s = 0.5;
+// Of the UAV's own velocity: each report, which repeats errors of those before. It counts once the
+// pad has been out of sight for so long.
+constexpr double kOwnVelocityNoise = 0.3, kOutOfSight_s = 0.3;
 constexpr double kSubStep_s = 0.05;
 constexpr double kLargestGap_s = 0.5;  // between two attitudes
 constexpr double kLongestCoast_s = 60;
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 double SquareOf(double value) { return value * value; }
 
@@ -45,10 +50,24 @@ double NoiseOf(const Axis& axis, double variance) {
          SquareOf(kStampNoise_s * axis.mean(RelativePadState::kVelocity));
 }
 
+// The Kalman filter's correction by a measurement of one state.
+void Update(int index, double measured, double variance, Axis* axis) {
+  const Eigen::Vector4d gain =
+      axis->covariance.col(index) / (axis->covariance(index, index) + variance);
+  axis->mean += gain * (measured - axis->mean(index));
+  const Eigen::RowVector4d row = axis->covariance.row(index);
+  axis->covariance -= gain * row;
+  axis->covariance = (axis->covariance + axis->covariance.transpose().eval()) / 2;
+}
+
 }  // namespace
 
 double RelativePadState::Estimate::Sigma(int index) const {
   return std::sqrt((axes[0].covariance(index, index) + axes[1].covariance(index, index)) / 2);
+}
+
+double RelativePadState::Estimate::ClimbSigma() const {
+  return std::sqrt(axes[2].covariance(kVelocity, kVelocity));
 }
 
 double RelativePadState::Estimate::DriftSigma(double seconds) const {
@@ -90,9 +109,19 @@ bool RelativePadState::AddAttitude(Time time, const Quaterniond& world_from_body
     first_ = (first_ + 1) % kInputs;
     --size_;
   }
-  inputs_[(first_ + size_) % kInputs] = {time, level_from_body, acceleration};
+  inputs_[(first_ + size_) % kInputs] = {time, level_from_body, acceleration,
+                                         Vector3d::Constant(kUnknown)};
   ++size_;
   return true;
+}
+
+void RelativePadState::AddOwnVelocity(const Vector3d& velocity_in_world) {
+  if (size_ == 0) return;
+  const Eigen::AngleAxisd turn(heading_ - HeadingOf(last_attitude_), Vector3d::UnitZ());
+  const Vector3d level = turn * Vector3d(velocity_in_world.x(), velocity_in_world.y(), 0);
+  Vector3d& velocity = inputs_[(first_ + size_ - 1) % kInputs].velocity;
+  if (level.allFinite() && !pad_moves_) velocity.head<2>() = level.head<2>();
+  if (std::isfinite(velocity_in_world.z())) velocity.z() = velocity_in_world.z();
 }
 
 void RelativePadState::ForgetThrust() {
@@ -104,10 +133,9 @@ void RelativePadState::ForgetThrust() {
 
 bool RelativePadState::AddSight(Time exposure, const Vector3d& pad_in_body,
                                 const Matrix3d& covariance) {
-  const auto index = IndexAt(exposure);
-  if (!index || (sighted_ && exposure <= state_time_)) return false;
-  const Quaterniond level_from_body = LevelFromBody(exposure, *index);
-  const Matrix3d rotation = level_from_body.toRotationMatrix();
+  const auto level_from_body = LevelFromBodyAt(exposure);
+  if (!level_from_body || (sighted_ && exposure <= state_time_)) return false;
+  const Matrix3d rotation = level_from_body->toRotationMatrix();
   const Vector3d way = rotation * pad_in_body;
   Vector3d variance = (rotation * covariance * rotation.transpose()).diagonal();
   const double lever = SquareOf(kAttitudeNoise);
@@ -159,14 +187,18 @@ bool RelativePadState::Correct(const Vector3d& way, const Vector3d& variance) {
   }
   for (int i = 0; i < 3; ++i) {
     Axis& axis = axes_[static_cast<std::size_t>(i)];
-    const Eigen::Vector4d gain =
-        axis.covariance.col(kWay) / (axis.covariance(kWay, kWay) + NoiseOf(axis, variance(i)));
-    axis.mean += gain * (way(i) - axis.mean(kWay));
-    const Eigen::RowVector4d row = axis.covariance.row(kWay);
-    axis.covariance -= gain * row;
-    axis.covariance = (axis.covariance + axis.covariance.transpose().eval()) / 2;
+    Update(kWay, way(i), NoiseOf(axis, variance(i)), &axis);
   }
   return true;
+}
+
+void RelativePadState::CorrectVelocity(const Input& input, std::array<Axis, 3>* axes) const {
+  if (!sighted_ || ToSeconds(input.time - *sighted_) < kOutOfSight_s) return;
+  for (int i = 0; i < 3; ++i) {
+    if (!std::isfinite(input.velocity(i))) continue;
+    Axis& axis = (*axes)[static_cast<std::size_t>(i)];
+    Update(kVelocity, -input.velocity(i), SquareOf(kOwnVelocityNoise), &axis);
+  }
 }
 
 std::optional<RelativePadState::Estimate> RelativePadState::At(Time time) const {
@@ -193,6 +225,16 @@ std::optional<std::size_t> RelativePadState::IndexAt(Time time) const {
   return index;
 }
 
+std::optional<Quaterniond> RelativePadState::LevelFromBodyAt(Time time) const {
+  const auto index = IndexAt(time);
+  if (!index) return std::nullopt;
+  return LevelFromBody(time, *index);
+}
+
+double RelativePadState::Nose() const {
+  return size_ > 0 ? LevelHeadingOf(InputAt(size_ - 1).level_from_body) : 0;
+}
+
 Quaterniond RelativePadState::LevelFromBody(Time time, std::size_t index) const {
   const Input& before = InputAt(index);
   if (index + 1 == size_) return before.level_from_body;
@@ -213,6 +255,7 @@ void RelativePadState::Propagate(Time from, Time to, std::array<Axis, 3>* axes) 
     from = end;
     ++index;
     if (is_last) return;
+    if (end == InputAt(index).time) CorrectVelocity(InputAt(index), axes);
   }
 }
 

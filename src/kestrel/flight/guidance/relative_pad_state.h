@@ -20,7 +20,9 @@ namespace kestrel {
 // pad's acceleration (an Ornstein-Uhlenbeck process), and one bias, a random walk: what tilt error,
 // wind and, upwards, an unknown thrust of the rotors add to the UAV's acceleration by its lean.
 // They cannot be told apart, and need not be. A frame counts at its exposure: the filter stays
-// there, and is predicted to the present by the attitudes since. Neither throws nor allocates.
+// there, and is predicted to the present by the attitudes since. While no frame shows the pad, the
+// UAV's own velocity counts, as far as the autopilot knows it: that of a pad that stands is its
+// opposite. Neither throws nor allocates.
 class RelativePadState {
  public:
   static constexpr int kWay = 0, kVelocity = 1, kAcceleration = 2, kBias = 3;
@@ -42,6 +44,7 @@ class RelativePadState {
     Eigen::Vector3d pad_acceleration() const { return Part(kAcceleration); }
     Eigen::Vector3d bias() const { return Part(kBias); }
     double Sigma(int index) const;  // horizontal, per axis
+    double ClimbSigma() const;      // of the vertical velocity, m/s
     // How far the UAV is off its way after so many seconds by this bias alone; horizontal, per
     // axis, one standard deviation, m.
     double DriftSigma(double seconds) const;
@@ -54,6 +57,9 @@ class RelativePadState {
   // False when it was not used: it is not later than the one before.
   bool AddAttitude(Time time, const Eigen::Quaterniond& world_from_body,
                    const Eigen::Vector3d& rate_in_body);
+  // The UAV's velocity in the autopilot's world (m/s) at the newest attitude, by what the autopilot
+  // measures without this program; NaN in an axis: it does not know.
+  void AddOwnVelocity(const Eigen::Vector3d& velocity_in_world);
   // From now on the rotors are commanded to accelerate the UAV upwards by so much (m/s^2).
   void set_climb_acceleration(double acceleration) { commanded_ = acceleration; }
   // The thrust that was learnt is another one from now on, as when another control takes over.
@@ -66,6 +72,10 @@ class RelativePadState {
 
   // Time of the newest frame that was used; nothing: there is no estimate.
   const std::optional<Time>& sighted() const { return sighted_; }
+  // The body in the level frame at that time; nothing: there is no attitude of it.
+  std::optional<Eigen::Quaterniond> LevelFromBodyAt(Time time) const;
+  // Heading of the levelled nose in that frame by the newest attitude, rad.
+  double Nose() const;
   // Nothing: no frame has shown the pad, or there are no attitudes.
   std::optional<Estimate> At(Time time) const;
 
@@ -75,6 +85,7 @@ class RelativePadState {
     Time time;
     Eigen::Quaterniond level_from_body;
     Eigen::Vector3d acceleration;  // by lean and commanded thrust
+    Eigen::Vector3d velocity;      // of the UAV; NaN: not known
   };
   static constexpr std::size_t kInputs = 512;
 
@@ -83,6 +94,7 @@ class RelativePadState {
   Eigen::Quaterniond LevelFromBody(Time time, std::size_t index) const;
   void Begin(Time time, const Eigen::Vector3d& way, const Eigen::Vector3d& variance);
   bool Correct(const Eigen::Vector3d& way, const Eigen::Vector3d& variance);
+  void CorrectVelocity(const Input& input, std::array<Axis, 3>* axes) const;
   void Propagate(Time from, Time to, std::array<Axis, 3>* axes) const;
   void Step(double seconds, const Eigen::Vector3d& acceleration, std::array<Axis, 3>* axes) const;
 

@@ -30,7 +30,12 @@ class SwayingFlight {
   void Fly(double seconds) {
     for (const double end_s = s_ + seconds; s_ < end_s; s_ += kStep_s) {
       Move();
-      if (++steps_ % 5 == 0) state_.AddAttitude(now(), world_from_body_, rate_);
+      if (++steps_ % 5 == 0) {
+        state_.AddAttitude(now(), world_from_body_, rate_);
+        if (knows_velocity) {
+          state_.AddOwnVelocity(Eigen::AngleAxisd(compass_, Vector3d::UnitZ()) * -velocity_);
+        }
+      }
       if (steps_ % 15 != 0) continue;
       if (late_) state_.AddSight(late_time_, late_way_, kNoise_m * kNoise_m * Matrix3d::Identity());
       late_ = is_seen;
@@ -59,6 +64,7 @@ class SwayingFlight {
   Vector3d velocity() const { return velocity_; }
 
   bool is_seen = true;
+  bool knows_velocity = false;
   double compass_rate = 0;  // rad/s by which its heading turns, and the UAV does not
   double noise = 1;         // of gust and bias
 
@@ -133,6 +139,36 @@ TEST(RelativePadStateTest, CoastsByItsBiasWhenPadIsLost) {
   const double limit_m = 3 * before->DriftSigma(2);
   EXPECT_LT(flight.ErrorOfWay().head<2>().norm(), limit_m);
   EXPECT_LT(limit_m, 2.5);
+}
+
+// Of a world that has turned by 80 degrees.
+TEST(RelativePadStateTest, OwnVelocityKeepsTheWayWhenPadIsLost) {
+  State state(false);
+  SwayingFlight flight(&state, 5);
+  flight.compass_rate = Radians(20);
+  flight.Fly(4);
+  flight.compass_rate = 0;
+  flight.Fly(16);
+  flight.is_seen = false;
+  flight.knows_velocity = true;
+  flight.Fly(8);
+  const auto estimate = state.At(flight.now());
+  EXPECT_LT(flight.ErrorOfWay().head<2>().norm(), 0.4);  // metres without it
+  EXPECT_LT((estimate->velocity() - flight.velocity()).head<2>().norm(), 0.3);
+  EXPECT_LT(estimate->Sigma(State::kVelocity), 0.3);
+  EXPECT_LT(estimate->ClimbSigma(), 0.3);
+}
+
+TEST(RelativePadStateTest, OwnVelocityDoesNotCountOverPadThatMayMove) {
+  State state(/*pad_moves=*/true);
+  SwayingFlight flight(&state, 5);
+  flight.Fly(10);
+  flight.is_seen = false;
+  flight.knows_velocity = true;
+  flight.Fly(3);
+  const auto estimate = state.At(flight.now());
+  EXPECT_GT(estimate->Sigma(State::kVelocity), 0.5);
+  EXPECT_LT(estimate->ClimbSigma(), 0.4);
 }
 
 // The attitude's world turns by 40 degrees: the way to the pad, against the nose, does not.

@@ -99,7 +99,8 @@ AutopilotModel::AutopilotModel(AutopilotFirmware firmware, const AutopilotModelO
       pilot_(options.pilot, *world, start),
       detector_(firmware, parameters_),
       return_(firmware, parameters_),
-      streams_(firmware, options.has_gimbal, options.zoom.is_there()),
+      streams_(firmware, options.has_gimbal, options.zoom.is_there(),
+               options.estimate.has_range_finder),
       attitude_error_(options.estimate.tilt_memory_s),
       start_(start),
       stepped_to_(start),
@@ -147,7 +148,7 @@ bool AutopilotModel::IsWithin(Time now, double after_s, double for_s) const {
 }
 
 bool AutopilotModel::HasPosition(Time now) const {
-  if (external_) return external_->has_position();
+  if (external_) return external_->has_position() || options_.estimate.has_flow;
   return !IsWithin(now, options_.estimate.lost_after_s, std::numeric_limits<double>::infinity());
 }
 
@@ -172,6 +173,8 @@ void AutopilotModel::StepOnce(Time now) {
   FollowPilot(now);
   WatchSetPoints(now);
   ObserveContact(now);
+  const bool has_space = world_.options().room.HasSpaceAt(uav_.pose().world_from_body.translation);
+  result_.has_left_room = result_.has_left_room || !has_space;
   DisarmAfterLanding(now);
   if (IsSilentAfterReboot(now)) return;
   streams_.SendDue(OwnMicroseconds(now), [&](std::uint32_t id) { SendMessage(id, now); });
@@ -190,6 +193,10 @@ void AutopilotModel::ObserveFlight(Time now) {
   if (jumps) state_.pose.world_from_body.translation.x() += faults.jump_m;
   // It knows when its estimate was reset: the held place moves along.
   if (jumps && !std::exchange(has_jumped_, true)) hold_.x() += faults.jump_m;
+  if (!external_ &&
+      IsWithin(now, faults.gnss_lost_after_s, std::numeric_limits<double>::infinity())) {
+    external_.emplace(firmware_, parameters_).BeginKnown(state_.boot_us);
+  }
   if (external_) {
     UseExternalNavigation();
     MistakeAttitude(now);
@@ -245,7 +252,8 @@ void AutopilotModel::FollowPilot(Time now) {
   if (pilot_.LosesBattery(now)) EnterBatteryFailsafe(now);
   auto mode = pilot_.Switch(now, pilot_flies_);
   // Without a position there is another switch position for set-points.
-  if (mode == FlightMode::kGuided && LacksPosition()) mode = FlightMode::kGuidedByLean;
+  const bool has_place = !external_ || external_->has_position();
+  if (mode == FlightMode::kGuided && !has_place) mode = FlightMode::kGuidedByLean;
   if (mode) EnterMode(*mode, Wish::kPilot, now);
 }
 

@@ -25,6 +25,9 @@ struct EstimateFaultOptions {
   double rest_climb_mps = 0;
   bool has_home = true;
   bool has_gnss = true;
+  double gnss_lost_after_s = -1;
+  bool has_flow = false;
+  bool has_range_finder = false;
   double tilt_memory_s = 30;
   double turn_after_s = -1;
   double turn_deg = 40;
@@ -43,6 +46,10 @@ struct EstimateFaultOptions {
           "error of the vertical speed while the UAV stands; its height drifts by it");
     visit("has_gnss", self.has_gnss,
           "the autopilot has a position by itself; otherwise only by ODOMETRY");
+    visit("gnss_lost_after_s", self.gnss_lost_after_s, Range{-1, 10000},
+          "time at which it has no GNSS any more: it guesses for some seconds; negative: never");
+    visit("has_flow", self.has_flow, "without GNSS it knows its velocity, by optical flow");
+    visit("has_range_finder", self.has_range_finder, "it reports the distance to what is below");
     visit("tilt_memory_s", self.tilt_memory_s, Range{1, 1e6},
           "time in which it takes an acceleration that lasts for tilt, without a position");
     visit(

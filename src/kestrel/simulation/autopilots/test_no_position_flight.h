@@ -23,6 +23,9 @@ struct NoPositionSetup {
   double hover_thrust_error = 0;
   double turn_after_s = -1;  // of the compass, by 40 degrees
   bool has_sticks = false;
+  bool has_flow = false;
+  double gnss_lost_after_s = -1;  // negative: there is none from the first
+  const char* touchdown_heading = "any";
   std::string parameters;  // besides those that doctor demands
   std::uint64_t seed = 1;
 };
@@ -31,11 +34,16 @@ constexpr double kNoPositionStart_s = 8;  // the pilot gives the mode
 
 inline PointedFlight NoPositionFlightOf(const NoPositionSetup& setup) {
   AutopilotModelOptions options;
-  options.estimate.has_gnss = false;
+  const bool is_normal = setup.gnss_lost_after_s >= 0;
+  options.estimate.has_gnss = is_normal;
+  options.estimate.gnss_lost_after_s = setup.gnss_lost_after_s;
+  options.estimate.has_flow = setup.has_flow;
   options.estimate.hover_thrust_error = setup.hover_thrust_error;
   options.estimate.turn_after_s = setup.turn_after_s;
-  if (setup.firmware == AutopilotFirmware::kPx4)
-    options.parameters = "COM_OBL_RC_ACT=4,LNDMC_XY_VEL_MAX=12";
+  if (setup.firmware == AutopilotFirmware::kPx4) {
+    options.parameters =
+        is_normal ? "COM_OBL_RC_ACT=5,LNDMC_XY_VEL_MAX=12" : "COM_OBL_RC_ACT=4,LNDMC_XY_VEL_MAX=12";
+  }
   if (!setup.parameters.empty()) {
     options.parameters += (options.parameters.empty() ? "" : ",") + setup.parameters;
   }
@@ -55,12 +63,18 @@ inline PointedFlight NoPositionFlightOf(const NoPositionSetup& setup) {
     vehicle.drive_acceleration = setup.drive_acceleration;
   }
   constexpr double kHalfView_deg = 38;
+  FlightOptions flight;
+  flight.guidance.touchdown_heading = setup.touchdown_heading;
+  RelativeJob job = setup.job;
+  job.is_reserve = is_normal;
   return {setup.firmware,
           options,
           vehicle,
           {.has_gimbal = false,
            .half_view_deg = kHalfView_deg,
-           .without_position = setup.job,
+           .guides = is_normal,
+           .without_position = job,
+           .flight = flight,
            .seed = setup.seed}};
 }
 
