@@ -85,10 +85,11 @@ void PrintResult(const PadsArguments& arguments, const PadMap& map) {
                  arguments.ids[pad]);
       continue;
     }
-    fmt::print(stderr, "tag {}: {:.3f}, {:.3f} m +- {:.3f}, turned by {:.2f} +- {:.2f} degrees, in {} images\n",
-               arguments.ids[pad], place->position.x(), place->position.y(),
-               place->position_sigma_m, Degrees(place->yaw), Degrees(place->yaw_sigma),
-               place->images);
+    fmt::print(
+        stderr,
+        "tag {}: {:.3f}, {:.3f} m +- {:.3f}, turned by {:.2f} +- {:.2f} degrees, in {} images\n",
+        arguments.ids[pad], place->position.x(), place->position.y(), place->position_sigma_m,
+        Degrees(place->yaw), Degrees(place->yaw_sigma), place->images);
   }
   fmt::print(stderr, "corners of the tags, RMS: {:.2f} px, in {} images\n", map.rms_px, map.images);
 }
@@ -112,7 +113,7 @@ void WriteBoard(const std::string& text, const PadsArguments& arguments) {
   }
   const std::filesystem::path path(arguments.output);
   OutputFolder(path.has_parent_path() ? path.parent_path() : ".", arguments.force)
-      .OpenText(path.filename())
+          .OpenText(path.filename())
       << text;
 }
 
@@ -170,13 +171,11 @@ void AddCalibratePadsCommand(CLI::App* calibrate) {
                    "A recording folder, a bag or a folder of images of a calibrated camera")
       ->required();
   arguments->bag.AddTo(command);
-  command
-      ->add_option("--camera", arguments->camera, "Calibration; overrides the recording's")
+  command->add_option("--camera", arguments->camera, "Calibration; overrides the recording's")
       ->type_name("FILE");
   command->add_option("--family", arguments->family, "Family of the tags (tag36h11)")
       ->type_name("NAME");
-  command
-      ->add_option("--ids", arguments->ids, "The tags, as 3,7,12: the first is the origin")
+  command->add_option("--ids", arguments->ids, "The tags, as 3,7,12: the first is the origin")
       ->delimiter(',')
       ->type_name("IDS")
       ->required();
@@ -186,8 +185,9 @@ void AddCalibratePadsCommand(CLI::App* calibrate) {
       ->type_name("M")
       ->required();
   command
-      ->add_option("--output", arguments->output,
-                   "File for the board, as landing.target.apriltag.board reads it (default: stdout)")
+      ->add_option(
+          "--output", arguments->output,
+          "File for the board, as landing.target.apriltag.board reads it (default: stdout)")
       ->type_name("FILE");
   command->add_flag("--force", arguments->force,
                     "Replace a file that exists; write also a map that the images contradict");

@@ -55,8 +55,8 @@ struct CornerError {
     return true;
   }
 
-  Vector2d corner;                       // in the pad
-  Eigen::Matrix<double, 2, 3> across;    // axes across the ray
+  Vector2d corner;                     // in the pad
+  Eigen::Matrix<double, 2, 3> across;  // axes across the ray
   double per_radian;
 };
 
@@ -123,8 +123,8 @@ class Adjustment {
     const PadSighting* nearest = nullptr;
     for (const PadSighting& seen : image) {
       if (!pads_[seen.pad]) continue;
-      if (nearest == nullptr || seen.camera_from_pad.translation.norm() <
-                                    nearest->camera_from_pad.translation.norm()) {
+      if (nearest == nullptr ||
+          seen.camera_from_pad.translation.norm() < nearest->camera_from_pad.translation.norm()) {
         nearest = &seen;
       }
     }
@@ -138,7 +138,8 @@ class Adjustment {
     for (const PadSighting& seen : images_[i]) {
       for (const auto& [x, y] : {std::pair{-0.5, 0.5}, {0.5, 0.5}, {0.5, -0.5}, {-0.5, -0.5}}) {
         const Vector2d corner = sizes_m_[seen.pad] * Vector2d(x, y);
-        const Vector3d ray = (seen.camera_from_pad * Vector3d(corner.x(), corner.y(), 0)).normalized();
+        const Vector3d ray =
+            (seen.camera_from_pad * Vector3d(corner.x(), corner.y(), 0)).normalized();
         problem->AddResidualBlock(
             new ceres::AutoDiffCostFunction<CornerError, 2, 3, 6>(
                 new CornerError{corner, AxesAcross(ray), focal_px_ / kCornerSigmaPx}),

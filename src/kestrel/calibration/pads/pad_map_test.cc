@@ -45,7 +45,8 @@ std::vector<std::vector<PadSighting>> Flight(Random* random, int images) {
       }
       const RigidTransform exact = map_from_camera.Inverse() * MapFromPad(kPads[pad]);
       const double across_m = 0.1 / kFocalPx * exact.translation.norm();
-      const Vector3d move = across_m * Vector3d(random->Normal(), random->Normal(), 5 * random->Normal());
+      const Vector3d move =
+          across_m * Vector3d(random->Normal(), random->Normal(), 5 * random->Normal());
       const Vector3d turn = Radians(1) * Vector3d(random->Normal(), random->Normal(), 0);
       image.push_back({pad, Moved(exact, move, turn)});
     }

@@ -17,8 +17,9 @@ void CheckHoverThrust(ParameterRules* rules) {
   rules->Add(std::abs(*thrust - kAsItComes) > kSame
                  ? Good("MOT_THST_HOVER", measured)
                  : Doubtful("MOT_THST_HOVER",
-                            measured + ", as it comes: not learnt, it sinks or climbs when the mode "
-                                       "is given",
+                            measured +
+                                ", as it comes: not learnt, it sinks or climbs when the mode "
+                                "is given",
                             "MOT_HOVER_LEARN 2, then hover for 10 s in ALT_HOLD"));
 }
 
@@ -32,8 +33,7 @@ void CheckNoPositionOfArduPilot(ParameterRules* rules) {
               {static_cast<double>(options & ~kTakesThrust),
                "bit 3: a climb rate is taken for a thrust, and guidance refuses"},
               [](double value) { return (static_cast<unsigned>(value) & kTakesThrust) == 0; });
-  rules->WantExactly("FENCE_ENABLE", Verdict::kWrong,
-                     {0, "it does not arm without a position"});
+  rules->WantExactly("FENCE_ENABLE", Verdict::kWrong, {0, "it does not arm without a position"});
   rules->Want("FS_EKF_ACTION", Verdict::kDoubtful,
               {1, "it lands in any mode once its estimator has lost the position"},
               [](double action) { return action != kLandsAlways; });
@@ -45,8 +45,9 @@ void CheckNoPositionOfPx4(ParameterRules* rules) {
                      {1, "it does not arm without a position"});
   rules->WantExactly("SYS_HAS_GPS", Verdict::kDoubtful,
                      {0, "it warns without GNSS, or does not arm (COM_ARM_WO_GPS)", true});
-  rules->WantExactly("MPC_USE_HTE", Verdict::kDoubtful,
-                     {1, "its hover thrust is not learnt: it sinks or climbs when the mode is given"});
+  rules->WantExactly(
+      "MPC_USE_HTE", Verdict::kDoubtful,
+      {1, "its hover thrust is not learnt: it sinks or climbs when the mode is given"});
 }
 
 }  // namespace kestrel

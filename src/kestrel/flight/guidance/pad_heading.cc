@@ -10,7 +10,7 @@ namespace kestrel {
 namespace {
 
 constexpr double kWalk = Radians(3);  // per square root of a second
-constexpr double kOtherPad = 25;  // squared, in variances
+constexpr double kOtherPad = 25;      // squared, in variances
 
 }  // namespace
 

@@ -19,8 +19,8 @@ TEST(PadHeadingTest, FramesOfAnyQuarterMakeOneHeading) {
   Random random(3);
   PadHeading heading;
   for (int i = 0; i < 40; ++i) {
-    heading.Add(Second(10 + 0.06 * i), Radians(20 + 90 * (i % 4)) + kSigma * random.Normal(), kSigma,
-                4);
+    heading.Add(Second(10 + 0.06 * i), Radians(20 + 90 * (i % 4)) + kSigma * random.Normal(),
+                kSigma, 4);
   }
   const auto estimate = heading.At(Second(12.4));
   ASSERT_TRUE(estimate);

@@ -33,6 +33,8 @@ constexpr double kAttitudeNoise = Radians(0.5);
 // What a camera near the pad is wrong by, that its pixels do not show, and its stamps.
 constexpr double kPlaceNoise_m = 0.003, kStampNoise_s = 0.005;
 constexpr double kThrustLag_s = 0.12;
+constexpr double kVibration_s = 0.1;   // of what the accelerometer measures
+constexpr double kMeasured_s = 0.3;    // so long its newest value counts
 constexpr double kContradiction = 25;  // squared, in variances
 constexpr double kContradicted_s = 0.5;
 // Of the UAV's own velocity: each report, which repeats errors of those before. It counts once the
@@ -109,10 +111,27 @@ bool RelativePadState::AddAttitude(Time time, const Quaterniond& world_from_body
     first_ = (first_ + 1) % kInputs;
     --size_;
   }
+  if (measured_ && ToSeconds(time - *measured_) > kMeasured_s) ForgetDisturbance();
   inputs_[(first_ + size_) % kInputs] = {time, level_from_body, acceleration,
-                                         Vector3d::Constant(kUnknown)};
+                                         acceleration + disturbance_, Vector3d::Constant(kUnknown)};
   ++size_;
   return true;
+}
+
+void RelativePadState::AddAcceleration(Time time, const Vector3d& measured) {
+  if (size_ == 0) return;
+  const Input& last = InputAt(size_ - 1);
+  const Vector3d sensed = last.level_from_body * measured - kGravity * Vector3d::UnitZ();
+  const double step_s = measured_ ? std::max(ToSeconds(time - *measured_), 0.0) : 0;
+  disturbance_ += (1 - std::exp(-step_s / kVibration_s)) * (sensed - last.model - disturbance_);
+  measured_ = time;
+}
+
+// The accelerometer is not heard any more: its disturbance goes on as a bias.
+void RelativePadState::ForgetDisturbance() {
+  for (int i = 0; i < 3; ++i) axes_[static_cast<std::size_t>(i)].mean(kBias) += disturbance_(i);
+  disturbance_.setZero();
+  measured_.reset();
 }
 
 void RelativePadState::AddOwnVelocity(const Vector3d& velocity_in_world) {
@@ -205,6 +224,9 @@ std::optional<RelativePadState::Estimate> RelativePadState::At(Time time) const 
   if (!sighted_ || size_ == 0) return std::nullopt;
   Estimate estimate{axes_};
   Propagate(state_time_, std::max(time, state_time_), &estimate.axes);
+  for (int i = 0; i < 3; ++i) {
+    estimate.axes[static_cast<std::size_t>(i)].mean(kBias) += disturbance_(i);
+  }
   // Into the axes of the heading. The two horizontal filters hardly differ in their covariance.
   const Eigen::Rotation2Dd turn(-heading_);
   for (const int index : {kWay, kVelocity, kAcceleration, kBias}) {

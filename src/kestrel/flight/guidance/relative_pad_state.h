@@ -19,10 +19,11 @@ namespace kestrel {
 // For each axis of the frame a Kalman filter has the way from the UAV to the pad, its change, the
 // pad's acceleration (an Ornstein-Uhlenbeck process), and one bias, a random walk: what tilt error,
 // wind and, upwards, an unknown thrust of the rotors add to the UAV's acceleration by its lean.
-// They cannot be told apart, and need not be. A frame counts at its exposure: the filter stays
-// there, and is predicted to the present by the attitudes since. While no frame shows the pad, the
-// UAV's own velocity counts, as far as the autopilot knows it: that of a pad that stands is its
-// opposite. Neither throws nor allocates.
+// They cannot be told apart, and need not be. Where the autopilot sends what its accelerometer
+// measures, gusts are known as they come: what it measures beyond lean and thrust counts at once. A
+// frame counts at its exposure: the filter stays there, and is predicted to the present by the
+// attitudes since. While no frame shows the pad, the UAV's own velocity counts, as far as the
+// autopilot knows it: that of a pad that stands is its opposite. Neither throws nor allocates.
 class RelativePadState {
  public:
   static constexpr int kWay = 0, kVelocity = 1, kAcceleration = 2, kBias = 3;
@@ -57,6 +58,8 @@ class RelativePadState {
   // False when it was not used: it is not later than the one before.
   bool AddAttitude(Time time, const Eigen::Quaterniond& world_from_body,
                    const Eigen::Vector3d& rate_in_body);
+  // What the accelerometer measures in the body (FLU), m/s^2: upwards at rest.
+  void AddAcceleration(Time time, const Eigen::Vector3d& measured);
   // The UAV's velocity in the autopilot's world (m/s) at the newest attitude, by what the autopilot
   // measures without this program; NaN in an axis: it does not know.
   void AddOwnVelocity(const Eigen::Vector3d& velocity_in_world);
@@ -84,13 +87,15 @@ class RelativePadState {
   struct Input {
     Time time;
     Eigen::Quaterniond level_from_body;
-    Eigen::Vector3d acceleration;  // by lean and commanded thrust
+    Eigen::Vector3d model;         // acceleration by lean and commanded thrust
+    Eigen::Vector3d acceleration;  // the same with the disturbance
     Eigen::Vector3d velocity;      // of the UAV; NaN: not known
   };
   static constexpr std::size_t kInputs = 512;
 
   const Input& InputAt(std::size_t i) const { return inputs_[(first_ + i) % kInputs]; }
   std::optional<std::size_t> IndexAt(Time time) const;
+  void ForgetDisturbance();
   Eigen::Quaterniond LevelFromBody(Time time, std::size_t index) const;
   void Begin(Time time, const Eigen::Vector3d& way, const Eigen::Vector3d& variance);
   bool Correct(const Eigen::Vector3d& way, const Eigen::Vector3d& variance);
@@ -106,6 +111,9 @@ class RelativePadState {
   double commanded_ = 0;              // upwards
   double thrust_ = 0;                 // the same after the lag of attitude and motors
   double heading_ = 0;                // of the body in the frame
+  std::optional<Time> measured_;      // time of the newest acceleration
+  // What it measures beyond lean and thrust, in the frame, without vibration.
+  Eigen::Vector3d disturbance_{0, 0, 0};
   Eigen::Quaterniond last_attitude_ = Eigen::Quaterniond::Identity();
   std::array<Input, kInputs> inputs_;
   std::size_t first_ = 0, size_ = 0;

@@ -32,6 +32,7 @@ class SwayingFlight {
       Move();
       if (++steps_ % 5 == 0) {
         state_.AddAttitude(now(), world_from_body_, rate_);
+        if (has_accelerometer) state_.AddAcceleration(now(), Shaken());
         if (knows_velocity) {
           state_.AddOwnVelocity(Eigen::AngleAxisd(compass_, Vector3d::UnitZ()) * -velocity_);
         }
@@ -65,6 +66,7 @@ class SwayingFlight {
 
   bool is_seen = true;
   bool knows_velocity = false;
+  bool has_accelerometer = false;
   double compass_rate = 0;  // rad/s by which its heading turns, and the UAV does not
   double noise = 1;         // of gust and bias
 
@@ -92,6 +94,12 @@ class SwayingFlight {
     acceleration.z() = 0;
     way_ += kStep_s * (velocity_ + kStep_s / 2 * acceleration);
     velocity_ += kStep_s * acceleration;
+    acceleration_ = -acceleration;
+  }
+  Vector3d Shaken() {
+    constexpr double kVibration = 0.3;
+    const Vector3d shake(random_.Normal(), random_.Normal(), random_.Normal());
+    return true_.conjugate() * (acceleration_ + kGravity * Vector3d::UnitZ()) + kVibration * shake;
   }
 
   State& state_;
@@ -100,6 +108,7 @@ class SwayingFlight {
   int steps_ = 0;
   Quaterniond true_ = Quaterniond::Identity(), world_from_body_ = Quaterniond::Identity();
   double compass_ = 0;
+  Vector3d acceleration_{0, 0, 0};  // of the UAV
   Vector3d rate_{0, 0, 0}, way_{0, 0, 0}, velocity_{0, 0, 0}, gust_{0, 0, 0}, bias_{0, 0, 0};
   bool late_ = false;
   Time late_time_;
@@ -139,6 +148,34 @@ TEST(RelativePadStateTest, CoastsByItsBiasWhenPadIsLost) {
   const double limit_m = 3 * before->DriftSigma(2);
   EXPECT_LT(flight.ErrorOfWay().head<2>().norm(), limit_m);
   EXPECT_LT(limit_m, 2.5);
+}
+
+TEST(RelativePadStateTest, AccelerometerKnowsGustsAsTheyCome) {
+  const auto error_of_velocity = [](bool has_accelerometer) {
+    double sum = 0;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      State state(false);
+      SwayingFlight flight(&state, seed);
+      flight.has_accelerometer = has_accelerometer;
+      flight.Fly(10);
+      const Vector3d error = state.At(flight.now())->velocity() - flight.velocity();
+      sum += error.head<2>().squaredNorm();
+    }
+    return std::sqrt(sum / 20);
+  };
+  EXPECT_LT(error_of_velocity(true), 0.85 * error_of_velocity(false));
+}
+
+TEST(RelativePadStateTest, BiasStaysWhenAccelerometerStops) {
+  State state(false);
+  SwayingFlight flight(&state, 4);
+  flight.noise = 0;
+  flight.has_accelerometer = true;
+  flight.Fly(10);
+  const Vector3d before = state.At(flight.now())->bias();
+  flight.has_accelerometer = false;
+  flight.Fly(0.5);
+  EXPECT_LT((state.At(flight.now())->bias() - before).head<2>().norm(), 0.25);
 }
 
 // Of a world that has turned by 80 degrees.

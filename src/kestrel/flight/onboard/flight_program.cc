@@ -451,6 +451,7 @@ void FlightProgram::TakeAutopilotAttitude(const PoseSample& attitude) {
 
 void FlightProgram::TakeAutopilotAcceleration(Time time, const Eigen::Vector3d& acceleration) {
   if (pad_position_) pad_position_->TakeAcceleration(time, acceleration);
+  if (no_position_) no_position_->TakeAcceleration(time, acceleration);
 }
 
 void FlightProgram::TakeAutopilotClimb(double climb_mps) {

@@ -51,6 +51,10 @@ void NoPositionFlight::TakeAttitude(const PoseSample& attitude) {
   heading_ = HeadingOf(rotation);
 }
 
+void NoPositionFlight::TakeAcceleration(Time time, const Eigen::Vector3d& acceleration) {
+  pad_.AddAcceleration(time, acceleration);
+}
+
 void NoPositionFlight::TakeClimb(double climb_mps) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   pad_.AddOwnVelocity({kUnknown, kUnknown, climb_mps});

@@ -33,6 +33,8 @@ class NoPositionFlight {
 
   // Takes the autopilot's attitude and turn, on the local clock.
   void TakeAttitude(const PoseSample& attitude);
+  // Takes what the autopilot's accelerometer measures (FLU, m/s^2), on the local clock.
+  void TakeAcceleration(Time time, const Eigen::Vector3d& acceleration);
   // Takes how fast the UAV climbs by the autopilot's estimate (m/s).
   void TakeClimb(double climb_mps);
   // Takes a pose of an autopilot that measures its velocity, as by optical flow.

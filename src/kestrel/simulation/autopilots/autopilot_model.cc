@@ -92,6 +92,7 @@ AutopilotModel::AutopilotModel(AutopilotFirmware firmware, const AutopilotModelO
       world_(*world),
       send_(std::move(send)),
       random_(seed),
+      shakes_(~seed),
       parameters_(ParametersOf(firmware, options)),
       uav_(MakeUav(WithTiltOf(firmware, parameters_, options.uav), options.pilot, *world, start,
                    &random_)),

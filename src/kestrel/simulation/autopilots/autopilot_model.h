@@ -121,6 +121,7 @@ class AutopilotModel {
   bool SendMessage(std::uint32_t id, Time now);
   bool SendPose(std::uint32_t id, Time now);
   double HeightAboveGround(Time now) const;
+  Eigen::Vector3d Vibration();
   bool SendPlace(std::uint32_t id, Time now);
   bool SendMount(std::uint32_t id) const;
   bool SendView(std::uint32_t id, Time now) const;
@@ -158,6 +159,7 @@ class AutopilotModel {
   VehicleWorld& world_;
   Send send_;
   Random random_;
+  Random shakes_;  // of the accelerometer
   AutopilotParameters parameters_;
   SimulatedUav uav_;
   NavigationSensor navigation_;

@@ -104,10 +104,10 @@ bool AutopilotModel::SendPose(std::uint32_t id, Time now) {
       return true;
     }
     case mavlink::RawImu::kId:
-      send_(RawImuOf(acceleration_, state_.boot_us));
+      send_(RawImuOf(acceleration_ + Vibration(), state_.boot_us));
       return true;
     case mavlink::HighresImu::kId:
-      send_(HighresImuOf(acceleration_, state_.boot_us));
+      send_(HighresImuOf(acceleration_ + Vibration(), state_.boot_us));
       return true;
     case mavlink::GpsRawInt::kId:
       send_(mavlink::GpsRawInt{.fix_type = static_cast<std::uint8_t>(external_ ? 1 : 3)});
@@ -139,6 +139,11 @@ bool AutopilotModel::SendPose(std::uint32_t id, Time now) {
     default:
       return false;
   }
+}
+
+Eigen::Vector3d AutopilotModel::Vibration() {
+  return options_.estimate.vibration *
+         Eigen::Vector3d(shakes_.Normal(), shakes_.Normal(), shakes_.Normal());
 }
 
 // Along the body's axis, of what the vehicle's board or the ground is.

@@ -151,6 +151,7 @@ class LinkedFlight : public TestAutopilot {
     };
     listener.acceleration = [this](Time time, const Eigen::Vector3d& acceleration) {
       if (pad_position_) pad_position_->TakeAcceleration(time, acceleration);
+      if (no_position_) no_position_->TakeAcceleration(time, acceleration);
     };
     listener.climb = [this](double climb_mps) {
       if (no_position_) no_position_->TakeClimb(climb_mps);
