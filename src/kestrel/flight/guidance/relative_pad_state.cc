@@ -33,9 +33,13 @@ constexpr double kAttitudeNoise = Radians(0.5);
 // What a camera near the pad is wrong by, that its pixels do not show, and its stamps.
 constexpr double kPlaceNoise_m = 0.003, kStampNoise_s = 0.005;
 constexpr double kThrustLag_s = 0.12;
-constexpr double kVibration_s = 0.1;   // of what the accelerometer measures
-constexpr double kMeasured_s = 0.3;    // so long its newest value counts
-constexpr double kContradiction = 25;  // squared, in variances
+constexpr double kVibration_s = 0.1;  // of what the accelerometer measures
+constexpr double kMeasured_s = 0.3;   // so long its newest value counts
+// Of the mean disturbance, and how long without the pad the newest one is flown against. Later the
+// mean one is: to cancel all of the wind takes away what brakes a UAV that nobody sees.
+constexpr double kSteady_s = 4, kNewest_s = 3;
+constexpr double kMeasuredGusts = 0.2;  // m/s^2, what the accelerometer leaves of gusts
+constexpr double kContradiction = 25;   // squared, in variances
 constexpr double kContradicted_s = 0.5;
 // Of the UAV's own velocity: each report, which repeats errors of those before. It counts once the
 // pad has been out of sight for so long.
@@ -124,6 +128,7 @@ void RelativePadState::AddAcceleration(Time time, const Vector3d& measured) {
   const Vector3d sensed = last.level_from_body * measured - kGravity * Vector3d::UnitZ();
   const double step_s = measured_ ? std::max(ToSeconds(time - *measured_), 0.0) : 0;
   disturbance_ += (1 - std::exp(-step_s / kVibration_s)) * (sensed - last.model - disturbance_);
+  if (!IsUnseen(time)) steady_ += (1 - std::exp(-step_s / kSteady_s)) * (disturbance_ - steady_);
   measured_ = time;
 }
 
@@ -131,6 +136,7 @@ void RelativePadState::AddAcceleration(Time time, const Vector3d& measured) {
 void RelativePadState::ForgetDisturbance() {
   for (int i = 0; i < 3; ++i) axes_[static_cast<std::size_t>(i)].mean(kBias) += disturbance_(i);
   disturbance_.setZero();
+  steady_.setZero();
   measured_.reset();
 }
 
@@ -211,8 +217,12 @@ bool RelativePadState::Correct(const Vector3d& way, const Vector3d& variance) {
   return true;
 }
 
+bool RelativePadState::IsUnseen(Time time) const {
+  return !sighted_ || ToSeconds(time - *sighted_) >= kOutOfSight_s;
+}
+
 void RelativePadState::CorrectVelocity(const Input& input, std::array<Axis, 3>* axes) const {
-  if (!sighted_ || ToSeconds(input.time - *sighted_) < kOutOfSight_s) return;
+  if (!IsUnseen(input.time)) return;
   for (int i = 0; i < 3; ++i) {
     if (!std::isfinite(input.velocity(i))) continue;
     Axis& axis = (*axes)[static_cast<std::size_t>(i)];
@@ -224,8 +234,10 @@ std::optional<RelativePadState::Estimate> RelativePadState::At(Time time) const 
   if (!sighted_ || size_ == 0) return std::nullopt;
   Estimate estimate{axes_};
   Propagate(state_time_, std::max(time, state_time_), &estimate.axes);
+  const bool is_newest = ToSeconds(time - *sighted_) < kNewest_s;
   for (int i = 0; i < 3; ++i) {
-    estimate.axes[static_cast<std::size_t>(i)].mean(kBias) += disturbance_(i);
+    estimate.axes[static_cast<std::size_t>(i)].mean(kBias) +=
+        i == 2 || is_newest ? disturbance_(i) : steady_(i);
   }
   // Into the axes of the heading. The two horizontal filters hardly differ in their covariance.
   const Eigen::Rotation2Dd turn(-heading_);
@@ -273,7 +285,8 @@ void RelativePadState::Propagate(Time from, Time to, std::array<Axis, 3>* axes) 
     const Vector3d acceleration =
         is_last ? InputAt(index).acceleration
                 : Vector3d((InputAt(index).acceleration + InputAt(index + 1).acceleration) / 2);
-    Step(ToSeconds(end - from), acceleration, axes);
+    const double gusts = measured_ && IsUnseen(from) ? kMeasuredGusts : kGusts;
+    Step(ToSeconds(end - from), acceleration, gusts, axes);
     from = end;
     ++index;
     if (is_last) return;
@@ -281,7 +294,7 @@ void RelativePadState::Propagate(Time from, Time to, std::array<Axis, 3>* axes) 
   }
 }
 
-void RelativePadState::Step(double seconds, const Vector3d& acceleration,
+void RelativePadState::Step(double seconds, const Vector3d& acceleration, double gusts,
                             std::array<Axis, 3>* axes) const {
   for (; seconds > 0; seconds -= kSubStep_s) {
     const double dt = std::min(seconds, kSubStep_s);
@@ -299,7 +312,7 @@ void RelativePadState::Step(double seconds, const Vector3d& acceleration,
       axis.mean(kWay) -= dt * dt / 2 * acceleration(i);
       axis.mean(kVelocity) -= dt * acceleration(i);
       const double pad =
-          i < 2 ? (pad_moves_ ? kDriving : kGusts) : (pad_moves_ ? kLifting : kHovering);
+          i < 2 ? (pad_moves_ ? kDriving : gusts) : (pad_moves_ ? kLifting : kHovering);
       axis.covariance = change * axis.covariance * change.transpose();
       axis.covariance(kAcceleration, kAcceleration) += SquareOf(pad) * (1 - kept * kept);
       axis.covariance(kBias, kBias) += SquareOf(kBiasWalk) * dt;

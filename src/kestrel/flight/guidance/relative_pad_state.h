@@ -96,12 +96,14 @@ class RelativePadState {
   const Input& InputAt(std::size_t i) const { return inputs_[(first_ + i) % kInputs]; }
   std::optional<std::size_t> IndexAt(Time time) const;
   void ForgetDisturbance();
+  bool IsUnseen(Time time) const;
   Eigen::Quaterniond LevelFromBody(Time time, std::size_t index) const;
   void Begin(Time time, const Eigen::Vector3d& way, const Eigen::Vector3d& variance);
   bool Correct(const Eigen::Vector3d& way, const Eigen::Vector3d& variance);
   void CorrectVelocity(const Input& input, std::array<Axis, 3>* axes) const;
   void Propagate(Time from, Time to, std::array<Axis, 3>* axes) const;
-  void Step(double seconds, const Eigen::Vector3d& acceleration, std::array<Axis, 3>* axes) const;
+  void Step(double seconds, const Eigen::Vector3d& acceleration, double gusts,
+            std::array<Axis, 3>* axes) const;
 
   bool pad_moves_;
   std::array<Axis, 3> axes_;  // at state_time_
@@ -114,6 +116,7 @@ class RelativePadState {
   std::optional<Time> measured_;      // time of the newest acceleration
   // What it measures beyond lean and thrust, in the frame, without vibration.
   Eigen::Vector3d disturbance_{0, 0, 0};
+  Eigen::Vector3d steady_{0, 0, 0};  // its mean of some seconds with the pad in view
   Eigen::Quaterniond last_attitude_ = Eigen::Quaterniond::Identity();
   std::array<Input, kInputs> inputs_;
   std::size_t first_ = 0, size_ = 0;
