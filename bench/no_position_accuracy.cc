@@ -53,6 +53,9 @@ class Report {
            [](NoPositionSetup* setup) { setup->hover_thrust_error = 0.2; });
     Change("hover thrust a fifth too low",
            [](NoPositionSetup* setup) { setup->hover_thrust_error = -0.2; });
+    Change("battery sags by a fifth in a minute",
+           [](NoPositionSetup* setup) { setup->battery_sag = 0.2; });
+    Change("accelerometer shakes by 2 m/s2", [](NoPositionSetup* setup) { setup->vibration = 2; });
     Change("pad accelerates by 1.5 m/s2 for 5 s", [](NoPositionSetup* setup) {
       constexpr double kFastest_mps = 7.5;
       setup->job.pad_moves = true;

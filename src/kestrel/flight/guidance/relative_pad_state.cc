@@ -33,8 +33,10 @@ constexpr double kAttitudeNoise = Radians(0.5);
 // What a camera near the pad is wrong by, that its pixels do not show, and its stamps.
 constexpr double kPlaceNoise_m = 0.003, kStampNoise_s = 0.005;
 constexpr double kThrustLag_s = 0.12;
-constexpr double kVibration_s = 0.1;  // of what the accelerometer measures
-constexpr double kMeasured_s = 0.3;   // so long its newest value counts
+// The vibration of the accelerometer is measured in so long, and smoothed until this is left of it
+// (m/s^2), but not less.
+constexpr double kVibration_s = 2, kNoise = 0.1, kQuickest_s = 0.05;
+constexpr double kMeasured_s = 0.3;  // so long its newest value counts
 // Of the mean disturbance, and how long without the pad the newest one is flown against. Later the
 // mean one is: to cancel all of the wind takes away what brakes a UAV that nobody sees.
 constexpr double kSteady_s = 4, kNewest_s = 3;
@@ -127,7 +129,14 @@ void RelativePadState::AddAcceleration(Time time, const Vector3d& measured) {
   const Input& last = InputAt(size_ - 1);
   const Vector3d sensed = last.level_from_body * measured - kGravity * Vector3d::UnitZ();
   const double step_s = measured_ ? std::max(ToSeconds(time - *measured_), 0.0) : 0;
-  disturbance_ += (1 - std::exp(-step_s / kVibration_s)) * (sensed - last.model - disturbance_);
+  if (step_s > 0) {
+    const double change = (sensed - sensed_).squaredNorm() / 6;  // two samples, three axes
+    vibration_ += std::min(step_s / kVibration_s, 1.0) * (change - vibration_);
+    const double smoothing_s =
+        std::clamp(step_s / 2 * vibration_ / SquareOf(kNoise), kQuickest_s, kSteady_s);
+    disturbance_ += (1 - std::exp(-step_s / smoothing_s)) * (sensed - last.model - disturbance_);
+  }
+  sensed_ = sensed;
   if (!IsUnseen(time)) steady_ += (1 - std::exp(-step_s / kSteady_s)) * (disturbance_ - steady_);
   measured_ = time;
 }

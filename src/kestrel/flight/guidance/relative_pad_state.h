@@ -114,6 +114,8 @@ class RelativePadState {
   double thrust_ = 0;                 // the same after the lag of attitude and motors
   double heading_ = 0;                // of the body in the frame
   std::optional<Time> measured_;      // time of the newest acceleration
+  Eigen::Vector3d sensed_{0, 0, 0};   // the same in the frame, without gravity
+  double vibration_ = 0;              // variance of its noise in an axis, m^2/s^4
   // What it measures beyond lean and thrust, in the frame, without vibration.
   Eigen::Vector3d disturbance_{0, 0, 0};
   Eigen::Vector3d steady_{0, 0, 0};  // its mean of some seconds with the pad in view

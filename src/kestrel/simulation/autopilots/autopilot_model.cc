@@ -112,8 +112,8 @@ AutopilotModel::AutopilotModel(AutopilotFirmware firmware, const AutopilotModelO
   };
   if (is_px4()) {
     landing_ = std::make_unique<Px4Landing>(parameters_, px4_clock_, announce);
-    guided_ =
-        std::make_unique<Px4Offboard>(parameters_, options.estimate.hover_thrust_error, announce);
+    guided_ = std::make_unique<Px4Offboard>(parameters_, options.estimate.hover_thrust_error,
+                                            options.estimate.battery_sag / 60, announce);
     custom_mode_ = CustomModeOf(kind(), FlightMode::kHold);
   } else {
     landing_ = std::make_unique<ArduPilotLanding>(parameters_, announce);

@@ -32,6 +32,7 @@ struct EstimateFaultOptions {
   double turn_after_s = -1;
   double turn_deg = 40;
   double hover_thrust_error = 0;
+  double battery_sag = 0;
   double vibration = 0.3;
 
   static void Visit(auto& self, auto&& visit) {
@@ -59,6 +60,8 @@ struct EstimateFaultOptions {
     visit("turn_deg", self.turn_deg, Range{-180, 180}, "angle of that turn, from east to north");
     visit("hover_thrust_error", self.hover_thrust_error, Range{-0.5, 0.5},
           "part by which PX4 takes the thrust that hovers for too high");
+    visit("battery_sag", self.battery_sag, Range{0, 0.5},
+          "part of PX4's thrust that is lost in a minute of OFFBOARD");
     visit("vibration", self.vibration, Range{0, 20},
           "[m/s^2] noise of what its accelerometer reports, standard deviation");
     visit("has_home", self.has_home, "the autopilot has a home position to return to");

@@ -21,6 +21,8 @@ struct NoPositionSetup {
   // The pad drives off 'after' seconds, so fast at most and with this acceleration; 0: see above.
   double drive_after_s = 0, drive_acceleration = 1;
   double hover_thrust_error = 0;
+  double vibration = 0.3;    // of the accelerometer, m/s^2
+  double battery_sag = 0;    // part of the thrust, in a minute
   double turn_after_s = -1;  // of the compass, by 40 degrees
   bool has_sticks = false;
   bool has_flow = false;
@@ -39,6 +41,8 @@ inline PointedFlight NoPositionFlightOf(const NoPositionSetup& setup) {
   options.estimate.gnss_lost_after_s = setup.gnss_lost_after_s;
   options.estimate.has_flow = setup.has_flow;
   options.estimate.hover_thrust_error = setup.hover_thrust_error;
+  options.estimate.battery_sag = setup.battery_sag;
+  options.estimate.vibration = setup.vibration;
   options.estimate.turn_after_s = setup.turn_after_s;
   if (setup.firmware == AutopilotFirmware::kPx4) {
     options.parameters =
