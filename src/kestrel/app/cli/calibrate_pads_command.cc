@@ -39,12 +39,14 @@ struct SoughtTag {
   std::unique_ptr<TargetWorkspace> workspace;
 };
 
+TagBoard BoardOf(const PadsArguments& arguments, int id) {
+  return TagTargetOptions{.family = arguments.family, .id = id, .size_m = arguments.size_m}.Board();
+}
+
 std::vector<SoughtTag> TagsOf(const PadsArguments& arguments, const CameraModel& camera) {
   std::vector<SoughtTag> tags;
   for (const int id : arguments.ids) {
-    TagBoard board;
-    board.tags.push_back({.family = arguments.family, .id = id, .size_m = arguments.size_m});
-    TagBoardDetector detector(camera, board, TagBoardDetectorOptions());
+    TagBoardDetector detector(camera, BoardOf(arguments, id), TagBoardDetectorOptions());
     auto workspace = detector.MakeWorkspace();
     tags.push_back({std::move(detector), std::move(workspace)});
   }
@@ -121,7 +123,7 @@ void RequirePads(const PadsArguments& arguments) {
   if (arguments.ids.size() < 2) throw InputError("--ids: expected two tags or more");
   TagBoard board;
   for (const int id : arguments.ids) {
-    board.tags.push_back({.family = arguments.family, .id = id, .size_m = arguments.size_m});
+    board.tags.push_back(BoardOf(arguments, id).tags.front());
     board.tags.back().board_from_tag.translation.x() =
         2 * static_cast<double>(board.tags.size()) * arguments.size_m;
   }
