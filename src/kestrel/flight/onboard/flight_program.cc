@@ -538,8 +538,9 @@ LandingWatchInput FlightProgram::LandingInput(Time now) {
   }
   if (IsWithoutPosition()) {
     input.has_contact = input.has_contact || no_position_->phase() == GuidancePhase::kLanded;
-    if (no_position_->is_flying()) {
-      gave_up_.clear();
+    if (no_position_->is_flying()) gave_up_.clear();
+    const bool is_coming_down = no_position_->phase() == GuidancePhase::kCommit;
+    if (no_position_->is_flying() || is_coming_down) {
       input.heading_error = no_position_->heading_error();
     }
     if (const std::string reason = no_position_->gave_up(); !reason.empty()) gave_up_ = reason;
