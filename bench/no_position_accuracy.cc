@@ -4,8 +4,10 @@
 // lost. Usage: no_position_accuracy [--flights N] [--first-seed N] [--case TEXT] [--log]
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <string>
 #include <vector>
@@ -39,8 +41,10 @@ class Report {
     for (const double pad_mps : {1.0, 2.0}) {
       Land(fmt::format("a pad at {:g} m/s", pad_mps), pad_mps, 3, 0.15);
     }
+    LandWhenGnssIsLost();
     for (const double height_m : {1.0, 3.0, 6.0}) {
-      for (const double lost_s : {0.5, 1.0, 3.0, 60.0}) Lose(height_m, lost_s);
+      for (const double lost_s : {0.5, 1.0, 3.0, 60.0}) Lose(height_m, lost_s, false);
+      Lose(height_m, 60, true);
     }
     for (const bool hangs : {false, true}) Abandon(hangs);
     Change("compass turns by 40 degrees",
@@ -49,6 +53,9 @@ class Report {
            [](NoPositionSetup* setup) { setup->hover_thrust_error = 0.2; });
     Change("hover thrust a fifth too low",
            [](NoPositionSetup* setup) { setup->hover_thrust_error = -0.2; });
+    Change("battery sags by a fifth in a minute",
+           [](NoPositionSetup* setup) { setup->battery_sag = 0.2; });
+    Change("accelerometer shakes by 2 m/s2", [](NoPositionSetup* setup) { setup->vibration = 2; });
     Change("pad accelerates by 1.5 m/s2 for 5 s", [](NoPositionSetup* setup) {
       constexpr double kFastest_mps = 7.5;
       setup->job.pad_moves = true;
@@ -140,10 +147,21 @@ class Report {
     setup.pad_mps = pad_mps;
     setup.job.pad_moves = pad_mps > 0;
     setup.wind_mps = wind_mps;
-    std::vector<double> offsets, times;
+    setup.touchdown_heading = "30";
+    LandAll(fmt::format("landing on {}, wind {:g} m/s", pad, wind_mps), setup, limit_m);
+  }
+  // In a landing by position from 5 m.
+  void LandWhenGnssIsLost() {
+    NoPositionSetup setup;
+    setup.altitude_m = 5;
+    setup.gnss_lost_after_s = kNoPositionStart_s + 0.5;
+    LandAll("GNSS is lost in a landing at 5 m, wind 3 m/s", setup, 0.15);
+  }
+  void LandAll(const std::string& name, const NoPositionSetup& setup, double limit_m) {
+    std::vector<double> offsets, times, headings;
     int on_pad = 0, within = 0;
     Each(
-        fmt::format("landing on {}, wind {:g} m/s", pad, wind_mps), setup,
+        name, setup,
         [&](const NoPositionSetup& one) {
           PointedFlight flight = NoPositionFlightOf(one);
           const bool is_down = flight.Land(90);
@@ -153,15 +171,22 @@ class Report {
           ++on_pad;
           offsets.push_back(result.offset_m());
           times.push_back(result.landing_s);
+          if (one.touchdown_heading != std::string("any")) {
+            const double off =
+                result.contact->heading_in_pattern - Radians(std::atof(one.touchdown_heading));
+            headings.push_back(std::abs(Degrees(std::remainder(off, kFullTurn))));
+          }
           within += result.offset_m() <= limit_m ? 1 : 0;
         },
         [&] {
-          const std::string result = fmt::format(
+          std::string result = fmt::format(
               "on the pad {} of {}, within {:g} m {}; median {:.3f}, largest {:.3f} m; {:.0f} s",
               on_pad, arguments_.flights, limit_m, within, Take(&offsets, 0.5), Take(&offsets, 1),
               Take(&times, 0.5));
-          offsets.clear();
-          times.clear();
+          if (!headings.empty()) {
+            result += fmt::format("; heading off by {:.1f} deg at most", Take(&headings, 1));
+          }
+          for (auto* values : {&offsets, &times, &headings}) values->clear();
           on_pad = within = 0;
           return result;
         });
@@ -205,12 +230,16 @@ class Report {
     return setup;
   }
 
-  void Lose(double height_m, double lost_s) {
+  void Lose(double height_m, double lost_s, bool has_flow) {
     Aftermath after;
+    NoPositionSetup setup = Hovering(height_m);
+    setup.has_flow = has_flow;
     const std::string time =
         lost_s > 50 ? std::string("for good") : fmt::format("for {:g} s", lost_s);
     Each(
-        fmt::format("pad lost {} at {:g} m, wind 3 m/s", time, height_m), Hovering(height_m),
+        fmt::format("pad lost {} at {:g} m, wind 3 m/s{}", time, height_m,
+                    has_flow ? ", with flow" : ""),
+        setup,
         [&](const NoPositionSetup& one) {
           PointedFlight flight = NoPositionFlightOf(one);
           flight.Fly(kNoPositionStart_s + kSettle_s);

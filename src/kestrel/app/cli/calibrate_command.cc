@@ -138,7 +138,8 @@ void AddFlightCalibration(CLI::App* parent, const std::string& name, const std::
 }  // namespace
 
 void AddCalibrateCommand(CLI::App* app) {
-  CLI::App* command = app->add_subcommand("calibrate", "Estimate lens, mount, clock or colours");
+  CLI::App* command =
+      app->add_subcommand("calibrate", "Estimate lens, mount, clock, a map of pads, or colours");
   command->require_subcommand(1);
   AddFlightCalibration(command, "mount",
                        "The camera's angles in the body, from a slow flight over the pattern",
@@ -147,6 +148,7 @@ void AddCalibrateCommand(CLI::App* app) {
                        "The offset from the images' clock to the navigation's, from a quick flight",
                        {.estimate_mount = false, .estimate_clock = true});
   AddCalibrateLensCommand(command);
+  AddCalibratePadsCommand(command);
   AddCalibrateColorsCommand(command);
 }
 

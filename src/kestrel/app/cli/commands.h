@@ -21,10 +21,12 @@ void AddTouchdownCommand(CLI::App* simulate);
 void AddDemoCommand(CLI::App* app);
 // `kestrel evaluate RECORDING OUTPUT`: compares an output folder with the recording's truth.
 void AddEvaluateCommand(CLI::App* app);
-// `kestrel calibrate mount|clock|lens|colors`: mount angles and clock offset from a flight over the
-// landing pattern, the lens from views of it, colour models from marked images.
+// `kestrel calibrate mount|clock|lens|pads|colors`: mount angles and clock offset from a flight
+// over the landing pattern, the lens from views of it, a map of tags, colour models from marked
+// images.
 void AddCalibrateCommand(CLI::App* app);
 void AddCalibrateLensCommand(CLI::App* calibrate);
+void AddCalibratePadsCommand(CLI::App* calibrate);
 void AddCalibrateColorsCommand(CLI::App* calibrate);
 // `kestrel print`: the landing pattern on paper, or the check of a photographed print.
 void AddPrintCommand(CLI::App* app);

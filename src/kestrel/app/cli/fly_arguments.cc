@@ -116,18 +116,21 @@ void FlyArguments::AddTo(CLI::App* command) {
   command->add_flag("--hover", hover, "Stay above the pad, at the height of the beginning")
       ->needs(no_position_flag);
   command
-      ->add_option("--floor", floor,
-                   "With --no-position: still, or moves: the pad, or what is below, may move")
+      ->add_option(
+          "--floor", floor,
+          "Without a position, also one that is lost in a --guide landing: still, or moves: "
+          "the pad, or what is below, may move")
       ->type_name("WORD")
       ->check(CLI::IsMember({"still", "moves"}))
-      ->needs(no_position_flag);
+      ->needs(guide_flag)
+      ->excludes(position_flag);
   command
-      ->add_option(
-          "--ceiling", ceiling,
-          "With --no-position: yes, or no: a pad that is lost is looked for from higher up")
+      ->add_option("--ceiling", ceiling,
+                   "As --floor: yes, or no: a pad that is lost is looked for from higher up")
       ->type_name("WORD")
       ->check(CLI::IsMember({"yes", "no"}))
-      ->needs(no_position_flag);
+      ->needs(guide_flag)
+      ->excludes(position_flag);
   task.AddTo(command, [](std::string_view) { return true; });
   CLI::Option* hunt_flag = command->get_option("--hunt");
   command->add_option("--model", model, "Objects and their colours (YAML), with --hunt")
@@ -174,9 +177,11 @@ std::vector<RecordingChoice> FlyArguments::Cameras(PixelFormat format) const {
 }
 
 std::optional<RelativeJob> FlyArguments::WithoutPosition() const {
-  if (!no_position) return std::nullopt;
-  return RelativeJob{
-      .lands = !hover, .pad_moves = floor == "moves", .has_ceiling = ceiling == "yes"};
+  if (floor.empty()) return std::nullopt;
+  return RelativeJob{.lands = !hover,
+                     .pad_moves = floor == "moves",
+                     .has_ceiling = ceiling == "yes",
+                     .is_reserve = !no_position};
 }
 
 KestrelOptions FlyArguments::ReadOptions() {
@@ -204,10 +209,15 @@ KestrelOptions FlyArguments::ReadOptions() {
   if (guide && task.name == "hunt" && go.empty()) {
     throw InputError("--hunt --guide: expected --go CLASS, the objects to fly to");
   }
-  if (no_position && (floor.empty() || ceiling.empty())) {
+  const bool is_answered = !floor.empty() && !ceiling.empty();
+  const bool is_without = no_position || !floor.empty() || !ceiling.empty();
+  if (is_without && !is_answered) {
     throw InputError(
-        "--no-position: expected --floor still or moves, and --ceiling yes or no: without a "
-        "position they decide what a lost pad costs");
+        "expected --floor still or moves, and --ceiling yes or no: without a position they decide "
+        "what a lost pad costs");
+  }
+  if (!floor.empty() && task.name != "land") {
+    throw InputError("--floor: expected a landing, not --hunt or --follow");
   }
   job = ParseGoJob(then);
   if (!box.empty()) {

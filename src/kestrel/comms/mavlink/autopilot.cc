@@ -23,6 +23,7 @@ constexpr double kZoomRate_hz = 10;
 constexpr double kGimbalControl_hz = 5;
 constexpr double kStatusRate_hz = 2;
 constexpr double kAcceleration_hz = 50;
+constexpr double kClimbRate_hz = 20;
 constexpr double kTruePoseRate_hz = 100;
 // After so long without a heartbeat the autopilot is away.
 constexpr double kAwayAfter_s = 3;
@@ -220,7 +221,7 @@ void Autopilot::HandleFromAutopilot(const mavlink::Packet& packet, Time received
   } else if (const auto text = packet.As<mavlink::Statustext>()) {
     if (listener_.text) listener_.text(text->severity, TextOf(text->text));
   } else if (!HandlePose(packet, received) && !HandleTruePose(packet, received) &&
-             !HandleAcceleration(packet)) {
+             !HandleAcceleration(packet) && !HandleClimb(packet)) {
     HandleStatus(packet, received);
   }
 }
@@ -300,6 +301,13 @@ bool Autopilot::HandleAcceleration(const mavlink::Packet& packet) {
   if (stamp_us >= kMaxStamp_us) return true;
   listener_.acceleration(clock_.sync().ToLocal(kNsPerUs * static_cast<std::int64_t>(stamp_us)),
                          FluFromFrd(in_frd));
+  return true;
+}
+
+bool Autopilot::HandleClimb(const mavlink::Packet& packet) {
+  const auto message = packet.As<mavlink::VfrHud>();
+  if (!message) return false;
+  if (listener_.climb && std::isfinite(message->climb)) listener_.climb(message->climb);
   return true;
 }
 
@@ -465,6 +473,7 @@ void Autopilot::WantStreams() {
   if (options_.wants_acceleration || options_.wants_sticks) {
     streams_.WantIfThere(mavlink::RcChannels::kId, kStatusRate_hz);  // for the guard
   }
+  if (options_.wants_climb) streams_.WantIfThere(mavlink::VfrHud::kId, kClimbRate_hz);
   if (options_.wants_true_pose) {
     streams_.Want(is_px4 ? mavlink::HilStateQuaternion::kId : mavlink::SimState::kId,
                   kTruePoseRate_hz);

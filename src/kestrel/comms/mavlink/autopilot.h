@@ -40,6 +40,7 @@ struct AutopilotOptions {
   std::optional<int> zoom_device_id = std::nullopt;    // see ZoomReports; nothing: no zoom
   bool wants_acceleration = false;                     // that the accelerometer measures
   bool wants_sticks = false;                           // how the pilot holds them
+  bool wants_climb = false;                            // how fast it climbs
   bool points_gimbal = false;                          // wants what GimbalManager needs
   bool poses_as_ground_station = false;
 
@@ -112,6 +113,8 @@ struct AutopilotListener {
   // Acceleration that the accelerometer measures, in the body (FLU), m/s^2: with gravity's
   // reaction, upwards at rest. At a time on the local clock.
   std::function<void(Time time, const Eigen::Vector3d& acceleration)> acceleration = {};
+  // Climb rate by the autopilot's estimate, m/s: with a barometer it needs no position.
+  std::function<void(double climb_mps)> climb = {};
 };
 
 // The autopilot at the other end of a connection: finds it, follows its state, requests what is
@@ -209,6 +212,7 @@ class Autopilot {
   bool HandlePose(const mavlink::Packet& packet, Time received);
   bool HandleTruePose(const mavlink::Packet& packet, Time received);
   bool HandleAcceleration(const mavlink::Packet& packet);
+  bool HandleClimb(const mavlink::Packet& packet);
   void ReportPose(PoseFate fate, const char* what, const PoseSample& pose);
   void ReportAttitude(PoseSample pose);
   Time BetweenAttitudes(Time guess) const;

@@ -20,8 +20,8 @@ constexpr auto MakeTable() {
 constexpr auto kTable = MakeTable<
     Heartbeat, SysStatus, SystemTime, SetMode, ParamRequestRead, ParamRequestList, ParamValue,
     ParamSet, GpsRawInt, RawImu, Attitude, AttitudeQuaternion, LocalPositionNed, GlobalPositionInt,
-    SetGpsGlobalOrigin, GpsGlobalOrigin, RcChannels, RequestDataStream, CommandLong, CommandAck,
-    SetAttitudeTarget, SetPositionTargetLocalNed, HighresImu, SimState, Timesync,
+    SetGpsGlobalOrigin, GpsGlobalOrigin, RcChannels, RequestDataStream, VfrHud, CommandLong,
+    CommandAck, SetAttitudeTarget, SetPositionTargetLocalNed, HighresImu, SimState, Timesync,
     HilStateQuaternion, DistanceSensor, Altitude, FollowTarget, AutopilotVersion, LandingTarget,
     EkfStatusReport, EstimatorStatus, HomePosition, MessageInterval, ExtendedSysState, Statustext,
     CameraInformation, CameraSettings, CameraCaptureStatus, MountOrientation,
@@ -61,6 +61,7 @@ static_assert(Is<SetGpsGlobalOrigin>(41, 13, 21));
 static_assert(Is<GpsGlobalOrigin>(39, 12, 20));
 static_assert(Is<RcChannels>(118, 42, 42));
 static_assert(Is<RequestDataStream>(148, 6, 6));
+static_assert(Is<VfrHud>(20, 20, 20));
 static_assert(Is<CommandLong>(152, 33, 33));
 static_assert(Is<CommandAck>(143, 3, 10));
 static_assert(Is<SetAttitudeTarget>(49, 39, 51));

@@ -443,6 +443,26 @@ struct RequestDataStream {
   }
 };
 
+struct VfrHud {
+  static constexpr std::uint32_t kId = 74;
+  static constexpr std::string_view kName = "VFR_HUD";
+  float airspeed = 0;
+  float groundspeed = 0;
+  std::int16_t heading = 0;
+  std::uint16_t throttle = 0;
+  float alt = 0;
+  float climb = 0;
+
+  static constexpr void Visit(auto& self, auto&& visitor) {
+    visitor("airspeed", self.airspeed, "m/s");
+    visitor("groundspeed", self.groundspeed, "m/s");
+    visitor("heading", self.heading, "deg");
+    visitor("throttle", self.throttle, "%");
+    visitor("alt", self.alt, "m");
+    visitor("climb", self.climb, "m/s");
+  }
+};
+
 struct CommandLong {
   static constexpr std::uint32_t kId = 76;
   static constexpr std::string_view kName = "COMMAND_LONG";

@@ -150,7 +150,7 @@ TEST(PacketParserTest, TruncatedDatagramDoesNotDelayNext) {
 }
 
 TEST(MessageTableTest, KnowsItsMessages) {
-  EXPECT_EQ(KnownMessages().size(), 53u);
+  EXPECT_EQ(KnownMessages().size(), 54u);
   ASSERT_NE(FindMessage(511), nullptr);
   EXPECT_EQ(FindMessage(511)->name, "TARGET_RELATIVE");
   EXPECT_EQ(FindMessage(3), nullptr);

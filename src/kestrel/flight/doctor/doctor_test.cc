@@ -43,6 +43,7 @@ TEST(DoctorTest, FlagsNothingOnGoodSetup) {
     EXPECT_THAT(Flagged(Check(GoodGuidedSetup(kind))), IsEmpty()) << ToString(kind);
     EXPECT_THAT(Flagged(Check(OnGimbal(GoodSetup(kind)))), IsEmpty()) << ToString(kind);
     EXPECT_THAT(Flagged(Check(GoodPadSetup(kind))), IsEmpty()) << ToString(kind);
+    EXPECT_THAT(Flagged(Check(GoodNoPositionSetup(kind))), IsEmpty()) << ToString(kind);
   }
 }
 
@@ -98,8 +99,8 @@ TEST(DoctorTest, ListsEveryCheck) {
   for (const ListedCheck& check : ListedChecks()) listed.emplace_back(check.name);
   for (const AutopilotKind kind : {AutopilotKind::kArduPilot, AutopilotKind::kPx4}) {
     for (const ListedCheck& check : CheckedParameters(kind)) listed.emplace_back(check.name);
-    for (const auto& setup :
-         {GoodSetup(kind), GoodGuidedSetup(kind), OnGimbal(GoodSetup(kind)), GoodPadSetup(kind)}) {
+    for (const auto& setup : {GoodSetup(kind), GoodGuidedSetup(kind), OnGimbal(GoodSetup(kind)),
+                              GoodPadSetup(kind), GoodNoPositionSetup(kind)}) {
       for (const Finding& finding : Check(setup)) EXPECT_THAT(listed, Contains(finding.check));
     }
   }
@@ -107,7 +108,16 @@ TEST(DoctorTest, ListsEveryCheck) {
 
 // --- One fault at a time ---
 
-enum class Setup { kArduPilot, kPx4, kGuidedArduPilot, kGuidedPx4, kPadArduPilot, kPadPx4 };
+enum class Setup {
+  kArduPilot,
+  kPx4,
+  kGuidedArduPilot,
+  kGuidedPx4,
+  kPadArduPilot,
+  kPadPx4,
+  kNoPositionArduPilot,
+  kNoPositionPx4
+};
 
 DoctorObservations Make(Setup setup) {
   switch (setup) {
@@ -123,6 +133,10 @@ DoctorObservations Make(Setup setup) {
       return GoodPadSetup(AutopilotKind::kArduPilot);
     case Setup::kPadPx4:
       return GoodPadSetup(AutopilotKind::kPx4);
+    case Setup::kNoPositionArduPilot:
+      return GoodNoPositionSetup(AutopilotKind::kArduPilot);
+    case Setup::kNoPositionPx4:
+      return GoodNoPositionSetup(AutopilotKind::kPx4);
   }
   return {};
 }
@@ -550,6 +564,23 @@ std::vector<Fault> PadFaults() {
       {"GNSS wanted", Setup::kPadPx4, Parameter("SYS_HAS_GPS", 1), "SYS_HAS_GPS",
        Verdict::kDoubtful, "COM_ARM_WO_GPS"},
       {"COM_OBL_RC_ACT that returns", Setup::kPadPx4, Parameter("COM_OBL_RC_ACT", 3),
+       "COM_OBL_RC_ACT", Verdict::kWrong, "param set COM_OBL_RC_ACT 4"},
+      {"thrust instead of climb rate", Setup::kNoPositionArduPilot, Parameter("GUID_OPTIONS", 9),
+       "GUID_OPTIONS", Verdict::kWrong, "param set GUID_OPTIONS 1"},
+      {"fence without position", Setup::kNoPositionArduPilot, Parameter("FENCE_ENABLE", 1),
+       "FENCE_ENABLE", Verdict::kWrong, "does not arm"},
+      {"landing in any mode", Setup::kNoPositionArduPilot, Parameter("FS_EKF_ACTION", 3),
+       "FS_EKF_ACTION", Verdict::kDoubtful, "param set FS_EKF_ACTION 1"},
+      {"hover thrust not learnt", Setup::kNoPositionArduPilot,
+       Parameter("MOT_THST_HOVER", static_cast<double>(0.35f)), "MOT_THST_HOVER",
+       Verdict::kDoubtful, "MOT_HOVER_LEARN 2"},
+      {"slow end of set-points", Setup::kNoPositionArduPilot, Parameter("GUID_TIMEOUT", 3),
+       "GUID_TIMEOUT", Verdict::kWrong, "param set GUID_TIMEOUT 0.3"},
+      {"no arming without GNSS", Setup::kNoPositionPx4, Parameter("COM_ARM_WO_GPS", 0),
+       "COM_ARM_WO_GPS", Verdict::kWrong, "param set COM_ARM_WO_GPS 1"},
+      {"hover thrust fixed", Setup::kNoPositionPx4, Parameter("MPC_USE_HTE", 0), "MPC_USE_HTE",
+       Verdict::kDoubtful, "param set MPC_USE_HTE 1"},
+      {"Hold without position", Setup::kNoPositionPx4, Parameter("COM_OBL_RC_ACT", 0),
        "COM_OBL_RC_ACT", Verdict::kWrong, "param set COM_OBL_RC_ACT 4"},
       {"NAV_RCL_ACT that returns", Setup::kPadPx4, Parameter("NAV_RCL_ACT", 2), "NAV_RCL_ACT",
        Verdict::kDoubtful, "returns"},

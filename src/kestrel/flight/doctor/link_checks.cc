@@ -181,6 +181,7 @@ Finding CheckAttitudes(const LinkObservations& link, const DoctorUse& use) {
 }
 
 Finding CheckPositions(const LinkObservations& link, const DoctorUse& use) {
+  if (use.no_position) return NotChecked("position", "not wanted: --no-position");
   if (use.pad_position && link.positions == 0) {
     return NotChecked("position", "none before kestrel fly sends the pad's");
   }
@@ -192,6 +193,7 @@ Finding CheckPositions(const LinkObservations& link, const DoctorUse& use) {
 
 Finding CheckEstimate(const LinkObservations& link, const DoctorUse& use) {
   const std::string check = "position estimate";
+  if (use.no_position) return NotChecked(check, "not wanted: --no-position");
   if (use.pad_position && !link.has_good_position.value_or(false)) {
     return NotChecked(check, "none before kestrel fly sends the pad's");
   }

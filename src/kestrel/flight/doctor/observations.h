@@ -35,6 +35,9 @@ struct DoctorUse {
   double tilt_deg = 30;                // by which guidance may lean
   double sight_s = 0.5;                // so long it flies on near the deck without a sighting
   bool pad_position = false;           // the pad is the autopilot's position
+  bool no_position = false;            // it has none, and is flown without
+  // False where the autopilot has no position by itself.
+  bool has_position() const { return !pad_position && !no_position; }
   bool has_pad_origin = false;         // Kestrel sets the origin of its frame
   bool sends_distance = false;         // DISTANCE_SENSOR too
   double attitude_rate_hz = 100;       // requested from the autopilot

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "kestrel/flight/doctor/link_checks.h"
+#include "kestrel/flight/doctor/no_position_checks.h"
 #include "kestrel/flight/doctor/pad_position_checks.h"
 #include "kestrel/flight/doctor/parameter_rules.h"
 #include "kestrel/flight/doctor/statistics.h"
@@ -19,7 +20,7 @@
 namespace kestrel {
 namespace {
 
-constexpr std::array<ListedCheck, 36> kOfArduPilot = {{
+constexpr std::array<ListedCheck, 38> kOfArduPilot = {{
     {"PLND_ENABLED", "1"},
     {"PLND_TYPE", "1, targets by MAVLink"},
     {"PLND_ORIENT", "25, down"},
@@ -49,16 +50,18 @@ constexpr std::array<ListedCheck, 36> kOfArduPilot = {{
     {"EK3_SRC1_VELZ", "--pad-position: 0 or 6, as EK3_SRC1_VELXY and _POSZ not by GNSS"},
     {"EK3_SRC1_YAW", "--pad-position: 1, or 6 where the compass is disturbed"},
     {"GPS1_TYPE", "--pad-position: 0"},
-    {"FS_EKF_ACTION", "--pad-position: 1, land"},
+    {"FS_EKF_ACTION", "--pad-position: 1, land; --no-position: not 3, which always lands"},
     {"FS_THR_ENABLE", "--pad-position: 3, land, 7 or 0; a return climbs"},
-    {"FENCE_ENABLE", "--pad-position: 0, else it arms with a position only"},
+    {"FENCE_ENABLE", "--pad-position, --no-position: 0, else it arms with a position only"},
+    {"GUID_OPTIONS", "--no-position: without bit 3, which takes a climb rate for a thrust"},
+    {"MOT_THST_HOVER", "--no-position: learnt, not 0.35 as it comes"},
     {"MNT1_TYPE", "with a gimbal: its type; 1, servos, reports the set-point"},
     {"MNT1_DEFLT_MODE", "with a gimbal: not 0, retracted"},
     {"CAM1_TYPE", "with a zoom that is not heard: its type; --follow: 0"},
     {"CAM1_HFOV", "with a zoom: 0: else this is reported, whatever the lens does"},
 }};
 
-constexpr std::array<ListedCheck, 29> kOfPx4 = {{
+constexpr std::array<ListedCheck, 31> kOfPx4 = {{
     {"VTE_EN", "1 with the profile px4-vte, else 0; not with --guide"},
     {"VTE_AID_MASK", "bit 1, with the profile px4-vte"},
     {"LTEST_MODE", "--moving: 0"},
@@ -72,12 +75,14 @@ constexpr std::array<ListedCheck, 29> kOfPx4 = {{
     {"EKF2_RNG_CTRL", "--moving: below 2"},
     {"EKF2_OF_CTRL", "--moving: 0"},
     {"COM_OF_LOSS_T", "--guide: 0.1 to 0.5 s: so long the last set-point is flown on"},
-    {"COM_OBL_RC_ACT", "--guide: 5, Hold; with --pad-position 4, Land"},
+    {"COM_OBL_RC_ACT", "--guide: 5, Hold; with --pad-position or --no-position 4, Land"},
     {"NAV_RCL_ACT", "--guide: not 0 where COM_OBL_RC_ACT is 0 to 2; --pad-position: not 2"},
     {"EKF2_EV_CTRL", "--pad-position: 11, place, height and heading; at least bit 0"},
     {"EKF2_NOAID_TOUT", "--pad-position: at most 1 s: so long it flies by a guess"},
     {"EKF2_GPS_CTRL", "--pad-position: 0"},
-    {"SYS_HAS_GPS", "--pad-position: 0, there is no GNSS"},
+    {"SYS_HAS_GPS", "--pad-position, --no-position: 0, there is no GNSS"},
+    {"COM_ARM_WO_GPS", "--no-position: 1 or 2, it arms without a position"},
+    {"MPC_USE_HTE", "--no-position: 1, the hover thrust is learnt"},
     {"COM_RC_OVERRIDE", "--guide: bit 1, the sticks end OFFBOARD"},
     {"MAN_OVERRIDE_SPD", "--guide: 0 or more, the sticks end OFFBOARD"},
     {"LNDMC_XY_VEL_MAX", "--guide: above the target's speed, else it does not disarm"},
@@ -218,7 +223,7 @@ void CheckGuidanceOfArduPilot(ParameterRules* rules) {
   constexpr double kLand = 5;
   constexpr double kReturn = 1;
   CheckLossTimeout({"GUID_TIMEOUT", 0.1, 0.3}, rules);
-  if (rules->all().use.pad_position) return;
+  if (!rules->all().use.has_position()) return;
   rules->Want("FS_GCS_ENABLE", Verdict::kDoubtful,
               {kReturn,
                "when the ground station is lost it lands where it is, beside a pattern that "
@@ -281,6 +286,11 @@ void CheckCameraOfArduPilot(ParameterRules* rules) {
 }
 
 void CheckArduPilot(ParameterRules* rules) {
+  if (rules->all().use.no_position) {
+    CheckNoPositionOfArduPilot(rules);
+    CheckTrustOfArduPilot(rules);
+    return CheckGuidanceOfArduPilot(rules);
+  }
   CheckPrecisionLandingOfArduPilot(rules);
   if (rules->moves()) CheckMovingTargetOfArduPilot(rules);
   if (rules->moves() || rules->all().use.guides) CheckSpeedsOfArduPilot(rules);
@@ -379,7 +389,7 @@ void CheckLossOfPx4(ParameterRules* rules) {
   constexpr int kLand = 4;
   constexpr double kHold = 5;
   CheckLossTimeout({"COM_OF_LOSS_T", 0.1, 0.5}, rules);
-  if (rules->all().use.pad_position) {
+  if (!rules->all().use.has_position()) {
     const bool returns = rules->Find("COM_OBL_RC_ACT") == kReturn;
     rules->Want(
         "COM_OBL_RC_ACT", Verdict::kWrong,
@@ -458,7 +468,11 @@ void CheckPx4(ParameterRules* rules) {
     CheckSearchOfPx4(rules);
   }
   CheckLandingOfPx4(rules);
-  CheckEstimatorOfPx4(rules);
+  if (rules->all().use.no_position) {
+    CheckNoPositionOfPx4(rules);
+  } else {
+    CheckEstimatorOfPx4(rules);
+  }
   if (rules->all().use.pad_position) CheckPadPositionOfPx4(rules);
   if (rules->all().use.guides) CheckGuidanceOfPx4(rules);
   if (rules->all().calibration.gimbal) CheckGimbalOfPx4(rules);

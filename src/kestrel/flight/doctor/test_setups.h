@@ -240,4 +240,28 @@ inline DoctorObservations GoodPadSetup(AutopilotKind kind) {
   return all;
 }
 
+// The same for a flight without any position.
+inline DoctorObservations GoodNoPositionSetup(AutopilotKind kind) {
+  DoctorObservations all = GoodGuidedSetup(kind);
+  all.use.target_mps.reset();
+  all.use.no_position = true;
+  all.link.positions = 0;
+  all.link.has_good_position = false;
+  const auto set = [&](const std::string& name, double value) {
+    all.parameters[name] = {value, name, 1};
+  };
+  if (kind == AutopilotKind::kPx4) {
+    set("COM_OBL_RC_ACT", 4);
+    set("COM_ARM_WO_GPS", 1);
+    set("SYS_HAS_GPS", 0);
+    set("MPC_USE_HTE", 1);
+  } else {
+    set("GUID_OPTIONS", 0);
+    set("FENCE_ENABLE", 0);
+    set("FS_EKF_ACTION", 1);
+    set("MOT_THST_HOVER", 0.28);
+  }
+  return all;
+}
+
 }  // namespace kestrel

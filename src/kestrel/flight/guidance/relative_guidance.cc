@@ -22,7 +22,8 @@ constexpr double kJerk = 8;                // m/s^3, of the commanded accelerati
 constexpr double kMostVertical = 3;        // m/s^2, commanded
 constexpr double kStepLimit_s = 0.2;
 constexpr double kStill_mps = 0.25;
-constexpr double kKnown_mps = 0.45;  // standard deviation of a velocity that is followed
+// Standard deviation of a velocity that is followed, and of a climb that is controlled.
+constexpr double kKnown_mps = 0.45, kKnownClimb_mps = 0.4;
 // Height control, 1/s each.
 constexpr double kHeightGain = 1.2, kClimbGain = 2.5;
 constexpr double kClimb_mps = 1, kWiden_mps = 0.5;
@@ -51,6 +52,7 @@ RelativeGuidance::RelativeGuidance(const GuidanceOptions& options, const Relativ
                                    bool streams)
     : options_(Checked(options)),
       job_(job),
+      heading_(options_),
       streams_(streams),
       may_stream_(streams),
       reason_("waits for the pilot to give the mode") {}
@@ -68,6 +70,7 @@ RelativeOutput RelativeGuidance::Update(const RelativeInput& input) {
   if (HasLink(input)) {
     FollowMode(input);
     if (is_active_ && !input.pad) GiveUp(input, "the attitude was not sent: lands where it is");
+    if (is_active_) WatchHeading(input);
     if (is_active_) ChoosePhase(input);
     if (is_active_) {
       output.set_point = Fly(input);
@@ -109,17 +112,22 @@ void RelativeGuidance::FollowMode(const RelativeInput& input) {
   has_given_up_ = false;
 }
 
+bool RelativeGuidance::CanBegin(const RelativeInput& input) {
+  return input.pad && input.pad_age_s < kLost_s && input.pad->Sigma(State::kVelocity) <= kKnown_mps;
+}
+
 void RelativeGuidance::Start(const RelativeInput& input) {
   may_stream_ = false;
   if (!input.is_armed || input.is_landed) return End("refused: the UAV is on the ground");
   if (!input.is_allowed) return GiveUp(input, "refused: ends the mode");
-  const bool is_seen = input.pad && input.pad_age_s < kLost_s;
-  if (!is_seen || !(input.pad->Sigma(State::kVelocity) <= kKnown_mps)) {
+  if (!CanBegin(input)) {
     return GiveUp(input, "refused: the pad is not in view, or not for long enough");
   }
   is_active_ = true;
   last_ = input.now;
   height_m_ = -input.pad->way().z();
+  heading_.Start(input.nose);
+  ignores_heading_ = false;
   Enter(GuidancePhase::kApproach, "flies to above the pad", input.now);
 }
 
@@ -161,13 +169,28 @@ void RelativeGuidance::ChoosePhase(const RelativeInput& input) {
     return Enter(GuidancePhase::kFollow, job_.lands ? "above the pad" : "hovers above the pad",
                  input.now);
   }
-  if (phase_ == GuidancePhase::kFollow && job_.lands) {
-    constexpr double kSettle_s = 1;
-    if (!IsAbove(input, Cone(feet_m), kStill_mps)) entered_ = input.now;
-    if (ToSeconds(input.now - entered_) < kSettle_s) return;
+  if (phase_ == GuidancePhase::kFollow && job_.lands) return Wait(input);
+  if (phase_ == GuidancePhase::kDescend) Descend(input);
+}
+
+// Above the pad, until the UAV is still and its nose is right.
+void RelativeGuidance::Wait(const RelativeInput& input) {
+  constexpr double kSettle_s = 1;
+  if (!IsAbove(input, Cone(FeetHeight(input)), kStill_mps)) entered_ = input.now;
+  if (ToSeconds(input.now - entered_) < kSettle_s) return;
+  if (heading_.is_reached() || ignores_heading_) {
     return Enter(GuidancePhase::kDescend, "", input.now);
   }
-  if (phase_ == GuidancePhase::kDescend) Descend(input);
+  reason_ = heading_.is_known() ? "turns to the heading over the pad"
+                                : "waits above the pad: its heading is not known";
+}
+
+// To give up for a heading would be a landing beside the pad.
+void RelativeGuidance::WatchHeading(const RelativeInput& input) {
+  heading_.Update(input.now, input.nose, input.pad_heading, input.link_delay_s);
+  if (heading_.IsOverdue(input.now, phase_ == GuidancePhase::kFollow && job_.lands)) {
+    ignores_heading_ = true;
+  }
 }
 
 // The time that it may fly without the pad follows from how well velocity and bias are known.
@@ -196,14 +219,25 @@ void RelativeGuidance::FollowLoss(const RelativeInput& input) {
 }
 
 // LAND is level, and drifts with the wind: the UAV sinks against what it knows of the wind, where
-// the autopilot controls the climb rate.
+// the climb rate is controlled.
 void RelativeGuidance::EndLoss(const RelativeInput& input) {
   if (input.has_pilot) return GiveUp(input, "the pad is lost: fly by hand, or it lands");
-  const bool is_low = lost_height_m_ - sunk_m_ - options_.leg_m < kLandBelow_m;
-  if (is_low || streams_) {
+  if (HeightWithoutPad(input) < kLandBelow_m || !KnowsClimb(input)) {
     return GiveUp(input, "the pad is lost: lands where it is");
   }
   reason_ = "the pad is lost: sinks, against the wind as it was";
+}
+
+// ArduCopter controls it by itself.
+bool RelativeGuidance::KnowsClimb(const RelativeInput& input) const {
+  return !streams_ || input.pad->ClimbSigma() < kKnownClimb_mps;
+}
+
+// Of the feet, m.
+double RelativeGuidance::HeightWithoutPad(const RelativeInput& input) const {
+  const bool is_measured = input.pad->ClimbSigma() < kKnownClimb_mps;
+  const double height_m = is_measured ? -input.pad->way().z() : lost_height_m_ - sunk_m_;
+  return input.range_m.value_or(height_m) - options_.leg_m;
 }
 
 void RelativeGuidance::Descend(const RelativeInput& input) {
@@ -267,6 +301,7 @@ RelativeSetPoint RelativeGuidance::Fly(const RelativeInput& input) {
   wanted = before + Limited(wanted - before, kJerk * step_s);
   command.climb_mps = WantedClimb(input);
   if (phase_ == GuidancePhase::kSearch) sunk_m_ -= step_s * command.climb_mps;
+  command.turn = std::remainder(heading_.yaw() - input.nose, kFullTurn);
   const Vector3d velocity = input.pad->velocity();
   command.acceleration << wanted,
       std::clamp(kClimbGain * (command.climb_mps + velocity.z()) - input.pad->bias().z(),
@@ -284,11 +319,11 @@ Vector2d RelativeGuidance::WantedAcceleration(const RelativeInput& input) const 
   const double most = MostLevel();
   const RelativePadState::Estimate& pad = *input.pad;
   const Vector2d against_bias = Limited(-pad.bias().head<2>(), most);
-  const bool is_followed = phase_ != GuidancePhase::kSearch &&
-                           (input.pad_age_s < kLost_s || phase_ == GuidancePhase::kCommit) &&
-                           pad.Sigma(State::kVelocity) < kKnown_mps;
-  if (!is_followed) return against_bias;
+  if (!(pad.Sigma(State::kVelocity) < kKnown_mps)) return against_bias;
   const Gains gains = GainsFor(kAttitudeDelay_s + input.link_delay_s);
+  if (phase_ == GuidancePhase::kSearch) {
+    return Limited(gains.velocity * pad.velocity().head<2>() + against_bias, most);
+  }
   const Vector2d way = job_.lands ? WayOfFeet(pad, options_.leg_m) : Vector2d(pad.way().head<2>());
   const Vector2d closing = Limited(gains.position / gains.velocity * way, kFastest_mps);
   const Vector2d following =

@@ -10,6 +10,7 @@
 #include "kestrel/flight/guidance/guidance_phase.h"
 #include "kestrel/flight/guidance/guidance_request.h"
 #include "kestrel/flight/guidance/relative_pad_state.h"
+#include "kestrel/flight/guidance/touchdown_heading.h"
 
 namespace kestrel {
 
@@ -18,6 +19,8 @@ struct RelativeJob {
   bool lands = true;         // otherwise it stays above the pad, at the height of the beginning
   bool pad_moves = false;    // the pad, or the floor below, may move
   bool has_ceiling = false;  // the UAV must not climb to look for the pad
+  // It lands by the autopilot's position, and without it only once that is lost.
+  bool is_reserve = false;
 };
 
 // All inputs of relative guidance at an instant.
@@ -25,6 +28,10 @@ struct RelativeInput {
   Time now;  // never earlier than the one before
   // Predicted to when a set-point takes effect; nothing: the pad was not seen yet.
   std::optional<RelativePadState::Estimate> pad;
+  std::optional<double> range_m;  // to what is below, by the UAV's range finder
+  // The pad's heading and that of the nose, in one frame; nothing: it is not known.
+  std::optional<TargetEstimate> pad_heading;
+  double nose = 0;
   double pad_age_s = 0;    // since the newest frame that showed the pad, without its usual delay
   bool is_guided = false;  // the mode in which the autopilot obeys these set-points
   bool is_allowed = true;  // false: there is a reason against it, and the mode is to be ended
@@ -41,6 +48,7 @@ struct RelativeInput {
 struct RelativeSetPoint {
   Eigen::Vector3d acceleration{0, 0, 0};  // m/s^2
   double climb_mps = 0;
+  double turn = 0;  // of the nose, counterclockwise, rad
 };
 
 struct RelativeOutput {
@@ -63,6 +71,9 @@ class RelativeGuidance {
   // only then (PX4). Throws InputError when the options are not valid.
   RelativeGuidance(const GuidanceOptions& options, const RelativeJob& job, bool streams);
 
+  // Returns whether the pad is in view, and its velocity known.
+  static bool CanBegin(const RelativeInput& input);
+
   // Call it at 20 Hz or more.
   RelativeOutput Update(const RelativeInput& input);
 
@@ -74,6 +85,8 @@ class RelativeGuidance {
   GuidancePhase phase() const { return phase_; }
   bool is_active() const { return is_active_; }
   bool has_given_up() const { return has_given_up_; }
+  // See TouchdownHeading.
+  const std::optional<double>& heading_error() const { return heading_.error(); }
 
  private:
   struct Gains {
@@ -92,9 +105,13 @@ class RelativeGuidance {
   void Lose(const RelativeInput& input);
   void FollowLoss(const RelativeInput& input);
   void EndLoss(const RelativeInput& input);
+  void Wait(const RelativeInput& input);
+  void WatchHeading(const RelativeInput& input);
   void Descend(const RelativeInput& input);
   void Commit(const RelativeInput& input);
+  bool KnowsClimb(const RelativeInput& input) const;
   double FeetHeight(const RelativeInput& input) const;
+  double HeightWithoutPad(const RelativeInput& input) const;
   double Cone(double feet_m) const;
   bool IsAbove(const RelativeInput& input, double radius_m, double speed_mps) const;
   double WantedClimb(const RelativeInput& input) const;
@@ -105,6 +122,8 @@ class RelativeGuidance {
 
   GuidanceOptions options_;
   RelativeJob job_;
+  TouchdownHeading heading_;
+  bool ignores_heading_ = false;  // it was waited for in vain
   bool streams_;
   bool may_stream_;
   GuidancePhase phase_ = GuidancePhase::kIdle;

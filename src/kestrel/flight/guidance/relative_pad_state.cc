@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/core/geometry/rigid_transform.h"
@@ -32,11 +33,23 @@ constexpr double kAttitudeNoise = Radians(0.5);
 // What a camera near the pad is wrong by, that its pixels do not show, and its stamps.
 constexpr double kPlaceNoise_m = 0.003, kStampNoise_s = 0.005;
 constexpr double kThrustLag_s = 0.12;
-constexpr double kContradiction = 25;  // squared, in variances
+// The vibration of the accelerometer is measured in so long, and smoothed until this is left of it
+// (m/s^2), but not less.
+constexpr double kVibration_s = 2, kNoise = 0.1, kQuickest_s = 0.05;
+constexpr double kMeasured_s = 0.3;  // so long its newest value counts
+// Of the mean disturbance, and how long without the pad the newest one is flown against. Later the
+// mean one is: to cancel all of the wind takes away what brakes a UAV that nobody sees.
+constexpr double kSteady_s = 4, kNewest_s = 3;
+constexpr double kMeasuredGusts = 0.2;  // m/s^2, what the accelerometer leaves of gusts
+constexpr double kContradiction = 25;   // squared, in variances
 constexpr double kContradicted_s = 0.5;
+// Of the UAV's own velocity: each report, which repeats errors of those before. It counts once the
+// pad has been out of sight for so long.
+constexpr double kOwnVelocityNoise = 0.3, kOutOfSight_s = 0.3;
 constexpr double kSubStep_s = 0.05;
 constexpr double kLargestGap_s = 0.5;  // between two attitudes
 constexpr double kLongestCoast_s = 60;
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 double SquareOf(double value) { return value * value; }
 
@@ -45,10 +58,24 @@ double NoiseOf(const Axis& axis, double variance) {
          SquareOf(kStampNoise_s * axis.mean(RelativePadState::kVelocity));
 }
 
+// The Kalman filter's correction by a measurement of one state.
+void Update(int index, double measured, double variance, Axis* axis) {
+  const Eigen::Vector4d gain =
+      axis->covariance.col(index) / (axis->covariance(index, index) + variance);
+  axis->mean += gain * (measured - axis->mean(index));
+  const Eigen::RowVector4d row = axis->covariance.row(index);
+  axis->covariance -= gain * row;
+  axis->covariance = (axis->covariance + axis->covariance.transpose().eval()) / 2;
+}
+
 }  // namespace
 
 double RelativePadState::Estimate::Sigma(int index) const {
   return std::sqrt((axes[0].covariance(index, index) + axes[1].covariance(index, index)) / 2);
+}
+
+double RelativePadState::Estimate::ClimbSigma() const {
+  return std::sqrt(axes[2].covariance(kVelocity, kVelocity));
 }
 
 double RelativePadState::Estimate::DriftSigma(double seconds) const {
@@ -90,9 +117,45 @@ bool RelativePadState::AddAttitude(Time time, const Quaterniond& world_from_body
     first_ = (first_ + 1) % kInputs;
     --size_;
   }
-  inputs_[(first_ + size_) % kInputs] = {time, level_from_body, acceleration};
+  if (measured_ && ToSeconds(time - *measured_) > kMeasured_s) ForgetDisturbance();
+  inputs_[(first_ + size_) % kInputs] = {time, level_from_body, acceleration,
+                                         acceleration + disturbance_, Vector3d::Constant(kUnknown)};
   ++size_;
   return true;
+}
+
+void RelativePadState::AddAcceleration(Time time, const Vector3d& measured) {
+  if (size_ == 0) return;
+  const Input& last = InputAt(size_ - 1);
+  const Vector3d sensed = last.level_from_body * measured - kGravity * Vector3d::UnitZ();
+  const double step_s = measured_ ? std::max(ToSeconds(time - *measured_), 0.0) : 0;
+  if (step_s > 0) {
+    const double change = (sensed - sensed_).squaredNorm() / 6;  // two samples, three axes
+    vibration_ += std::min(step_s / kVibration_s, 1.0) * (change - vibration_);
+    const double smoothing_s =
+        std::clamp(step_s / 2 * vibration_ / SquareOf(kNoise), kQuickest_s, kSteady_s);
+    disturbance_ += (1 - std::exp(-step_s / smoothing_s)) * (sensed - last.model - disturbance_);
+  }
+  sensed_ = sensed;
+  if (!IsUnseen(time)) steady_ += (1 - std::exp(-step_s / kSteady_s)) * (disturbance_ - steady_);
+  measured_ = time;
+}
+
+// The accelerometer is not heard any more: its disturbance goes on as a bias.
+void RelativePadState::ForgetDisturbance() {
+  for (int i = 0; i < 3; ++i) axes_[static_cast<std::size_t>(i)].mean(kBias) += disturbance_(i);
+  disturbance_.setZero();
+  steady_.setZero();
+  measured_.reset();
+}
+
+void RelativePadState::AddOwnVelocity(const Vector3d& velocity_in_world) {
+  if (size_ == 0) return;
+  const Eigen::AngleAxisd turn(heading_ - HeadingOf(last_attitude_), Vector3d::UnitZ());
+  const Vector3d level = turn * Vector3d(velocity_in_world.x(), velocity_in_world.y(), 0);
+  Vector3d& velocity = inputs_[(first_ + size_ - 1) % kInputs].velocity;
+  if (level.allFinite() && !pad_moves_) velocity.head<2>() = level.head<2>();
+  if (std::isfinite(velocity_in_world.z())) velocity.z() = velocity_in_world.z();
 }
 
 void RelativePadState::ForgetThrust() {
@@ -104,10 +167,9 @@ void RelativePadState::ForgetThrust() {
 
 bool RelativePadState::AddSight(Time exposure, const Vector3d& pad_in_body,
                                 const Matrix3d& covariance) {
-  const auto index = IndexAt(exposure);
-  if (!index || (sighted_ && exposure <= state_time_)) return false;
-  const Quaterniond level_from_body = LevelFromBody(exposure, *index);
-  const Matrix3d rotation = level_from_body.toRotationMatrix();
+  const auto level_from_body = LevelFromBodyAt(exposure);
+  if (!level_from_body || (sighted_ && exposure <= state_time_)) return false;
+  const Matrix3d rotation = level_from_body->toRotationMatrix();
   const Vector3d way = rotation * pad_in_body;
   Vector3d variance = (rotation * covariance * rotation.transpose()).diagonal();
   const double lever = SquareOf(kAttitudeNoise);
@@ -159,20 +221,33 @@ bool RelativePadState::Correct(const Vector3d& way, const Vector3d& variance) {
   }
   for (int i = 0; i < 3; ++i) {
     Axis& axis = axes_[static_cast<std::size_t>(i)];
-    const Eigen::Vector4d gain =
-        axis.covariance.col(kWay) / (axis.covariance(kWay, kWay) + NoiseOf(axis, variance(i)));
-    axis.mean += gain * (way(i) - axis.mean(kWay));
-    const Eigen::RowVector4d row = axis.covariance.row(kWay);
-    axis.covariance -= gain * row;
-    axis.covariance = (axis.covariance + axis.covariance.transpose().eval()) / 2;
+    Update(kWay, way(i), NoiseOf(axis, variance(i)), &axis);
   }
   return true;
+}
+
+bool RelativePadState::IsUnseen(Time time) const {
+  return !sighted_ || ToSeconds(time - *sighted_) >= kOutOfSight_s;
+}
+
+void RelativePadState::CorrectVelocity(const Input& input, std::array<Axis, 3>* axes) const {
+  if (!IsUnseen(input.time)) return;
+  for (int i = 0; i < 3; ++i) {
+    if (!std::isfinite(input.velocity(i))) continue;
+    Axis& axis = (*axes)[static_cast<std::size_t>(i)];
+    Update(kVelocity, -input.velocity(i), SquareOf(kOwnVelocityNoise), &axis);
+  }
 }
 
 std::optional<RelativePadState::Estimate> RelativePadState::At(Time time) const {
   if (!sighted_ || size_ == 0) return std::nullopt;
   Estimate estimate{axes_};
   Propagate(state_time_, std::max(time, state_time_), &estimate.axes);
+  const bool is_newest = ToSeconds(time - *sighted_) < kNewest_s;
+  for (int i = 0; i < 3; ++i) {
+    estimate.axes[static_cast<std::size_t>(i)].mean(kBias) +=
+        i == 2 || is_newest ? disturbance_(i) : steady_(i);
+  }
   // Into the axes of the heading. The two horizontal filters hardly differ in their covariance.
   const Eigen::Rotation2Dd turn(-heading_);
   for (const int index : {kWay, kVelocity, kAcceleration, kBias}) {
@@ -193,6 +268,16 @@ std::optional<std::size_t> RelativePadState::IndexAt(Time time) const {
   return index;
 }
 
+std::optional<Quaterniond> RelativePadState::LevelFromBodyAt(Time time) const {
+  const auto index = IndexAt(time);
+  if (!index) return std::nullopt;
+  return LevelFromBody(time, *index);
+}
+
+double RelativePadState::Nose() const {
+  return size_ > 0 ? LevelHeadingOf(InputAt(size_ - 1).level_from_body) : 0;
+}
+
 Quaterniond RelativePadState::LevelFromBody(Time time, std::size_t index) const {
   const Input& before = InputAt(index);
   if (index + 1 == size_) return before.level_from_body;
@@ -209,14 +294,16 @@ void RelativePadState::Propagate(Time from, Time to, std::array<Axis, 3>* axes) 
     const Vector3d acceleration =
         is_last ? InputAt(index).acceleration
                 : Vector3d((InputAt(index).acceleration + InputAt(index + 1).acceleration) / 2);
-    Step(ToSeconds(end - from), acceleration, axes);
+    const double gusts = measured_ && IsUnseen(from) ? kMeasuredGusts : kGusts;
+    Step(ToSeconds(end - from), acceleration, gusts, axes);
     from = end;
     ++index;
     if (is_last) return;
+    if (end == InputAt(index).time) CorrectVelocity(InputAt(index), axes);
   }
 }
 
-void RelativePadState::Step(double seconds, const Vector3d& acceleration,
+void RelativePadState::Step(double seconds, const Vector3d& acceleration, double gusts,
                             std::array<Axis, 3>* axes) const {
   for (; seconds > 0; seconds -= kSubStep_s) {
     const double dt = std::min(seconds, kSubStep_s);
@@ -234,7 +321,7 @@ void RelativePadState::Step(double seconds, const Vector3d& acceleration,
       axis.mean(kWay) -= dt * dt / 2 * acceleration(i);
       axis.mean(kVelocity) -= dt * acceleration(i);
       const double pad =
-          i < 2 ? (pad_moves_ ? kDriving : kGusts) : (pad_moves_ ? kLifting : kHovering);
+          i < 2 ? (pad_moves_ ? kDriving : gusts) : (pad_moves_ ? kLifting : kHovering);
       axis.covariance = change * axis.covariance * change.transpose();
       axis.covariance(kAcceleration, kAcceleration) += SquareOf(pad) * (1 - kept * kept);
       axis.covariance(kBias, kBias) += SquareOf(kBiasWalk) * dt;

@@ -30,7 +30,13 @@ class SwayingFlight {
   void Fly(double seconds) {
     for (const double end_s = s_ + seconds; s_ < end_s; s_ += kStep_s) {
       Move();
-      if (++steps_ % 5 == 0) state_.AddAttitude(now(), world_from_body_, rate_);
+      if (++steps_ % 5 == 0) {
+        state_.AddAttitude(now(), world_from_body_, rate_);
+        if (has_accelerometer) state_.AddAcceleration(now(), Shaken());
+        if (knows_velocity) {
+          state_.AddOwnVelocity(Eigen::AngleAxisd(compass_, Vector3d::UnitZ()) * -velocity_);
+        }
+      }
       if (steps_ % 15 != 0) continue;
       if (late_) state_.AddSight(late_time_, late_way_, kNoise_m * kNoise_m * Matrix3d::Identity());
       late_ = is_seen;
@@ -59,6 +65,8 @@ class SwayingFlight {
   Vector3d velocity() const { return velocity_; }
 
   bool is_seen = true;
+  bool knows_velocity = false;
+  bool has_accelerometer = false;
   double compass_rate = 0;  // rad/s by which its heading turns, and the UAV does not
   double noise = 1;         // of gust and bias
 
@@ -86,6 +94,12 @@ class SwayingFlight {
     acceleration.z() = 0;
     way_ += kStep_s * (velocity_ + kStep_s / 2 * acceleration);
     velocity_ += kStep_s * acceleration;
+    acceleration_ = -acceleration;
+  }
+  Vector3d Shaken() {
+    constexpr double kVibration = 0.3;
+    const Vector3d shake(random_.Normal(), random_.Normal(), random_.Normal());
+    return true_.conjugate() * (acceleration_ + kGravity * Vector3d::UnitZ()) + kVibration * shake;
   }
 
   State& state_;
@@ -94,6 +108,7 @@ class SwayingFlight {
   int steps_ = 0;
   Quaterniond true_ = Quaterniond::Identity(), world_from_body_ = Quaterniond::Identity();
   double compass_ = 0;
+  Vector3d acceleration_{0, 0, 0};  // of the UAV
   Vector3d rate_{0, 0, 0}, way_{0, 0, 0}, velocity_{0, 0, 0}, gust_{0, 0, 0}, bias_{0, 0, 0};
   bool late_ = false;
   Time late_time_;
@@ -133,6 +148,64 @@ TEST(RelativePadStateTest, CoastsByItsBiasWhenPadIsLost) {
   const double limit_m = 3 * before->DriftSigma(2);
   EXPECT_LT(flight.ErrorOfWay().head<2>().norm(), limit_m);
   EXPECT_LT(limit_m, 2.5);
+}
+
+TEST(RelativePadStateTest, AccelerometerKnowsGustsAsTheyCome) {
+  const auto error_of_velocity = [](bool has_accelerometer) {
+    double sum = 0;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      State state(false);
+      SwayingFlight flight(&state, seed);
+      flight.has_accelerometer = has_accelerometer;
+      flight.Fly(10);
+      const Vector3d error = state.At(flight.now())->velocity() - flight.velocity();
+      sum += error.head<2>().squaredNorm();
+    }
+    return std::sqrt(sum / 20);
+  };
+  EXPECT_LT(error_of_velocity(true), 0.85 * error_of_velocity(false));
+}
+
+TEST(RelativePadStateTest, BiasStaysWhenAccelerometerStops) {
+  State state(false);
+  SwayingFlight flight(&state, 4);
+  flight.noise = 0;
+  flight.has_accelerometer = true;
+  flight.Fly(10);
+  const Vector3d before = state.At(flight.now())->bias();
+  flight.has_accelerometer = false;
+  flight.Fly(0.5);
+  EXPECT_LT((state.At(flight.now())->bias() - before).head<2>().norm(), 0.25);
+}
+
+// Of a world that has turned by 80 degrees.
+TEST(RelativePadStateTest, OwnVelocityKeepsTheWayWhenPadIsLost) {
+  State state(false);
+  SwayingFlight flight(&state, 5);
+  flight.compass_rate = Radians(20);
+  flight.Fly(4);
+  flight.compass_rate = 0;
+  flight.Fly(16);
+  flight.is_seen = false;
+  flight.knows_velocity = true;
+  flight.Fly(8);
+  const auto estimate = state.At(flight.now());
+  EXPECT_LT(flight.ErrorOfWay().head<2>().norm(), 0.4);  // metres without it
+  EXPECT_LT((estimate->velocity() - flight.velocity()).head<2>().norm(), 0.3);
+  EXPECT_LT(estimate->Sigma(State::kVelocity), 0.3);
+  EXPECT_LT(estimate->ClimbSigma(), 0.3);
+}
+
+TEST(RelativePadStateTest, OwnVelocityDoesNotCountOverPadThatMayMove) {
+  State state(/*pad_moves=*/true);
+  SwayingFlight flight(&state, 5);
+  flight.Fly(10);
+  flight.is_seen = false;
+  flight.knows_velocity = true;
+  flight.Fly(3);
+  const auto estimate = state.At(flight.now());
+  EXPECT_GT(estimate->Sigma(State::kVelocity), 0.5);
+  EXPECT_LT(estimate->ClimbSigma(), 0.4);
 }
 
 // The attitude's world turns by 40 degrees: the way to the pad, against the nose, does not.

@@ -57,7 +57,8 @@ FlightProgram::FlightProgram(const FlightOptions& options, const FlightParts& pa
   if (parts.without_position) {
     no_position_.emplace(options, *parts.without_position, parts.autopilot, parts.connection,
                          report_);
-  } else if (parts.guidance) {
+  }
+  if (parts.guidance && !IsWithoutPosition()) {
     guided_.emplace(options, tracker_, parts.guidance, !parts.source_has_poses, parts.autopilot,
                     parts.connection, report_);
     if (parts.sends_pad_position) guided_->set_position_by_pad();
@@ -387,7 +388,7 @@ void FlightProgram::SendTarget(Time now) {
   const TrackSnapshot& track = track_.Get();
   if (sender_) {
     if (guided_) sender_->set_may_stand(!guided_->is_flying());
-    if (no_position_) sender_->set_may_stand(!no_position_->is_flying());
+    if (IsWithoutPosition()) sender_->set_may_stand(!no_position_->is_flying());
     if (sender_->Send(now, track, poses_)) latency_.step(kMessage).Add(Now() - track.captured);
     phase_ = sender_->phase();
     height_m_ = sender_->height_m();
@@ -398,9 +399,13 @@ void FlightProgram::SendTarget(Time now) {
 
 void FlightProgram::Fly(Time now, const TrackSnapshot& track) {
   if (no_position_) {
+    if (guided_) no_position_->WatchPosition(now, guided_->is_flying() && !guided_->is_at_deck());
     if (no_position_->Fly(now, track)) latency_.step(kSetPoint).Add(Now() - track.captured);
-    guidance_phase_ = no_position_->phase();
-    set_points_ = no_position_->set_points();
+    if (IsWithoutPosition()) {
+      guidance_phase_ = no_position_->phase();
+      set_points_ = no_position_->set_points();
+      return;
+    }
   }
   if (!guided_) return;
   guided_->Take(order_);
@@ -417,7 +422,7 @@ void FlightProgram::Fly(Time now, const TrackSnapshot& track) {
 }
 
 GuardTask FlightProgram::TaskOfTheGuard(Time now) const {
-  if (no_position_) return TaskOfGuard(*no_position_, *parts_.autopilot);
+  if (IsWithoutPosition()) return TaskOfGuard(*no_position_, *parts_.autopilot);
   return TaskOfGuard(*guided_, *parts_.autopilot, now);
 }
 
@@ -432,7 +437,8 @@ Duration FlightProgram::VideoDelay() const {
 // A position that comes from the pad ends with its sight: the autopilot's own guess goes on for
 // seconds. Where it has none, what it sends is a guess from the first.
 void FlightProgram::TakeAutopilotPose(const PoseSample& pose) {
-  if (parts_.source_has_poses || no_position_) return;
+  if (IsWithoutPosition()) return no_position_->TakePose(pose);
+  if (parts_.source_has_poses) return;
   if (pad_position_ && !pad_position_->is_known(Now())) return;
   poses_.Add(pose);
   TakePose(pose);
@@ -445,6 +451,11 @@ void FlightProgram::TakeAutopilotAttitude(const PoseSample& attitude) {
 
 void FlightProgram::TakeAutopilotAcceleration(Time time, const Eigen::Vector3d& acceleration) {
   if (pad_position_) pad_position_->TakeAcceleration(time, acceleration);
+  if (no_position_) no_position_->TakeAcceleration(time, acceleration);
+}
+
+void FlightProgram::TakeAutopilotClimb(double climb_mps) {
+  if (no_position_) no_position_->TakeClimb(climb_mps);
 }
 
 void FlightProgram::TakeAutopilotGimbal(const GimbalSample& report) {
@@ -489,7 +500,7 @@ void FlightProgram::ShowAutopilot(Time now) {
   const std::lock_guard lock(autopilot_mutex_);
   AutopilotState& state = autopilot_state_;
   UpdateState(autopilot, now, &state);
-  if (!guided_) return;
+  if (!guided_ || IsWithoutPosition()) return;
   const FollowingDemand& demand = guided_->demand();
   LimitsInUse& limits = state.limits.emplace();
   limits.lean_share = demand.lean_share();
@@ -525,11 +536,16 @@ LandingWatchInput FlightProgram::LandingInput(Time now) {
     const TurnState target = Propagate(track.target->motion, ahead_s, noise_);
     input.pattern = {target.position(), target.covariance.topLeftCorner<3, 3>()};
   }
-  if (no_position_) {
+  if (IsWithoutPosition()) {
     input.has_contact = input.has_contact || no_position_->phase() == GuidancePhase::kLanded;
     if (no_position_->is_flying()) gave_up_.clear();
+    const bool is_coming_down = no_position_->phase() == GuidancePhase::kCommit;
+    if (no_position_->is_flying() || is_coming_down) {
+      input.heading_error = no_position_->heading_error();
+    }
     if (const std::string reason = no_position_->gave_up(); !reason.empty()) gave_up_ = reason;
     input.gave_up = gave_up_;
+    return input;
   }
   if (!guided_) return input;
   input.has_contact = input.has_contact || guided_->phase() == GuidancePhase::kLanded;

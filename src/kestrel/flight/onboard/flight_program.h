@@ -120,6 +120,8 @@ class FlightProgram {
   void TakeAutopilotAttitude(const PoseSample& attitude);
   // Takes what the autopilot's accelerometer measures, as above.
   void TakeAutopilotAcceleration(Time time, const Eigen::Vector3d& acceleration);
+  // Takes how fast the UAV climbs (m/s), as above.
+  void TakeAutopilotClimb(double climb_mps);
   // Takes a report of the gimbal by the autopilot, as above.
   void TakeAutopilotGimbal(const GimbalSample& report);
   // Takes a report of the camera's zoom, in the same way.
@@ -146,6 +148,7 @@ class FlightProgram {
   void Point(Time now);
   void SendTarget(Time now);
   void Fly(Time now, const TrackSnapshot& track);
+  bool IsWithoutPosition() const { return no_position_ && no_position_->is_in_charge(); }
   GuardTask TaskOfTheGuard(Time now) const;
   void WatchFlight(Time now);
   LandingWatchInput LandingInput(Time now);
@@ -182,7 +185,7 @@ class FlightProgram {
   std::optional<TargetSender> sender_;  // nothing: there is nothing to land on
   std::optional<PadPosition> pad_position_;
   std::optional<GuidedFlight> guided_;
-  std::optional<NoPositionFlight> no_position_;  // instead of guided_
+  std::optional<NoPositionFlight> no_position_;  // instead of guided_, or its reserve
   std::optional<PointedGimbal> gimbal_;
   std::atomic<bool> resumes_pointing_{false};  // set by any thread
   std::optional<TrackingCamera> camera_;       // its marks are applied by the vision's thread

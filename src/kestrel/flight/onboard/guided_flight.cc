@@ -116,6 +116,7 @@ void GuidedFlight::WatchMode(const GuidanceInput& input, Time now) {
   }
   if (!is_mode) is_given_ = is_begun_ = false;
   was_mode_ = is_mode;
+  ReportOtherMode(is_mode);
   if (was_armed_ && !input.is_armed) guidance_->Rearm();
   was_armed_ = input.is_armed;
   if (!is_begun_ && now >= permission_due_) CheckPermission(input, now);
@@ -129,6 +130,15 @@ void GuidedFlight::WatchMode(const GuidanceInput& input, Time now) {
   is_given_ = false;
   if (const auto home = HomeOf(autopilot_)) guidance_->SetFenceCenter(*home);
   if (!is_begun_) Notify(mavlink::kSeverityWarning, "guidance refused: " + refusal_);
+}
+
+// ArduCopter's mode for a flight without a position, in which the UAV drifts.
+void GuidedFlight::ReportOtherMode(bool is_mode) {
+  const bool is_other = !is_mode && IsGuidedByLeanMode(kind_, autopilot_.custom_mode());
+  if (is_other && !was_other_mode_) {
+    Notify(mavlink::kSeverityWarning, "GUIDED_NOGPS is for --no-position: give GUIDED");
+  }
+  was_other_mode_ = is_other;
 }
 
 void GuidedFlight::CheckPermission(const GuidanceInput& input, Time now) {

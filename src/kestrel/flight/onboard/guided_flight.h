@@ -84,6 +84,7 @@ class GuidedFlight {
   void KnowAutopilot(Time now);
   void PredictOthers(Time now);
   void WatchMode(const GuidanceInput& input, Time now);
+  void ReportOtherMode(bool is_mode);
   void CheckPermission(const GuidanceInput& input, Time now);
   GuidanceInput Input(Time now, const TrackSnapshot& track, const PoseHistory& poses) const;
   std::optional<Eigen::Vector2d> Box() const;
@@ -116,6 +117,7 @@ class GuidedFlight {
   SendSchedule schedule_;
 
   bool was_mode_ = false;  // GUIDED or OFFBOARD was on
+  bool was_other_mode_ = false;
   bool is_given_ = false;  // the pilot has given the mode, and guidance has not begun yet
   bool is_begun_ = false;
   bool was_armed_ = false;

@@ -192,6 +192,16 @@ TEST_F(GuidedFlightTest, StreamsForPx4UntilModeIsLeft) {
   EXPECT_GT(SetPointsDuring(1), 30) << "a new flight";
 }
 
+TEST_F(GuidedFlightTest, ModeWithoutPositionIsReportedOnce) {
+  Start(mavlink::kAutopilotArduPilot);
+  Pass(2);
+  heartbeat_.custom_mode = CustomModeOf(AutopilotKind::kArduPilot, FlightMode::kGuidedByLean);
+  EXPECT_EQ(SetPointsDuring(2), 0);
+  const std::string line = "GUIDED_NOGPS is for --no-position: give GUIDED";
+  ASSERT_THAT(reported_, HasSubstr(line));
+  EXPECT_EQ(reported_.find(line), reported_.rfind(line));
+}
+
 TEST_F(GuidedFlightTest, KnownDelayOfVideoIsNoAgeOfSight) {
   double age_s = 0;
   Start(mavlink::kAutopilotArduPilot, {}, [&](const GuidanceOptions& guidance) {

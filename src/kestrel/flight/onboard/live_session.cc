@@ -283,11 +283,14 @@ AutopilotOptions Flight::WantedOfAutopilot() const {
   constexpr double kMode_hz = 20;
   if (options_.guides && wanted.mode_rate_hz == 0) wanted.mode_rate_hz = kMode_hz;
   if (live_.true_pose) wanted.wants_true_pose = true;
-  wanted.wants_acceleration = options_.sends_pad_position;
-  wanted.wants_sticks = options_.without_position.has_value();
+  const bool is_without = options_.without_position.has_value();
+  wanted.wants_acceleration = options_.sends_pad_position || is_without;
+  wanted.wants_sticks = wanted.wants_climb = is_without;
   if (const auto& gimbal = live_.calibration.gimbal) {
     if (options_.without_position) {
-      throw InputError("--no-position: the camera is on a gimbal, expected one that is fixed");
+      throw InputError(
+          "a flight without a position (--no-position, --floor): the camera is on a gimbal, "
+          "expected one that is fixed");
     }
     wanted.gimbal_device_id = gimbal->device_id;
     wanted.points_gimbal = Points();
@@ -330,6 +333,10 @@ void Flight::OpenAutopilot() {
                                if (program_) {
                                  program_->TakeAutopilotAcceleration(time, acceleration);
                                }
+                             },
+                         .climb =
+                             [this](double climb_mps) {
+                               if (program_) program_->TakeAutopilotClimb(climb_mps);
                              },
                      });
 }

@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "kestrel/comms/mavlink/mavlink_enums.h"
 #include "kestrel/comms/mavlink/set_point_message.h"
-#include "kestrel/core/base/error.h"
 #include "kestrel/core/geometry/rigid_transform.h"
 #include "kestrel/flight/guidance/guidance.h"
 #include "kestrel/flight/onboard/guidance_permission.h"
@@ -19,7 +19,9 @@ namespace kestrel {
 namespace {
 
 constexpr double kAttitudeAge_s = 0.5;  // after so long without one the link is away
+constexpr double kRangeAge_s = 0.5;     // of the range finder's newest distance
 constexpr Duration kCheckPeriod = std::chrono::milliseconds(500);
+constexpr Duration kHandOver = std::chrono::milliseconds(1500);  // longest wait for GUIDED_NOGPS
 constexpr Duration kRepeatPeriod = std::chrono::milliseconds(300);
 constexpr std::string_view kArduPilotOptions = "GUID_OPTIONS";
 constexpr unsigned kTakesThrust = 8;  // of GUID_OPTIONS: thrust is no climb rate
@@ -38,12 +40,7 @@ NoPositionFlight::NoPositionFlight(const FlightOptions& options, const RelativeJ
       report_(std::move(report)),
       pad_(job.pad_moves),
       guidance_(std::in_place, options.guidance, job, /*streams=*/false),
-      schedule_(options.rate_hz) {
-  if (options.guidance.touchdown_heading != "any") {
-    throw InputError(
-        "guidance.touchdown_heading: without a position the heading stays, expected any");
-  }
-}
+      schedule_(options.rate_hz) {}
 
 void NoPositionFlight::TakeAttitude(const PoseSample& attitude) {
   const Eigen::Vector3d rate =
@@ -54,18 +51,55 @@ void NoPositionFlight::TakeAttitude(const PoseSample& attitude) {
   heading_ = HeadingOf(rotation);
 }
 
+void NoPositionFlight::TakeAcceleration(Time time, const Eigen::Vector3d& acceleration) {
+  pad_.AddAcceleration(time, acceleration);
+}
+
+void NoPositionFlight::TakeClimb(double climb_mps) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  pad_.AddOwnVelocity({kUnknown, kUnknown, climb_mps});
+}
+
+// Without such a measurement its velocity is a guess.
+void NoPositionFlight::TakePose(const PoseSample& pose) {
+  const auto& estimator = autopilot_.status().estimator();
+  if (!estimator || !pose.motion || (estimator->flags & mavlink::kEstimatorConstantPosition) != 0 ||
+      (estimator->flags & mavlink::kEstimatorVelocityHorizontal) == 0) {
+    return;
+  }
+  pad_.AddOwnVelocity(pose.motion->velocity_in_world);
+}
+
+void NoPositionFlight::WatchPosition(Time now, bool is_flown) {
+  KnowAutopilot(now);
+  const bool is_lost = loss_.IsLost(autopilot_, now);
+  if (is_in_charge() || !is_lost || !is_flown || kind_ == AutopilotKind::kUnknown) return;
+  const RelativeInput input = Input(now);
+  if (!RelativeGuidance::CanBegin(input) || !WhyNot(now).empty()) return;
+  took_over_ = now;
+  Notify(mavlink::kSeverityWarning, "the position is lost: lands by the pad alone");
+  guidance_->Update(input);  // it has not begun
+  was_mode_ = is_given_ = IsMode();
+  was_armed_ = was_refused_mode_ = true;
+  if (!was_mode_) autopilot_.RequestMode(FlightMode::kGuidedByLean);
+}
+
+void NoPositionFlight::AddSight(Time now, const TrackSnapshot& track) {
+  const TrackSnapshot::Sight& sight = *track.sight;
+  reported_frame_ = sight.time;
+  const RigidTransform body_from_target = sight.target_from_body.Inverse();
+  if (!pad_.AddSight(sight.time, body_from_target.translation, sight.covariance)) return;
+  delay_s_ = std::min(ToSeconds(now - sight.time), GuidanceInput::kMostVideoDelay_s);
+  if (const auto level_from_body = pad_.LevelFromBodyAt(sight.time)) {
+    pad_heading_.Add(sight.time, HeadingOf(*level_from_body * body_from_target.rotation),
+                     sight.heading_sigma, sight.heading_symmetry);
+  }
+}
+
 bool NoPositionFlight::Fly(Time now, const TrackSnapshot& track) {
   const bool is_news = track.sight && track.sight->time != reported_frame_;
-  if (is_news) {
-    reported_frame_ = track.sight->time;
-    const bool is_used =
-        pad_.AddSight(track.sight->time, track.sight->target_from_body.Inverse().translation,
-                      track.sight->covariance);
-    if (is_used) {
-      delay_s_ = std::min(ToSeconds(now - track.sight->time), GuidanceInput::kMostVideoDelay_s);
-    }
-  }
-  if (!schedule_.IsDue(now, is_news)) return false;
+  if (is_news) AddSight(now, track);
+  if (!is_in_charge() || !schedule_.IsDue(now, is_news)) return false;
   KnowAutopilot(now);
   if (kind_ == AutopilotKind::kUnknown) return false;
   RelativeInput input = Input(now);
@@ -92,7 +126,7 @@ void NoPositionFlight::KnowAutopilot(Time now) {
   guidance_.emplace(options_.guidance, job_, /*streams=*/is_px4);
   permission_due_ = now;
   was_mode_ = IsMode();
-  if (was_mode_ && autopilot_.is_armed()) {
+  if (is_in_charge() && was_mode_ && autopilot_.is_armed()) {
     Notify(mavlink::kSeverityWarning,
            fmt::format("{} was on before: leave it and give it again", autopilot_.mode_name()));
   }
@@ -126,13 +160,14 @@ void NoPositionFlight::WatchMode(Time now, bool is_seen) {
     Notify(mavlink::kSeverityWarning, "GUIDED needs a position: give GUIDED_NOGPS");
   }
   was_refused_mode_ = is_other;
+  const bool is_stuck = is_other && took_over_ && now - *took_over_ > kHandOver;
+  if (is_stuck) Request(GuidanceRequest::kLand, now);
   if (!is_given_ || is_begun_ || !is_flying) return;
   is_given_ = false;
   refusal_ = WhyNot(now);
   // Guidance then ends the mode, in which the UAV would drift.
   if (!refusal_.empty()) Notify(mavlink::kSeverityWarning, "guidance refused: " + refusal_);
   is_begun_ = true;
-  yaw_ = heading_;
   // The autopilot's own height control flew so far, and its thrust was not commanded.
   if (kind_ == AutopilotKind::kPx4 && is_seen) pad_.ForgetThrust();
 }
@@ -167,6 +202,11 @@ RelativeInput NoPositionFlight::Input(Time now) {
   if (pad_.sighted()) {
     input.pad_age_s = std::max(ToSeconds(now - *pad_.sighted()) - delay_s_, 0.0);
   }
+  if (const auto range = autopilot_.range(); range && ToSeconds(now - range->time) < kRangeAge_s) {
+    input.range_m = range->distance_m;
+  }
+  input.pad_heading = pad_heading_.At(now);
+  input.nose = pad_.Nose();
   input.is_armed = autopilot_.is_armed();
   input.is_landed = autopilot_.landed_state() == LandedState::kOnGround;
   input.is_link_up = ToSeconds(now - attitude_time_) < kAttitudeAge_s;
@@ -181,7 +221,7 @@ bool NoPositionFlight::Send(const RelativeSetPoint& set_point, Time now) {
   LeanSetPoint sent;
   sent.acceleration = world_from_level * set_point.acceleration;
   sent.climb_mps = set_point.climb_mps;
-  sent.yaw = is_begun_ ? yaw_ : heading_;
+  sent.yaw = heading_ + set_point.turn;
   const AutopilotLimits limits = LimitsOf(autopilot_);
   if (!SendSetPoint(sent, limits.max_climb_mps.value_or(kClimb_mps),
                     limits.max_sink_mps.value_or(kSink_mps), autopilot_, now, connection_)) {

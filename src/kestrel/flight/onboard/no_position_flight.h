@@ -10,9 +10,11 @@
 #include "kestrel/comms/mavlink/connection.h"
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/poses/pose_history.h"
+#include "kestrel/flight/guidance/pad_heading.h"
 #include "kestrel/flight/guidance/relative_guidance.h"
 #include "kestrel/flight/guidance/relative_pad_state.h"
 #include "kestrel/flight/onboard/flight_options.h"
+#include "kestrel/flight/onboard/position_loss.h"
 #include "kestrel/flight/onboard/refusal_warning.h"
 #include "kestrel/flight/onboard/send_schedule.h"
 #include "kestrel/flight/session/track_snapshot.h"
@@ -21,7 +23,8 @@ namespace kestrel {
 
 // Flies the UAV over a pad and onto it while the autopilot has no position, when the pilot gives it
 // GUIDED_NOGPS (ArduCopter) or OFFBOARD (PX4): by lean and climb, from where frames show the pad
-// and from the autopilot's attitude. Used by the link's thread only.
+// and from the autopilot's attitude. As a reserve it takes over from guided flight when the
+// autopilot loses its position over the pad. Used by the link's thread only.
 class NoPositionFlight {
  public:
   // 'report': receives lines for the user. Throws InputError when the options are not valid.
@@ -30,6 +33,17 @@ class NoPositionFlight {
 
   // Takes the autopilot's attitude and turn, on the local clock.
   void TakeAttitude(const PoseSample& attitude);
+  // Takes what the autopilot's accelerometer measures (FLU, m/s^2), on the local clock.
+  void TakeAcceleration(Time time, const Eigen::Vector3d& acceleration);
+  // Takes how fast the UAV climbs by the autopilot's estimate (m/s).
+  void TakeClimb(double climb_mps);
+  // Takes a pose of an autopilot that measures its velocity, as by optical flow.
+  void TakePose(const PoseSample& pose);
+  // Takes over at 'now' if this is the reserve, the position is lost and the pad in view.
+  // 'is_flown': the UAV flies by set-points, and is not on the deck.
+  void WatchPosition(Time now, bool is_flown);
+  // False: it is the reserve, and has not taken over.
+  bool is_in_charge() const { return !job_.is_reserve || took_over_.has_value(); }
   // Sends what is due at 'now'; true when it was the first set-point of a new frame.
   bool Fly(Time now, const TrackSnapshot& track);
 
@@ -40,11 +54,14 @@ class NoPositionFlight {
   bool is_flying() const { return guidance_->is_active() && !is_at_deck(); }
   int set_points() const { return set_points_; }  // sent
   bool has_given_up() const { return guidance_->has_given_up(); }
+  // See Guidance.
+  std::optional<double> heading_error() const { return guidance_->heading_error(); }
   // Why guidance gave up; empty: it flies, the pilot has taken over since, or it has not begun.
   std::string gave_up() const { return has_given_up() ? reported_reason_ : ""; }
 
  private:
   void KnowAutopilot(Time now);
+  void AddSight(Time now, const TrackSnapshot& track);
   void WatchMode(Time now, bool is_seen);
   bool IsMode() const;
   std::string WhyNot(Time now) const;
@@ -60,14 +77,16 @@ class NoPositionFlight {
   Connection* connection_;
   std::function<void(const std::string&)> report_;
   RelativePadState pad_;
+  PadHeading pad_heading_;
   std::optional<RelativeGuidance> guidance_;
   AutopilotKind kind_ = AutopilotKind::kUnknown;
   SendSchedule schedule_;
+  PositionLoss loss_;
+  std::optional<Time> took_over_;
 
   Time attitude_time_{};
   double heading_ = 0;  // by the autopilot, rad from east to north
   double delay_s_ = 0;  // of the newest frame that was used
-  double yaw_ = 0;      // where the nose is to point
   Time reported_frame_{};
   bool was_mode_ = false;
   bool is_given_ = false;  // the pilot has given the mode, and guidance has not begun yet

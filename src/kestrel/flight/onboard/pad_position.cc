@@ -86,7 +86,7 @@ void PadPosition::BeginWith(Time now) {
   restarts_ = autopilot_.restarts();
   heard_ = now;
   first_.reset();
-  is_origin_settled_ = was_checked_ = false;
+  is_origin_settled_ = was_checked_ = was_clock_missed_ = false;
 }
 
 bool PadPosition::is_seen(Time now) const { return known_ && ToSeconds(now - *known_) < kKnown_s; }
@@ -150,6 +150,13 @@ void PadPosition::ReportState(Time now) {
     if (const std::string why = WhyUnused(now); !why.empty()) {
       Notify(mavlink::kSeverityWarning, "the autopilot does not use the pad's position: " + why);
     }
+  }
+  const bool has_clock = autopilot_.time_sync().is_known();
+  if (!has_clock && !std::exchange(was_clock_missed_, now - *heard_ > kUsePatience) &&
+      was_clock_missed_) {
+    Notify(mavlink::kSeverityWarning,
+           "the autopilot's clock is not known: no position is sent; expected a line on which "
+           "TIMESYNC is answered");
   }
   if (!is_seen(now)) is_used_ = false;
   if (const bool knows = is_known(now); knows != was_known_) {

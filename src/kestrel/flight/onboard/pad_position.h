@@ -65,6 +65,7 @@ class PadPosition {
   bool requested_parameters_ = false;
   bool is_origin_settled_ = false;
   bool was_checked_ = false;
+  bool was_clock_missed_ = false;
   bool was_known_ = false;
   bool is_used_ = false;    // the estimate was good while the pad was seen
   bool is_moving_ = false;  // the pad, noticed in this flight

@@ -58,8 +58,8 @@ struct SessionOptions {
   // Sends the UAV's place over the pad to the autopilot as its position: it needs no other. The pad
   // stands. Needs a task with a pad, and an autopilot.
   bool sends_pad_position = false;
-  // Flies over the pad, and onto it, without any position of the autopilot; needs 'guides' and a
-  // task with a pad.
+  // Flies over the pad, and onto it, without any position of the autopilot, or once that is lost;
+  // needs 'guides' and a task with a pad.
   std::optional<RelativeJob> without_position = {};
   // The video in which ground stations mark what is followed; nothing: that of the source.
   std::optional<CameraStream> stream = {};

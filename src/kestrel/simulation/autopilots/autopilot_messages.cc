@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/simulation/autopilots/autopilot_messages.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -213,6 +214,18 @@ mavlink::SysStatus SysStatusOf(bool has_low_battery, bool has_receiver) {
   message.voltage_battery = has_low_battery ? 13600 : 15400;
   message.current_battery = 1800;
   message.battery_remaining = has_low_battery ? 10 : 80;
+  return message;
+}
+
+mavlink::DistanceSensor RangeOf(double distance_m, std::uint32_t boot_ms) {
+  constexpr int kLeast_cm = 10, kMost_cm = 4000;
+  const double reported_cm = std::clamp(100 * distance_m, 0.0, kMost_cm + 1.0);
+  mavlink::DistanceSensor message;
+  message.time_boot_ms = boot_ms;
+  message.min_distance = kLeast_cm;
+  message.max_distance = kMost_cm;
+  message.current_distance = static_cast<std::uint16_t>(std::lround(reported_cm));
+  message.orientation = mavlink::kOrientationDown;
   return message;
 }
 

@@ -27,7 +27,8 @@ using AutopilotMessage = std::variant<
     mavlink::AutopilotVersion, mavlink::ParamValue, mavlink::CommandAck, mavlink::SysStatus,
     mavlink::EkfStatusReport, mavlink::EstimatorStatus, mavlink::RcChannels, mavlink::RawImu,
     mavlink::HighresImu, mavlink::GimbalManagerInformation, mavlink::GimbalManagerStatus,
-    mavlink::GimbalDeviceAttitudeStatus, mavlink::CameraFovStatus>;
+    mavlink::GimbalDeviceAttitudeStatus, mavlink::CameraFovStatus, mavlink::VfrHud,
+    mavlink::GpsRawInt, mavlink::DistanceSensor>;
 
 // All messages that it handles.
 using CompanionMessage =
@@ -68,6 +69,9 @@ mavlink::GpsGlobalOrigin GlobalOriginOf(const GlobalOrigin& origin, std::int64_t
 
 // State of battery and sensors, with a low battery or a good one.
 mavlink::SysStatus SysStatusOf(bool has_low_battery, bool has_receiver);
+
+// A range finder that looks down, from 0.1 to 40 m.
+mavlink::DistanceSensor RangeOf(double distance_m, std::uint32_t boot_ms);
 
 // Flags of EKF_STATUS_REPORT and of ESTIMATOR_STATUS, with and without a position.
 std::uint16_t EstimatorFlags(bool has_position);

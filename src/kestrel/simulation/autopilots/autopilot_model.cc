@@ -92,6 +92,7 @@ AutopilotModel::AutopilotModel(AutopilotFirmware firmware, const AutopilotModelO
       world_(*world),
       send_(std::move(send)),
       random_(seed),
+      shakes_(~seed),
       parameters_(ParametersOf(firmware, options)),
       uav_(MakeUav(WithTiltOf(firmware, parameters_, options.uav), options.pilot, *world, start,
                    &random_)),
@@ -99,7 +100,8 @@ AutopilotModel::AutopilotModel(AutopilotFirmware firmware, const AutopilotModelO
       pilot_(options.pilot, *world, start),
       detector_(firmware, parameters_),
       return_(firmware, parameters_),
-      streams_(firmware, options.has_gimbal, options.zoom.is_there()),
+      streams_(firmware, options.has_gimbal, options.zoom.is_there(),
+               options.estimate.has_range_finder),
       attitude_error_(options.estimate.tilt_memory_s),
       start_(start),
       stepped_to_(start),
@@ -110,8 +112,8 @@ AutopilotModel::AutopilotModel(AutopilotFirmware firmware, const AutopilotModelO
   };
   if (is_px4()) {
     landing_ = std::make_unique<Px4Landing>(parameters_, px4_clock_, announce);
-    guided_ =
-        std::make_unique<Px4Offboard>(parameters_, options.estimate.hover_thrust_error, announce);
+    guided_ = std::make_unique<Px4Offboard>(parameters_, options.estimate.hover_thrust_error,
+                                            options.estimate.battery_sag / 60, announce);
     custom_mode_ = CustomModeOf(kind(), FlightMode::kHold);
   } else {
     landing_ = std::make_unique<ArduPilotLanding>(parameters_, announce);
@@ -147,7 +149,7 @@ bool AutopilotModel::IsWithin(Time now, double after_s, double for_s) const {
 }
 
 bool AutopilotModel::HasPosition(Time now) const {
-  if (external_) return external_->has_position();
+  if (external_) return external_->has_position() || options_.estimate.has_flow;
   return !IsWithin(now, options_.estimate.lost_after_s, std::numeric_limits<double>::infinity());
 }
 
@@ -172,6 +174,8 @@ void AutopilotModel::StepOnce(Time now) {
   FollowPilot(now);
   WatchSetPoints(now);
   ObserveContact(now);
+  const bool has_space = world_.options().room.HasSpaceAt(uav_.pose().world_from_body.translation);
+  result_.has_left_room = result_.has_left_room || !has_space;
   DisarmAfterLanding(now);
   if (IsSilentAfterReboot(now)) return;
   streams_.SendDue(OwnMicroseconds(now), [&](std::uint32_t id) { SendMessage(id, now); });
@@ -190,6 +194,10 @@ void AutopilotModel::ObserveFlight(Time now) {
   if (jumps) state_.pose.world_from_body.translation.x() += faults.jump_m;
   // It knows when its estimate was reset: the held place moves along.
   if (jumps && !std::exchange(has_jumped_, true)) hold_.x() += faults.jump_m;
+  if (!external_ &&
+      IsWithin(now, faults.gnss_lost_after_s, std::numeric_limits<double>::infinity())) {
+    external_.emplace(firmware_, parameters_).BeginKnown(state_.boot_us);
+  }
   if (external_) {
     UseExternalNavigation();
     MistakeAttitude(now);
@@ -245,7 +253,8 @@ void AutopilotModel::FollowPilot(Time now) {
   if (pilot_.LosesBattery(now)) EnterBatteryFailsafe(now);
   auto mode = pilot_.Switch(now, pilot_flies_);
   // Without a position there is another switch position for set-points.
-  if (mode == FlightMode::kGuided && LacksPosition()) mode = FlightMode::kGuidedByLean;
+  const bool has_place = !external_ || external_->has_position();
+  if (mode == FlightMode::kGuided && !has_place) mode = FlightMode::kGuidedByLean;
   if (mode) EnterMode(*mode, Wish::kPilot, now);
 }
 

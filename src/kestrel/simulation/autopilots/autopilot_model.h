@@ -110,8 +110,8 @@ class AutopilotModel {
   // True within 'for_s' from 'after_s' after the start; false for a negative 'after_s'.
   bool IsWithin(Time now, double after_s, double for_s) const;
   bool HasPosition(Time now) const;
-  // Without GNSS, and without ODOMETRY of late.
-  bool LacksPosition() const { return external_ && !external_->has_position(); }
+  // Without GNSS and flow, and without ODOMETRY of late.
+  bool LacksPosition() const { return external_ && !HasPosition(state_.time); }
   bool NeedsPosition(std::uint32_t custom_mode) const;
   void UseExternalNavigation();
   void MistakeAttitude(Time now);
@@ -120,6 +120,8 @@ class AutopilotModel {
   // autopilot_reports.cc: sent messages.
   bool SendMessage(std::uint32_t id, Time now);
   bool SendPose(std::uint32_t id, Time now);
+  double HeightAboveGround(Time now) const;
+  Eigen::Vector3d Vibration();
   bool SendPlace(std::uint32_t id, Time now);
   bool SendMount(std::uint32_t id) const;
   bool SendView(std::uint32_t id, Time now) const;
@@ -157,6 +159,7 @@ class AutopilotModel {
   VehicleWorld& world_;
   Send send_;
   Random random_;
+  Random shakes_;  // of the accelerometer
   AutopilotParameters parameters_;
   SimulatedUav uav_;
   NavigationSensor navigation_;

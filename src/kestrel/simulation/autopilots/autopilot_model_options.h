@@ -25,10 +25,15 @@ struct EstimateFaultOptions {
   double rest_climb_mps = 0;
   bool has_home = true;
   bool has_gnss = true;
+  double gnss_lost_after_s = -1;
+  bool has_flow = false;
+  bool has_range_finder = false;
   double tilt_memory_s = 30;
   double turn_after_s = -1;
   double turn_deg = 40;
   double hover_thrust_error = 0;
+  double battery_sag = 0;
+  double vibration = 0.3;
 
   static void Visit(auto& self, auto&& visit) {
     visit("silent_after_s", self.silent_after_s, Range{-1, 10000},
@@ -43,6 +48,10 @@ struct EstimateFaultOptions {
           "error of the vertical speed while the UAV stands; its height drifts by it");
     visit("has_gnss", self.has_gnss,
           "the autopilot has a position by itself; otherwise only by ODOMETRY");
+    visit("gnss_lost_after_s", self.gnss_lost_after_s, Range{-1, 10000},
+          "time at which it has no GNSS any more: it guesses for some seconds; negative: never");
+    visit("has_flow", self.has_flow, "without GNSS it knows its velocity, by optical flow");
+    visit("has_range_finder", self.has_range_finder, "it reports the distance to what is below");
     visit("tilt_memory_s", self.tilt_memory_s, Range{1, 1e6},
           "time in which it takes an acceleration that lasts for tilt, without a position");
     visit(
@@ -51,6 +60,10 @@ struct EstimateFaultOptions {
     visit("turn_deg", self.turn_deg, Range{-180, 180}, "angle of that turn, from east to north");
     visit("hover_thrust_error", self.hover_thrust_error, Range{-0.5, 0.5},
           "part by which PX4 takes the thrust that hovers for too high");
+    visit("battery_sag", self.battery_sag, Range{0, 0.5},
+          "part of PX4's thrust that is lost in a minute of OFFBOARD");
+    visit("vibration", self.vibration, Range{0, 20},
+          "[m/s^2] noise of what its accelerometer reports, standard deviation");
     visit("has_home", self.has_home, "the autopilot has a home position to return to");
   }
 };

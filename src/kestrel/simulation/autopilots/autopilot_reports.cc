@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -103,11 +104,24 @@ bool AutopilotModel::SendPose(std::uint32_t id, Time now) {
       return true;
     }
     case mavlink::RawImu::kId:
-      send_(RawImuOf(acceleration_, state_.boot_us));
+      send_(RawImuOf(acceleration_ + Vibration(), state_.boot_us));
       return true;
     case mavlink::HighresImu::kId:
-      send_(HighresImuOf(acceleration_, state_.boot_us));
+      send_(HighresImuOf(acceleration_ + Vibration(), state_.boot_us));
       return true;
+    case mavlink::GpsRawInt::kId:
+      send_(mavlink::GpsRawInt{.fix_type = static_cast<std::uint8_t>(external_ ? 1 : 3)});
+      return true;
+    case mavlink::DistanceSensor::kId:
+      send_(RangeOf(HeightAboveGround(now), own_ms));
+      return true;
+    case mavlink::VfrHud::kId: {
+      mavlink::VfrHud message;
+      message.alt = static_cast<float>(pose.world_from_body.translation.z());
+      message.climb = static_cast<float>(pose.motion->velocity_in_world.z());
+      if (!is_silent) send_(message);
+      return true;
+    }
     case mavlink::LocalPositionNed::kId:
       if (!is_silent && has_position) send_(LocalPositionOf(pose, own_ms));
       return true;
@@ -125,6 +139,21 @@ bool AutopilotModel::SendPose(std::uint32_t id, Time now) {
     default:
       return false;
   }
+}
+
+Eigen::Vector3d AutopilotModel::Vibration() {
+  return options_.estimate.vibration *
+         Eigen::Vector3d(shakes_.Normal(), shakes_.Normal(), shakes_.Normal());
+}
+
+// Along the body's axis, of what the vehicle's board or the ground is.
+double AutopilotModel::HeightAboveGround(Time now) const {
+  const RigidTransform& body = uav_.pose().world_from_body;
+  const RigidTransform pattern = world_.PatternAt(now);
+  const Eigen::Vector3d in_pattern = pattern.Inverse() * body.translation;
+  const bool is_above_board = in_pattern.z() > 0 && world_.IsOnBoard(in_pattern);
+  const double height_m = is_above_board ? in_pattern.z() : body.translation.z();
+  return height_m / std::max((body.rotation * Eigen::Vector3d::UnitZ()).z(), 0.5);
 }
 
 // Sends messages of its gimbal, stamped at sending.

@@ -23,6 +23,9 @@ class ExternalNavigation {
   ExternalNavigation(AutopilotFirmware firmware, const AutopilotParameters& parameters)
       : firmware_(firmware), parameters_(parameters) {}
 
+  // The position was known until now, by GNSS.
+  void BeginKnown(std::int64_t boot_us) { used_us_ = boot_us; }
+
   // The UAV is at 'place' (ENU, m) now, by the autopilot's own clock.
   void Observe(std::int64_t boot_us, double step_s, const Eigen::Vector3d& place);
   // A message has arrived.

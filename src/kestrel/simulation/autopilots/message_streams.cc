@@ -18,16 +18,24 @@ struct DefaultRate {
 };
 
 constexpr DefaultRate kDefaultRates[] = {
-    {mavlink::Heartbeat::kId, 1, 1},         {mavlink::Timesync::kId, 0.1, 10},
-    {mavlink::Attitude::kId, 0, 100},        {mavlink::AttitudeQuaternion::kId, 0, 50},
-    {mavlink::LocalPositionNed::kId, 0, 30}, {mavlink::GlobalPositionInt::kId, 0, 50},
-    {mavlink::ExtendedSysState::kId, 0, 5},  {mavlink::GpsGlobalOrigin::kId, 0, 1},
-    {mavlink::HomePosition::kId, 0, 0.5},    {mavlink::SysStatus::kId, 0, 5},
+    {mavlink::Heartbeat::kId, 1, 1},
+    {mavlink::Timesync::kId, 0.1, 10},
+    {mavlink::Attitude::kId, 0, 100},
+    {mavlink::AttitudeQuaternion::kId, 0, 50},
+    {mavlink::LocalPositionNed::kId, 0, 30},
+    {mavlink::GlobalPositionInt::kId, 0, 50},
+    {mavlink::ExtendedSysState::kId, 0, 5},
+    {mavlink::GpsGlobalOrigin::kId, 0, 1},
+    {mavlink::HomePosition::kId, 0, 0.5},
+    {mavlink::SysStatus::kId, 0, 5},
+    {mavlink::VfrHud::kId, 0, 0},
+    {mavlink::GpsRawInt::kId, 0, 0},
 };
 
 }  // namespace
 
-MessageStreams::MessageStreams(AutopilotFirmware firmware, bool has_gimbal, bool has_zoom)
+MessageStreams::MessageStreams(AutopilotFirmware firmware, bool has_gimbal, bool has_zoom,
+                               bool has_range)
     : firmware_(firmware) {
   const bool is_px4 = firmware == AutopilotFirmware::kPx4;
   for (const DefaultRate& rate : kDefaultRates) {
@@ -48,6 +56,7 @@ MessageStreams::MessageStreams(AutopilotFirmware firmware, bool has_gimbal, bool
     streams_.push_back({mavlink::SimState::kId, 0, 0});
   }
   streams_.push_back({mavlink::RcChannels::kId, 0, 0});
+  if (has_range) streams_.push_back({mavlink::DistanceSensor::kId, 0, 0});
   if (has_zoom) streams_.push_back({mavlink::CameraFovStatus::kId, 0, 0});
   if (!has_gimbal) return;
   constexpr std::int64_t kPx4Attitude_us = 200'000, kPx4Status_us = 2'000'000;

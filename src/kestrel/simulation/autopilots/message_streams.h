@@ -14,7 +14,7 @@ class MessageStreams {
   // Default streams: ArduPilot only heartbeats, PX4 those of its onboard mode; those of a gimbal
   // where it has one.
   explicit MessageStreams(AutopilotFirmware firmware, bool has_gimbal = false,
-                          bool has_zoom = false);
+                          bool has_zoom = false, bool has_range = false);
 
   // As MAV_CMD_SET_MESSAGE_INTERVAL: 'interval_us' -1 stops it, 0 is the default. Returns
   // MAV_RESULT.

@@ -120,8 +120,42 @@ TEST_P(NoPositionFlightTest, ClimbsAndLandsWhenPadIsLostForGood) {
   EXPECT_TRUE(flight.Land(40)) << flight.reported;
   EXPECT_THAT(flight.reported, HasSubstr("the pad is lost: lands where it is"));
   EXPECT_TRUE(IsIn(flight, FlightMode::kLand)) << flight.reported;
-  // PX4's landing is level: it drifts with the wind.
-  EXPECT_LT(moved_m(), is_px4() ? 12 : 4);
+  EXPECT_LT(moved_m(), 4);
+}
+
+TEST_P(NoPositionFlightTest, VelocityByFlowKeepsItWhereItLostPad) {
+  NoPositionSetup setup = Hover(3, 3);
+  setup.has_flow = true;
+  PointedFlight flight = NoPositionFlightOf(setup);
+  Settle(&flight);
+  const Eigen::Vector3d place = flight.model.truth().world_from_body.translation;
+  flight.is_blind = true;
+  EXPECT_TRUE(flight.Land(40)) << flight.reported;
+  EXPECT_LT((flight.model.truth().world_from_body.translation - place).head<2>().norm(), 0.5);
+}
+
+TEST_P(NoPositionFlightTest, LandsWithTheHeadingThatIsWanted) {
+  NoPositionSetup setup = Landing(3);
+  setup.touchdown_heading = "30";
+  PointedFlight flight = NoPositionFlightOf(setup);
+  EXPECT_TRUE(flight.Land(60)) << flight.reported;
+  ASSERT_TRUE(flight.model.result().contact) << flight.reported;
+  EXPECT_TRUE(flight.model.result().contact->on_board);
+  const double heading = flight.model.result().contact->heading_in_pattern;
+  EXPECT_NEAR(Degrees(std::remainder(heading - Radians(30), kFullTurn)), 0, 3) << flight.reported;
+}
+
+TEST_P(NoPositionFlightTest, LandsByPadAloneWhenGnssIsLostInDescent) {
+  for (const double lost_after_s : {kNoPositionStart_s + 0.5, kNoPositionStart_s + 1.5}) {
+    NoPositionSetup setup = Landing(5);
+    setup.gnss_lost_after_s = lost_after_s;
+    PointedFlight flight = NoPositionFlightOf(setup);
+    EXPECT_TRUE(flight.Land(60)) << flight.reported;
+    EXPECT_THAT(flight.reported, HasSubstr("the position is lost: lands by the pad alone"));
+    ASSERT_TRUE(flight.model.result().contact) << flight.reported;
+    EXPECT_TRUE(flight.model.result().contact->on_board) << flight.reported;
+    EXPECT_LT(flight.model.result().offset_m(), 0.2) << flight.reported;
+  }
 }
 
 TEST_P(NoPositionFlightTest, DoesNotClimbBelowCeiling) {

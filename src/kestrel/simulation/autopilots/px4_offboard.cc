@@ -30,9 +30,10 @@ constexpr double kReaction_s = 0.3;  // delay of its failsafe after the time-out
 }  // namespace
 
 Px4Offboard::Px4Offboard(const AutopilotParameters& parameters, double thrust_error,
-                         Announce announce)
+                         double sag_per_s, Announce announce)
     : parameters_(parameters),
       thrust_error_(thrust_error),
+      sag_per_s_(sag_per_s),
       announce_(std::move(announce)),
       heading_(kPx4YawGain, kPx4Turn) {}
 
@@ -73,6 +74,7 @@ bool Px4Offboard::IsAvailable(const FlightState& state) const {
 }
 
 void Px4Offboard::Start(const FlightState& state) {
+  started_ = state.time;
   heading_.Reset();
   integral_.setZero();
   change_.setZero();
@@ -118,7 +120,8 @@ FlightCommand Px4Offboard::Accelerate(const FlightState& state) {
   const Vector3d weight = kGravity * Vector3d::UnitZ();
   FlightCommand command;
   command.is_thrust = true;
-  command.set_point.acceleration = (1 + thrust_error_) * (wanted_.acceleration + weight) - weight;
+  const double thrust = 1 + thrust_error_ - sag_per_s_ * ToSeconds(state.time - started_);
+  command.set_point.acceleration = thrust * (wanted_.acceleration + weight) - weight;
   command.set_point.velocity = state.velocity();
   command.set_point.velocity.z() += wanted_.acceleration.z();
   if (wanted_.yaw) {

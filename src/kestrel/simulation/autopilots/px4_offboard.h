@@ -18,8 +18,10 @@ namespace kestrel {
 class Px4Offboard : public GuidedRules {
  public:
   // The parameters must outlive this. 'thrust_error': part by which its hover thrust is too high,
-  // which accelerations alone do not make up for.
-  Px4Offboard(const AutopilotParameters& parameters, double thrust_error, Announce announce);
+  // which accelerations alone do not make up for. 'sag_per_s': part of the thrust that the battery
+  // loses in a second of the mode.
+  Px4Offboard(const AutopilotParameters& parameters, double thrust_error, double sag_per_s,
+              Announce announce);
 
   void Handle(const mavlink::SetPositionTargetLocalNed& message, const FlightState& state,
               bool is_guided) override;
@@ -41,7 +43,8 @@ class Px4Offboard : public GuidedRules {
   Eigen::Vector3d ControlVelocity(const FlightState& state, const Eigen::Vector3d& velocity);
 
   const AutopilotParameters& parameters_;
-  double thrust_error_;
+  double thrust_error_, sag_per_s_;
+  Time started_{};
   Announce announce_;
   bool is_acceleration_ = false;  // it flies by an acceleration alone
   SetPoint wanted_;

@@ -206,7 +206,7 @@ TEST(VehicleWorldTest, ReportsUnknownScenarios) {
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
                  "there is no scenario 'sim:figure9', expected standing, straight, circle, follow, "
-                 "hunt, figure8, road, lanes, motorway, ship, stops");
+                 "hunt, indoor, figure8, road, lanes, motorway, ship, stops");
   }
 }
 

@@ -47,7 +47,8 @@ std::string GrabbingInWords(const SitlResult& result) {
 }  // namespace
 
 std::string InWords(const SitlResult& result) {
-  return LandingInWords(result) + GuidingInWords(result) + GrabbingInWords(result);
+  const std::string room = result.has_left_room ? "has touched a wall or the ceiling\n" : "";
+  return LandingInWords(result) + GuidingInWords(result) + GrabbingInWords(result) + room;
 }
 
 }  // namespace kestrel

@@ -28,6 +28,8 @@ struct SitlResult {
   int set_points_after_take_back = 0;
   double last_set_point_after_s = 0;
 
+  bool has_left_room = false;  // it has touched a wall or the ceiling
+
   // These are about the gripper.
   int grabs = 0;                               // number of times that it was closed
   std::optional<ObjectField::Grab> grab;       // the last one; nothing: there were no objects

@@ -107,8 +107,11 @@ class LinkedFlight : public TestAutopilot {
     autopilot_.Tick(now);
     See();
     if (pad_position_) pad_position_->Send(now, track_);
-    if (guided_) guided_->Fly(now, track_, poses_);
+    if (guided_ && no_position_) {
+      no_position_->WatchPosition(now, guided_->is_flying() && !guided_->is_at_deck());
+    }
     if (no_position_) no_position_->Fly(now, track_);
+    if (guided_ && !IsWithoutPosition()) guided_->Fly(now, track_, poses_);
     if (pointed_) pointed_->Point(now, track_, poses_);
   }
 
@@ -135,6 +138,7 @@ class LinkedFlight : public TestAutopilot {
     options.mode_rate_hz = kMode_hz;
     options.wants_acceleration = true;
     options.wants_sticks = true;
+    options.wants_climb = true;
     options.points_gimbal = has_gimbal;
     if (has_gimbal) options.gimbal_device_id = 0;
     return options;
@@ -147,8 +151,13 @@ class LinkedFlight : public TestAutopilot {
     };
     listener.acceleration = [this](Time time, const Eigen::Vector3d& acceleration) {
       if (pad_position_) pad_position_->TakeAcceleration(time, acceleration);
+      if (no_position_) no_position_->TakeAcceleration(time, acceleration);
+    };
+    listener.climb = [this](double climb_mps) {
+      if (no_position_) no_position_->TakeClimb(climb_mps);
     };
     listener.pose = [this](const PoseSample& pose) {
+      if (IsWithoutPosition()) return no_position_->TakePose(pose);
       if (pad_position_ && !pad_position_->is_known(now)) return;
       poses_.Add(pose);
       TakePose(pose);
@@ -163,11 +172,13 @@ class LinkedFlight : public TestAutopilot {
     return [this](const std::string& text) { reported += text + "\n"; };
   }
 
+  bool IsWithoutPosition() const { return no_position_ && no_position_->is_in_charge(); }
+
   void Guard() {
     if (!guided_ && !no_position_) return;
     if (is_alive_) {
-      const GuardTask task = no_position_ ? TaskOfGuard(*no_position_, autopilot_)
-                                          : TaskOfGuard(*guided_, autopilot_, now);
+      const GuardTask task = IsWithoutPosition() ? TaskOfGuard(*no_position_, autopilot_)
+                                                 : TaskOfGuard(*guided_, autopilot_, now);
       life_ = LifeOf(task, autopilot_, connection_);
       guard_.TakeLife(life_.task, life_.kind, now);
     }

@@ -21,8 +21,13 @@ struct NoPositionSetup {
   // The pad drives off 'after' seconds, so fast at most and with this acceleration; 0: see above.
   double drive_after_s = 0, drive_acceleration = 1;
   double hover_thrust_error = 0;
+  double vibration = 0.3;    // of the accelerometer, m/s^2
+  double battery_sag = 0;    // part of the thrust, in a minute
   double turn_after_s = -1;  // of the compass, by 40 degrees
   bool has_sticks = false;
+  bool has_flow = false;
+  double gnss_lost_after_s = -1;  // negative: there is none from the first
+  const char* touchdown_heading = "any";
   std::string parameters;  // besides those that doctor demands
   std::uint64_t seed = 1;
 };
@@ -31,11 +36,18 @@ constexpr double kNoPositionStart_s = 8;  // the pilot gives the mode
 
 inline PointedFlight NoPositionFlightOf(const NoPositionSetup& setup) {
   AutopilotModelOptions options;
-  options.estimate.has_gnss = false;
+  const bool is_normal = setup.gnss_lost_after_s >= 0;
+  options.estimate.has_gnss = is_normal;
+  options.estimate.gnss_lost_after_s = setup.gnss_lost_after_s;
+  options.estimate.has_flow = setup.has_flow;
   options.estimate.hover_thrust_error = setup.hover_thrust_error;
+  options.estimate.battery_sag = setup.battery_sag;
+  options.estimate.vibration = setup.vibration;
   options.estimate.turn_after_s = setup.turn_after_s;
-  if (setup.firmware == AutopilotFirmware::kPx4)
-    options.parameters = "COM_OBL_RC_ACT=4,LNDMC_XY_VEL_MAX=12";
+  if (setup.firmware == AutopilotFirmware::kPx4) {
+    options.parameters =
+        is_normal ? "COM_OBL_RC_ACT=5,LNDMC_XY_VEL_MAX=12" : "COM_OBL_RC_ACT=4,LNDMC_XY_VEL_MAX=12";
+  }
   if (!setup.parameters.empty()) {
     options.parameters += (options.parameters.empty() ? "" : ",") + setup.parameters;
   }
@@ -55,12 +67,18 @@ inline PointedFlight NoPositionFlightOf(const NoPositionSetup& setup) {
     vehicle.drive_acceleration = setup.drive_acceleration;
   }
   constexpr double kHalfView_deg = 38;
+  FlightOptions flight;
+  flight.guidance.touchdown_heading = setup.touchdown_heading;
+  RelativeJob job = setup.job;
+  job.is_reserve = is_normal;
   return {setup.firmware,
           options,
           vehicle,
           {.has_gimbal = false,
            .half_view_deg = kHalfView_deg,
-           .without_position = setup.job,
+           .guides = is_normal,
+           .without_position = job,
+           .flight = flight,
            .seed = setup.seed}};
 }
 

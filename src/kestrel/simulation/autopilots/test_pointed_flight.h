@@ -108,6 +108,7 @@ class PointedFlight : public LinkedFlight {
     bool guides = false;
     bool sends_pad_position = false;
     std::optional<RelativeJob> without_position = {};
+    FlightOptions flight = {};
     std::uint64_t seed = 1;
   };
 
@@ -123,9 +124,9 @@ class PointedFlight : public LinkedFlight {
     const PadInSight pad{1.2, kTestSightRange_m, TargetTrackerOptions()};
     if (choice.has_gimbal) Point(pad, pad.tracker);
     if (choice.sends_pad_position) SendPadPosition();
-    if (choice.without_position) FlyWithoutPosition(*choice.without_position, FlightOptions());
+    if (choice.without_position) FlyWithoutPosition(*choice.without_position, choice.flight);
     if (!choice.guides) return;
-    Guide(FlightOptions(), pad.tracker, [](const GuidanceOptions& guidance) {
+    Guide(choice.flight, pad.tracker, [](const GuidanceOptions& guidance) {
       return std::make_unique<LandingGuidance>(guidance);
     });
   }

@@ -40,6 +40,12 @@ std::vector<VehicleScenario> MakeSitlScenarios() {
         "field.objects.blue=3", "field.objects.yellow=10", "field.objects.yellow_speed_mps=0.9",
         "field.objects.orange=0", "field.objects.orange_bars=0", "field.objects.distractors=5",
         "surroundings.landing_legs=false"}},
+      {"indoor",
+       "a pad on the floor of a hall under lamps: 12 m long and wide, 5 m high",
+       {"vehicle.path=standing", "room.side_m=12", "room.ceiling_m=5", "ground.material=concrete",
+        "ground.markings=0", "ground.curb=false", "ground.shadows=false", "light.direct=0.3",
+        "light.sun_elevation_deg=80", "light.sky_radiance=0.3", "surroundings.vehicles=0",
+        "surroundings.lookalikes=0", "surroundings.banners=0"}},
       {"figure8",
        "the contest: 15 km/h on a figure of eight through the origin",
        {"vehicle.path=figure8", "vehicle.speed_mps=4.2"}},
@@ -86,7 +92,9 @@ LandingScene MakeFieldScene(const VehicleWorldOptions& options, std::uint64_t se
 LandingScene MakeScene(const VehicleWorldOptions& options, std::uint64_t seed, ObjectField* field) {
   if (options.field.is_there()) return MakeFieldScene(options, seed, field);
   if (!options.thing.is_there()) {
-    return MakeLandingScene(options, kTrackDuration_s, /*channels=*/1, seed);
+    LandingScene landing = MakeLandingScene(options, kTrackDuration_s, /*channels=*/1, seed);
+    if (options.room.is_there()) AddRoom(options.room, &landing.world);
+    return landing;
   }
   LandingScene scene;
   Random random = RandomOf(seed, LandingPart::kVehicle);

@@ -17,6 +17,7 @@
 #include "kestrel/core/geometry/rigid_transform.h"
 #include "kestrel/core/poses/pose_history.h"
 #include "kestrel/simulation/autopilots/object_field.h"
+#include "kestrel/simulation/autopilots/room.h"
 #include "kestrel/simulation/scene/follow_scene.h"
 #include "kestrel/simulation/scene/landing_scene.h"
 #include "kestrel/simulation/scene/vehicle_scenarios.h"
@@ -31,6 +32,7 @@ struct VehicleWorldOptions : LandingSceneOptions {
 
   FollowedThingOptions thing;
   ObjectFieldOptions field;
+  RoomOptions room;
   double drive_altitude_m = 0;
   double drive_delay_s = 0;
   double drive_acceleration = 1;
@@ -39,6 +41,7 @@ struct VehicleWorldOptions : LandingSceneOptions {
   static void Visit(auto& self, auto&& visit) {
     visit.Group("thing", self.thing);
     visit.Group("field", self.field);
+    visit.Group("room", self.room);
     visit("drive_altitude_m", self.drive_altitude_m, Range{0, 1000},
           "height of the UAV that the vehicle waits for; 0: it drives all the time");
     visit("drive_delay_s", self.drive_delay_s, Range{0, 1000},

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/flight/guidance/pad_heading.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "kestrel/core/base/random.h"
+#include "kestrel/core/geometry/angles.h"
+
+namespace kestrel {
+namespace {
+
+constexpr double kSigma = Radians(3);
+Time Second(double s) { return TimeFromNanoseconds(std::llround(1e9 * s)); }
+
+// A ring with a cross looks the same after each quarter turn, and a frame shows any of them.
+TEST(PadHeadingTest, FramesOfAnyQuarterMakeOneHeading) {
+  Random random(3);
+  PadHeading heading;
+  for (int i = 0; i < 40; ++i) {
+    heading.Add(Second(10 + 0.06 * i), Radians(20 + 90 * (i % 4)) + kSigma * random.Normal(),
+                kSigma, 4);
+  }
+  const auto estimate = heading.At(Second(12.4));
+  ASSERT_TRUE(estimate);
+  EXPECT_DOUBLE_EQ(estimate->yaw_period, kFullTurn / 4);
+  const double error = std::remainder(estimate->motion.yaw() - Radians(20), kFullTurn / 4);
+  const double variance = estimate->motion.covariance(TurnState::kYaw, TurnState::kYaw);
+  EXPECT_LT(std::abs(error), 3 * std::sqrt(variance));
+  EXPECT_LT(variance, kSigma * kSigma / 3);
+}
+
+TEST(PadHeadingTest, PadWithoutHeadingHasNone) {
+  PadHeading heading;
+  heading.Add(Second(10), 0.3, kSigma, 0);
+  EXPECT_FALSE(heading.At(Second(10)));
+}
+
+TEST(PadHeadingTest, UnseenPadIsKnownLessAndLess) {
+  PadHeading heading;
+  heading.Add(Second(10), 0.3, kSigma, 1);
+  const auto variance = [&](double s) {
+    return heading.At(Second(s))->motion.covariance(TurnState::kYaw, TurnState::kYaw);
+  };
+  EXPECT_GT(variance(14), 2 * variance(10));
+}
+
+TEST(PadHeadingTest, OtherPadIsTakenAtOnce) {
+  PadHeading heading;
+  for (int i = 0; i < 10; ++i) heading.Add(Second(10 + 0.1 * i), 0.3, kSigma, 1);
+  heading.Add(Second(11.1), 2.3, kSigma, 1);
+  EXPECT_NEAR(heading.At(Second(11.1))->motion.yaw(), 2.3, 1e-9);
+}
+
+}  // namespace
+}  // namespace kestrel
