@@ -42,13 +42,9 @@ constexpr double kStands_mps = 0.2;
 constexpr double kStandsSight_s = 3;
 constexpr double kLayer_m = 1.5;   // between the heights at which the UAVs of a team travel
 constexpr double kClimbOff_m = 6;  // near the ground, from a UAV at work that goes first
-// At the box: the UAV sinks within this distance of it, others keep away while it is within that,
-// and the gripper opens within the last one while it stands still.
-constexpr double kAtBox_m = 1.5, kNearBox_m = 3, kOverBox_m = 0.4, kOverBox_mps = 0.4;
-constexpr double kSame_m = 0.5;  // an object that stands is no further from where it was gripped
-constexpr double kDown_m = 0.1;  // from the lowest height, which the UAV comes to ever more slowly
-constexpr double kGone_s = 2;    // an object that is not seen for so long from above is gone
-constexpr double kUnseen_s = 5;  // the same, of one that may never have been seen by this UAV
+constexpr double kSame_m = 0.5;    // an object that stands is no further from where it was gripped
+constexpr double kGone_s = 2;      // an object that is not seen for so long from above is gone
+constexpr double kUnseen_s = 5;    // the same, of one that may never have been seen by this UAV
 
 // True when a UAV that goes first is within the distance.
 bool MustGiveWay(const Vector2d& place, std::span<const OtherUav> others, double distance_m) {
@@ -85,7 +81,7 @@ void RequireAtMost(double value, double most, const char* key, const char* limit
 }  // namespace
 
 GoGuidance::GoGuidance(const GuidanceOptions& options, const GoJob& job)
-    : DescentGuidance(options, std::nullopt), job_(job) {
+    : DescentGuidance(options, std::nullopt), job_(job), delivery_(options) {
   RequireAtMost(options.search_radius_m, options.limits.geofence_radius_m,
                 "guidance.search_radius_m", "limits.geofence_radius_m");
   RequireAtMost(job.height_m, options.search_altitude_m, "the height above the object",
@@ -128,7 +124,7 @@ const char* GoGuidance::WhyGiveUp(const GuidanceInput& input) {
   if (phase() != GuidancePhase::kApproach || !input.target || carries_) return nullptr;
   const Vector2d object = input.target->motion.position().head<2>();
   if (IsInFence(object)) {
-    const bool is_in_box = input.box && (object - *input.box).norm() < kAtBox_m;
+    const bool is_in_box = input.box && GoDelivery::IsIn(*input.box, object);
     if (is_in_box) Leave(false, "the object is in the box: goes on to the next one");
     return nullptr;
   }
@@ -408,9 +404,7 @@ void GoGuidance::Deliver(const GuidanceInput& input, const Situation& now) {
     return Leave(true, "the object is in the box: goes on to the next one");
   }
   if (!input.box) return set_reason("carries the object; the place of the box is not known yet");
-  const double off_m = (now.feet.head<2>() - *input.box).norm();
-  const bool is_down = now.feet.z() < options().limits.floor_m + kDown_m;
-  if (off_m > kOverBox_m || now.velocity.norm() > kOverBox_mps || !is_down) return;
+  if (!delivery_.MayOpen(*input.box, now.feet, now.velocity)) return;
   gripped_.reset();
   Enter(GuidancePhase::kAct, "opens the gripper above the box");
 }
@@ -479,20 +473,15 @@ SetPoint GoGuidance::Stay(const Vector2d& place, double height_m, const Situatio
   return command;
 }
 
-// Up to its layer, to above the box, and down to the lowest height without a target; up again where
-// another UAV goes first.
+// Up again where another UAV goes first.
 SetPoint GoGuidance::Carry(const GuidanceInput& input, const Situation& now) {
   if (!input.box) return Stay(place(), travel_m_, now);
   going_to_ = *input.box;
-  const double off_m = (now.feet.head<2>() - going_to_).norm();
-  is_near_box_ = off_m < kNearBox_m;
+  is_near_box_ = GoDelivery::IsNear(going_to_, now.feet);
   const bool gives_way =
       phase() != GuidancePhase::kAct && MustGiveWay(now.feet.head<2>(), input.others, kClimbOff_m);
-  if (off_m > kAtBox_m || gives_way) {
-    const bool is_up = now.feet.z() > travel_m_ - kLayer_m || is_near_box_;
-    return Stay(is_up ? going_to_ : now.feet.head<2>(), travel_m_, now);
-  }
-  return Stay(going_to_, options().limits.floor_m - options().leg_m, now);
+  const auto [place, height_m] = delivery_.Choose(going_to_, now.feet, travel_m_, gives_way);
+  return Stay(place, height_m, now);
 }
 
 double GoGuidance::ClimbRate(const Situation& now) const {
