@@ -47,7 +47,8 @@ class GoGuidance : public DescentGuidance {
   void ChooseApproach(const GuidanceInput& input, const Situation& now);
   void ChooseDescent(const GuidanceInput& input, const Situation& now);
   void ChooseCommit(const GuidanceInput& input, const Situation& now);
-  bool IsAbove(const Situation& now, double grip_m) const;
+  bool IsAbove(const Situation& now) const;
+  bool MayGrip(const TargetEstimate& target, const Situation& now) const;
   bool HasReached(const GuidanceInput& input, const Situation& now);
   void Act(const GuidanceInput& input);
   void Grip(const GuidanceInput& input);
