@@ -115,8 +115,9 @@ Row Fly(const Case& flown, AutopilotFirmware firmware, const Arguments& argument
 
 void Run(const Arguments& arguments) {
   fmt::print(
-      "| disc | autopilot | taken | grabs | within 0.05 m | within 0.10 m | offset, median, m | "
-      "largest | time, median, s |\n|---|---|---|---|---|---|---|---|---|\n");
+      "| disc | autopilot | taken | grabs | beside | within 0.05 m | within 0.10 m | offset, "
+      "median, "
+      "m | largest | time, median, s |\n|---|---|---|---|---|---|---|---|---|---|\n");
   for (const Case& flown : kCases) {
     if (!arguments.Wants(flown.name)) continue;
     for (const auto firmware : {AutopilotFirmware::kArduPilot, AutopilotFirmware::kPx4}) {
@@ -124,9 +125,10 @@ void Run(const Arguments& arguments) {
       const auto median = [](const std::vector<double>& sorted) {
         return sorted.empty() ? 0 : sorted[sorted.size() / 2];
       };
-      fmt::print("| {} | {} | {} of {} | {} | {} | {} | {:.3f} | {:.3f} | {:.0f} |\n", flown.name,
-                 firmware == AutopilotFirmware::kPx4 ? "sim:px4" : "sim:ardupilot", row.taken,
-                 arguments.flights, row.tries, row.within_5, row.within_10, median(row.offsets_m),
+      fmt::print("| {} | {} | {} of {} | {} | {} | {} | {} | {:.3f} | {:.3f} | {:.0f} |\n",
+                 flown.name, firmware == AutopilotFirmware::kPx4 ? "sim:px4" : "sim:ardupilot",
+                 row.taken, arguments.flights, row.tries, row.tries - row.taken, row.within_5,
+                 row.within_10, median(row.offsets_m),
                  row.offsets_m.empty() ? 0 : row.offsets_m.back(), median(row.times_s));
       std::fflush(stdout);
     }

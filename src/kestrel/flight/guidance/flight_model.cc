@@ -75,6 +75,7 @@ FlightModel::FlightModel(const FlightModelOptions& options)
     : options_(Checked(options)),
       by_lean_(Air(0.1, 0, 0), Air(0.15, 1, 1), kAirNoise),
       observer_(options.control),
+      gusts_(options.path),
       delay_s_(options.delay_s),
       answer_(AssumedAnswer(options.delay_s)) {
   by_delay_.fill(ForgettingRegression<5>(answer_, AnswerSigma(options.control), kNoise_mps));
@@ -95,7 +96,8 @@ void FlightModel::Observe(Time now, const Vector3d& velocity, const Vector3d& up
                 newest_->lean + part * (lean - newest_->lean));
     }
   }
-  newest_ = Instant{now, velocity, lean, sent, fed_forward_};
+  newest_ = Instant{now, velocity, lean, sent, fed_forward_, fed_velocity_};
+  gusts_.Observe(now, velocity.head<2>(), lean);
   if (count_ == 0) Weigh();
 }
 
@@ -106,7 +108,7 @@ void FlightModel::AddSample(const Vector3d& velocity, const Vector2d& lean) {
   sums.velocity += velocity.head<2>();
   sums.lean += lean;
   if (newest_->sent) {
-    sums.commanded_velocity += newest_->sent->velocity.head<2>();
+    sums.commanded_velocity += newest_->sent->velocity.head<2>() - newest_->fed_velocity;
     sums.commanded_acceleration += newest_->sent->acceleration.head<2>();
     sums.fed_forward += newest_->fed_forward;
     ++sums.commands;
@@ -216,9 +218,19 @@ void FlightModel::Command(SetPoint* set_point) {
   const Vector2d acceleration = set_point->acceleration.head<2>();
   set_point->velocity.head<2>() +=
       answer_(1) * acceleration + answer_(2) * velocity + answer_.tail<2>();
-  if (!options_.is_used || !options_.control.takes_acceleration()) return;
-  fed_forward_ = observer_.FeedForward(velocity, acceleration);
+  if (options_.is_used) FeedForward(velocity, acceleration);
+  set_point->velocity.head<2>() += fed_velocity_;
   set_point->acceleration.head<2>() += fed_forward_;
+}
+
+void FlightModel::FeedForward(const Vector2d& velocity, const Vector2d& acceleration) {
+  if (options_.control.takes_acceleration()) {
+    fed_forward_ = observer_.FeedForward(velocity, acceleration);
+  } else if (options_.meets_gusts && options_.path.is_known()) {
+    gusts_.Move(delay_s_);
+    fed_velocity_ = gusts_.velocity();
+    fed_forward_ = gusts_.acceleration();
+  }
 }
 
 std::optional<AirEstimate> FlightModel::air() const {

@@ -14,6 +14,7 @@
 #include "kestrel/core/poses/set_point.h"
 #include "kestrel/flight/guidance/disturbance_observer.h"
 #include "kestrel/flight/guidance/forgetting_regression.h"
+#include "kestrel/flight/guidance/gust_feed.h"
 
 namespace kestrel {
 
@@ -21,6 +22,8 @@ struct FlightModelOptions {
   bool is_used = true;
   double delay_s = 0.12;
   VelocityControl control;
+  PathControl path;
+  bool meets_gusts = false;  // by the path; no option of the user
 
   static void Visit(auto& self, auto&& visit) {
     visit("is_used", self.is_used, "use the response that is measured in flight");
@@ -91,11 +94,13 @@ class FlightModel {
     Eigen::Vector2d lean;
     std::optional<SetPoint> sent;
     Eigen::Vector2d fed_forward;
+    Eigen::Vector2d fed_velocity;
   };
 
   void AddSample(const Eigen::Vector3d& velocity, const Eigen::Vector2d& lean);
   void Learn();
   void LearnAir(const Sums& begin, const Sums& end, const Eigen::Vector3d& acceleration);
+  void FeedForward(const Eigen::Vector2d& velocity, const Eigen::Vector2d& acceleration);
   void ObserveDisturbance(const Eigen::Vector2d& velocity, const Eigen::Vector2d& acceleration);
   void Weigh();
   const Sums& Ago(int samples) const { return sums_[(count_ - 1 - samples) % kSamples]; }
@@ -109,7 +114,10 @@ class FlightModel {
   std::array<ForgettingRegression<5>, kDelays> by_delay_;
   ForgettingRegression<3> by_lean_;
   DisturbanceObserver observer_;
-  Eigen::Vector2d fed_forward_{0, 0};  // acceleration, by the last command
+  GustFeed gusts_;
+  // Acceleration and velocity that the last command has in addition.
+  Eigen::Vector2d fed_forward_{0, 0};
+  Eigen::Vector2d fed_velocity_{0, 0};
   double delay_s_;
   Eigen::Matrix<double, 5, 1> answer_;  // slack, lag, drag, push (2)
 };

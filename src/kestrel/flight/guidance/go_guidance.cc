@@ -26,27 +26,27 @@ constexpr double kConePart = 0.4;
 // may begin.
 constexpr double kWait_m = 0.8;
 constexpr double kReach_m = 0.05;
-// Largest offset of a gripper and its speed relative to the object, above it and at it, and the
-// time for which the UAV waits for them.
-constexpr double kAim_m = 0.03;
+// Largest offset of a gripper where it waits, and when it closes, now and a moment later; its speed
+// relative to the object, and the uncertainty of the object's place then.
+constexpr double kAim_m = 0.08;
 constexpr double kGrip_m = 0.05;
 constexpr double kAim_mps = 0.3;
-constexpr double kAimWait_s = 20;
+constexpr double kGripDelay_s = 0.1;
+constexpr double kGripSigma_m = 0.05;
+constexpr double kAimWait_s = 20;      // for which it waits, and tries to grip
 constexpr double kLastSink_mps = 0.4;  // at least: near by the camera does not see the object
+constexpr double kLastGain = 2;        // 1/s: it brakes before the ground, and rises off it
 // A UAV that sinks more slowly for so long on command to descend rests on something.
 constexpr double kStandstill_mps = 0.05;
 constexpr double kRests_s = 1;
 constexpr double kBelow_m = 1;  // from the UAV to the object, while it looks whether that is gone
-// An object that stands is where it was: near it the UAV flies on for this long without a sight.
-constexpr double kStands_mps = 0.2;
-constexpr double kStandsSight_s = 3;
-constexpr double kLayer_m = 1.5;   // between the heights at which the UAVs of a team travel
-constexpr double kClimbOff_m = 6;  // near the ground, from a UAV at work that goes first
-// At the box: the UAV sinks within this distance of it, others keep away while it is within that,
-// and the gripper opens within the last one while it stands still.
-constexpr double kAtBox_m = 1.5, kNearBox_m = 3, kOverBox_m = 0.4, kOverBox_mps = 0.4;
+// Near an object whose place is known so well the UAV flies on for this long without a sight.
+constexpr double kLongestSight_s = 3;
+constexpr double kSureSigma_m = 0.1;
+constexpr double kStands_mps = 0.2;  // at most, of an object that stands
+constexpr double kLayer_m = 1.5;     // between the heights at which the UAVs of a team travel
+constexpr double kClimbOff_m = 6;    // near the ground, from a UAV at work that goes first
 constexpr double kSame_m = 0.5;  // an object that stands is no further from where it was gripped
-constexpr double kDown_m = 0.1;  // from the lowest height, which the UAV comes to ever more slowly
 constexpr double kGone_s = 2;    // an object that is not seen for so long from above is gone
 constexpr double kUnseen_s = 5;  // the same, of one that may never have been seen by this UAV
 
@@ -59,8 +59,8 @@ bool MustGiveWay(const Vector2d& place, std::span<const OtherUav> others, double
 
 // False when the object is out of sight for too long to go on near it.
 bool IsSureOf(const GuidanceInput& input) {
-  const bool stands = input.target->motion.velocity().norm() < kStands_mps;
-  return input.target_age_s <= (stands ? kStandsSight_s : GuidanceOptions::kCommitSight_s);
+  if (input.target_age_s <= GuidanceOptions::kCommitSight_s) return true;
+  return input.target_age_s <= kLongestSight_s && input.target->position_sigma_m() < kSureSigma_m;
 }
 
 const char* InWords(GoAction action) {
@@ -77,6 +77,13 @@ const char* InWords(GoAction action) {
   return "";
 }
 
+// Options for small objects, which have no springs.
+GuidanceOptions ForObjects(GuidanceOptions options) {
+  options.model.meets_gusts = true;
+  options.target_is_agile = true;
+  return options;
+}
+
 void RequireAtMost(double value, double most, const char* key, const char* limit) {
   if (value <= most) return;
   throw InputError(fmt::format("{} is {:g}, expected at most {:g} ({})", key, value, most, limit));
@@ -85,7 +92,7 @@ void RequireAtMost(double value, double most, const char* key, const char* limit
 }  // namespace
 
 GoGuidance::GoGuidance(const GuidanceOptions& options, const GoJob& job)
-    : DescentGuidance(options, std::nullopt), job_(job) {
+    : DescentGuidance(ForObjects(options), std::nullopt), job_(job), delivery_(options) {
   RequireAtMost(options.search_radius_m, options.limits.geofence_radius_m,
                 "guidance.search_radius_m", "limits.geofence_radius_m");
   RequireAtMost(job.height_m, options.search_altitude_m, "the height above the object",
@@ -128,7 +135,7 @@ const char* GoGuidance::WhyGiveUp(const GuidanceInput& input) {
   if (phase() != GuidancePhase::kApproach || !input.target || carries_) return nullptr;
   const Vector2d object = input.target->motion.position().head<2>();
   if (IsInFence(object)) {
-    const bool is_in_box = input.box && (object - *input.box).norm() < kAtBox_m;
+    const bool is_in_box = input.box && GoDelivery::IsIn(*input.box, object);
     if (is_in_box) Leave(false, "the object is in the box: goes on to the next one");
     return nullptr;
   }
@@ -246,7 +253,8 @@ void GoGuidance::ChooseDescent(const GuidanceInput& input, const Situation& now)
     if (is_near_ground) return TryAgain("too far beside the object");
     return Enter(GuidancePhase::kApproach, "too far beside the object");
   }
-  if (is_near_ground && !IsSureOf(input)) {
+  const double wait_m = job_.height_m + kWait_m;
+  if (is_near_ground && now.height_m > wait_m - kReach_m && !IsSureOf(input)) {
     return TryAgain("low, and the object is not in sight");
   }
   if (job_.action == GoAction::kPick && !is_open_) {
@@ -254,12 +262,12 @@ void GoGuidance::ChooseDescent(const GuidanceInput& input, const Situation& now)
     if (fault_ != nullptr) give_up_ = fault_;
     if (!is_open_) return;
   }
-  if (now.height_m > job_.height_m + kWait_m + kReach_m) {
+  if (now.height_m > wait_m + kReach_m) {
     waits_since_.reset();
     return;
   }
   Remember(true, input.now, &waits_since_);
-  if (now.is_in_sight && IsAbove(now, kAim_m)) {
+  if (now.is_in_sight && IsAbove(now)) {
     rests_since_.reset();
     Enter(GuidancePhase::kCommit, "near the object, and above it");
   } else if (IsLongerThan(kAimWait_s, waits_since_, input.now)) {
@@ -268,14 +276,14 @@ void GoGuidance::ChooseDescent(const GuidanceInput& input, const Situation& now)
 }
 
 // A gripper must be nearer than a view from above.
-bool GoGuidance::IsAbove(const Situation& now, double grip_m) const {
+bool GoGuidance::IsAbove(const Situation& now) const {
   if (!job_.grips()) return now.off_m < kConePart * Cone(now.height_m);
-  return now.off_m < grip_m && now.slip_mps < kAim_mps;
+  return now.off_m < kAim_m && now.slip_mps < kAim_mps;
 }
 
 void GoGuidance::ChooseCommit(const GuidanceInput& input, const Situation& now) {
   if (!IsSureOf(input)) {
-    return TryAgain("near the object, and it was not in sight for too long");
+    return Enter(GuidancePhase::kDescend, "near the object, and not in sight: looks from higher");
   }
   if (now.off_m > kCommitCones * Cone(now.height_m)) return TryAgain("beside the object");
   if (HasReached(input, now)) {
@@ -291,7 +299,16 @@ bool GoGuidance::HasReached(const GuidanceInput& input, const Situation& now) {
   Remember(rests && now.height_m > job_.height_m + kReach_m, input.now, &rests_since_);
   const bool is_down =
       now.height_m <= job_.height_m + kReach_m || IsLongerThan(kRests_s, rests_since_, input.now);
-  return is_down && IsAbove(now, kGrip_m);
+  return is_down && (job_.grips() ? MayGrip(*input.target, now) : IsAbove(now));
+}
+
+// The gripper must be there when it closes, a moment later.
+bool GoGuidance::MayGrip(const TargetEstimate& target, const Situation& now) const {
+  const Vector2d off = (now.feet - target.motion.position()).head<2>();
+  const Vector2d slip = (now.velocity - target.motion.velocity()).head<2>();
+  const double later_m = (off + kGripDelay_s * slip).norm();
+  return std::max(off.norm(), later_m) < kGrip_m && slip.norm() < kAim_mps &&
+         target.position_sigma_m() < kGripSigma_m;
 }
 
 void GoGuidance::Act(const GuidanceInput& input) {
@@ -408,9 +425,7 @@ void GoGuidance::Deliver(const GuidanceInput& input, const Situation& now) {
     return Leave(true, "the object is in the box: goes on to the next one");
   }
   if (!input.box) return set_reason("carries the object; the place of the box is not known yet");
-  const double off_m = (now.feet.head<2>() - *input.box).norm();
-  const bool is_down = now.feet.z() < options().limits.floor_m + kDown_m;
-  if (off_m > kOverBox_m || now.velocity.norm() > kOverBox_mps || !is_down) return;
+  if (!delivery_.MayOpen(*input.box, now.feet, now.velocity)) return;
   gripped_.reset();
   Enter(GuidancePhase::kAct, "opens the gripper above the box");
 }
@@ -479,29 +494,24 @@ SetPoint GoGuidance::Stay(const Vector2d& place, double height_m, const Situatio
   return command;
 }
 
-// Up to its layer, to above the box, and down to the lowest height without a target; up again where
-// another UAV goes first.
+// Up again where another UAV goes first.
 SetPoint GoGuidance::Carry(const GuidanceInput& input, const Situation& now) {
   if (!input.box) return Stay(place(), travel_m_, now);
   going_to_ = *input.box;
-  const double off_m = (now.feet.head<2>() - going_to_).norm();
-  is_near_box_ = off_m < kNearBox_m;
+  is_near_box_ = GoDelivery::IsNear(going_to_, now.feet);
   const bool gives_way =
       phase() != GuidancePhase::kAct && MustGiveWay(now.feet.head<2>(), input.others, kClimbOff_m);
-  if (off_m > kAtBox_m || gives_way) {
-    const bool is_up = now.feet.z() > travel_m_ - kLayer_m || is_near_box_;
-    return Stay(is_up ? going_to_ : now.feet.head<2>(), travel_m_, now);
-  }
-  return Stay(going_to_, options().limits.floor_m - options().leg_m, now);
+  const auto [place, height_m] = delivery_.Choose(going_to_, now.feet, travel_m_, gives_way);
+  return Stay(place, height_m, now);
 }
 
 double GoGuidance::ClimbRate(const Situation& now) const {
   if (!IsLow()) return kHeightGain * (travel_m_ - now.feet.z());
   const double left_m = now.height_m - job_.height_m;
-  if (phase() == GuidancePhase::kAct) return rests_since_ ? 0 : -kHeightGain * left_m;
+  if (phase() == GuidancePhase::kAct) return rests_since_ ? 0 : -kLastGain * left_m;
   if (phase() == GuidancePhase::kCommit) {
-    if (left_m <= kReach_m) return -kHeightGain * left_m;
-    return -std::max(GuidanceOptions::kSinkGain * left_m, kLastSink_mps);
+    const double sink = std::max(GuidanceOptions::kSinkGain * left_m, kLastSink_mps);
+    return -std::min(sink, kLastGain * left_m);
   }
   if (now.off_m >= kConePart * Cone(now.height_m)) return 0;
   return -GuidanceOptions::kSinkGain * (left_m - kWait_m);

@@ -8,6 +8,7 @@
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/poses/set_point.h"
 #include "kestrel/flight/guidance/descent_guidance.h"  // IWYU pragma: export
+#include "kestrel/flight/guidance/go_delivery.h"
 #include "kestrel/flight/guidance/go_job.h"
 #include "kestrel/flight/guidance/guidance_options.h"
 
@@ -46,7 +47,8 @@ class GoGuidance : public DescentGuidance {
   void ChooseApproach(const GuidanceInput& input, const Situation& now);
   void ChooseDescent(const GuidanceInput& input, const Situation& now);
   void ChooseCommit(const GuidanceInput& input, const Situation& now);
-  bool IsAbove(const Situation& now, double grip_m) const;
+  bool IsAbove(const Situation& now) const;
+  bool MayGrip(const TargetEstimate& target, const Situation& now) const;
   bool HasReached(const GuidanceInput& input, const Situation& now);
   void Act(const GuidanceInput& input);
   void Grip(const GuidanceInput& input);
@@ -74,6 +76,7 @@ class GoGuidance : public DescentGuidance {
   double ClimbRate(const Situation& now) const;
 
   GoJob job_;
+  GoDelivery delivery_;
   Eigen::Vector2d home_{0, 0};  // where guidance began
   double travel_m_ = 0;         // height of the UAV's layer
   Eigen::Vector2d going_to_{0, 0};

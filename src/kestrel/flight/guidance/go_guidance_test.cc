@@ -185,6 +185,26 @@ TEST(GoGuidanceTest, ClimbsAndSearchesWhenObjectIsLostNearTheGround) {
   EXPECT_EQ(flight.grabs, 0);
 }
 
+TEST(GoGuidanceTest, LooksFromHigherWhenObjectIsOutOfSightAtTheGround) {
+  GoFlight flight("pick");
+  ASSERT_TRUE(flight.FlyUntil([&] { return flight.FromObject().z() < 0.4; }));
+  const auto unseen = [](GuidanceInput& input) { input.target_age_s = 4; };
+  flight.Step(unseen);
+  EXPECT_EQ(flight.output.phase, Phase::kDescend);
+  EXPECT_TRUE(flight.FlyUntil([&] { return flight.FromObject().z() > 0.7; }, 3, unseen));
+  EXPECT_TRUE(flight.FlyUntilDone()) << flight.output.reason;
+  EXPECT_EQ(flight.grabs, 1);
+}
+
+TEST(GoGuidanceTest, DoesNotGripWhereObjectIsNotKnownWellEnough) {
+  GoFlight flight("pick");
+  const auto vague = [](GuidanceInput& input) {
+    input.target->motion.covariance.diagonal().head<3>().setConstant(0.1 * 0.1);
+  };
+  EXPECT_FALSE(flight.FlyUntil([&] { return flight.grabs > 0; }, 40, vague));
+  EXPECT_TRUE(flight.FlyUntilDone()) << flight.output.reason;
+}
+
 TEST(GoGuidanceTest, AnotherObjectDoesNotDrawItAwayNearTheGround) {
   GoFlight flight("pick");
   ASSERT_TRUE(flight.FlyUntil([&] { return flight.FromObject().z() < 1; }));

@@ -71,6 +71,7 @@ struct GuidanceOptions {
   StaleOptions stale;
   FlightLimitsOptions limits;
   FlightModelOptions model;
+  bool target_is_agile = false;  // its velocity changes as it likes; no option of the user
 
   static void Visit(auto& self, auto&& visit) {
     visit("leg_m", self.leg_m, Range{0, 2}, "from the body's origin down to the feet");

@@ -23,6 +23,8 @@ constexpr double kBrakingShare = 0.6;
 constexpr double kJerkReach_m = 2.5;
 constexpr double kBrakingOnset_s = 0.4;
 constexpr double kMaxLag_mps = 1;
+// Memory of velocity and acceleration of a target without springs.
+constexpr double kAgileMemory_s = 0.25;
 constexpr double kIntegrateWithin_m = 0.5;
 constexpr double kMaxIntegral_mps = 0.8;
 
@@ -81,9 +83,10 @@ SetPoint TargetPursuit::Follow(const TargetEstimate& target, const StandOff* pla
   const TurnState& motion = target.motion;
   const double delay_s = model->delay_s();
   const Vector3d velocity = Smoothed(target);
+  const Vector3d later = Turned(motion, velocity, delay_s) + delay_s * smoothed_->change;
+  const Vector3d change = AccelerationAhead(motion, delay_s) + smoothed_->change;
   PlaneMotion now{motion.position().head<2>(), velocity.head<2>()};
-  PlaneMotion ahead{now.position, Turned(motion, velocity, delay_s).head<2>(),
-                    AccelerationAhead(motion, delay_s).head<2>()};
+  PlaneMotion ahead{now.position, later.head<2>(), change.head<2>()};
   if (place != nullptr) {
     now = place->Beside(now);
     ahead = place->Beside(ahead);
@@ -126,12 +129,20 @@ void TargetPursuit::Close(const Vector2d& offset, const Vector2d& slip, const Ve
 // A low pass that turns with the target, so that it does not lag in curves.
 Vector3d TargetPursuit::Smoothed(const TargetEstimate& target) {
   const Vector3d velocity = target.motion.velocity();
-  if (!smoothed_) smoothed_ = {target.time, velocity};
-  const double seconds = ToSeconds(target.time - smoothed_->time);
-  const double part = 1 - std::exp(-seconds / GuidanceOptions::kSmoothing_s);
-  const Vector3d turned = smoothed_->in_world + seconds * AccelerationAhead(target.motion, 0);
-  smoothed_ = {target.time, turned + part * (velocity - turned)};
-  return smoothed_->in_world;
+  if (!smoothed_) smoothed_ = {target.time, velocity, Vector3d::Zero()};
+  auto& [time, in_world, change] = *smoothed_;
+  const double seconds = ToSeconds(target.time - time);
+  time = target.time;
+  in_world += seconds * (AccelerationAhead(target.motion, 0) + change);
+  const Vector3d error = velocity - in_world;
+  if (!options_.target_is_agile) {
+    in_world += (1 - std::exp(-seconds / GuidanceOptions::kSmoothing_s)) * error;
+  } else if (seconds > 0) {
+    const double kept = std::exp(-seconds / kAgileMemory_s);
+    in_world += (1 - kept * kept) * error;
+    change += (1 - kept) * (1 - kept) / seconds * error;
+  }
+  return in_world;
 }
 
 void TargetPursuit::Integrate(const TargetEstimate& target, const Vector2d& offset) {

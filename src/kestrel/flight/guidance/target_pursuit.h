@@ -53,6 +53,7 @@ class TargetPursuit {
   struct Velocity {
     Time time;
     Eigen::Vector3d in_world;
+    Eigen::Vector3d change;  // beyond that by the turn, m/s^2
   };
 
   // 'place': beside the target; null: above it.

@@ -35,6 +35,9 @@ constexpr double kMaxPx4Timeout_s = 1;  // it is on its way to rest already
 constexpr std::string_view kPx4PositionGain = "MPC_XY_P", kPx4HeightGain = "MPC_Z_P";
 constexpr std::string_view kPx4VelocityP = "MPC_XY_VEL_P_ACC", kPx4VelocityI = "MPC_XY_VEL_I_ACC",
                            kPx4VelocityD = "MPC_XY_VEL_D_ACC";
+constexpr std::string_view kArduPilotPlaceP = "PSC_NE_POS_P", kArduPilotVelocityP = "PSC_NE_VEL_P",
+                           kArduPilotVelocityI = "PSC_NE_VEL_I",
+                           kArduPilotVelocityD = "PSC_NE_VEL_D";
 
 const LimitNames& NamesFor(AutopilotKind kind) {
   return kind == AutopilotKind::kPx4 ? kPx4Limits : kArduPilotLimits;
@@ -52,8 +55,9 @@ void WantGuidanceParameters(Autopilot* autopilot) {
   const std::array<std::string_view, 8> px4 = {kPx4LossAction,   kPx4RadioLossAction, kPx4Timeout,
                                                kPx4PositionGain, kPx4HeightGain,      kPx4VelocityP,
                                                kPx4VelocityI,    kPx4VelocityD};
-  const std::array<std::string_view, 4> ardupilot = {kArduPilotJerk, kArduPilotBraking,
-                                                     kArduPilotVerticalJerk, kArduPilotTimeout};
+  const std::array<std::string_view, 8> ardupilot = {
+      kArduPilotJerk,   kArduPilotBraking,   kArduPilotVerticalJerk, kArduPilotTimeout,
+      kArduPilotPlaceP, kArduPilotVelocityP, kArduPilotVelocityI,    kArduPilotVelocityD};
   for (const std::string_view name : is_px4 ? std::span<const std::string_view>(px4)
                                             : std::span<const std::string_view>(ardupilot)) {
     parameters.Want(name);
@@ -88,6 +92,11 @@ GuidanceOptions OptionsFor(const Autopilot& autopilot, GuidanceOptions options,
     read(kPx4VelocityD, 0, 0.9, &control.d);
   }
   if (!is_px4) {
+    PathControl& path = options.model.path;
+    read(kArduPilotPlaceP, 0, 20, &path.place);
+    read(kArduPilotVelocityP, 0, 20, &path.p);
+    read(kArduPilotVelocityI, 0, 20, &path.i);
+    read(kArduPilotVelocityD, 0, 5, &path.d);
     read(kArduPilotTimeout, 0.1, 60, &stale.timeout_s);
     read(kArduPilotBraking, 0.1, 20, &stale.vertical_braking);
     read(kArduPilotVerticalJerk, 0.1, 1000, &stale.vertical_jerk);

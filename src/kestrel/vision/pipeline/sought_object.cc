@@ -19,7 +19,8 @@ TargetTrackerOptions TrackerOf(const ObjectModel& model, const std::string& name
   const bool may_move = std::ranges::any_of(
       model.classes, [&](const ObjectClass& one) { return one.name == name && one.may_move; });
   TargetTrackerOptions options;
-  options.acceleration_noise = may_move ? 0.3 : 0.03;
+  options.acceleration_noise = may_move ? 0.5 : 0.03;
+  options.turn_noise = options.start_turn_sigma_radps = 0;  // a robot turns on the spot
   options.sway_sigma_m = 0;
   options.max_speed_mps = 5;
   return options;
