@@ -116,8 +116,7 @@ Row Fly(const Case& flown, AutopilotFirmware firmware, const Arguments& argument
 void Run(const Arguments& arguments) {
   fmt::print(
       "| disc | autopilot | taken | grabs | beside | within 0.05 m | within 0.10 m | offset, "
-      "median, "
-      "m | largest | time, median, s |\n|---|---|---|---|---|---|---|---|---|---|\n");
+      "median, m | largest | time, median, s |\n|---|---|---|---|---|---|---|---|---|---|\n");
   for (const Case& flown : kCases) {
     if (!arguments.Wants(flown.name)) continue;
     for (const auto firmware : {AutopilotFirmware::kArduPilot, AutopilotFirmware::kPx4}) {

@@ -63,6 +63,18 @@ std::vector<PadSighting> Find(const cv::Mat& image, std::vector<SoughtTag>* tags
   return found;
 }
 
+// Images of a camera that stands tell no more than one of them.
+bool IsMoved(const std::vector<PadSighting>& image, const std::vector<PadSighting>& last) {
+  constexpr double kMoved_m = 0.03;
+  if (image.size() != last.size()) return true;
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    const Eigen::Vector3d way =
+        image[i].camera_from_pad.translation - last[i].camera_from_pad.translation;
+    if (image[i].pad != last[i].pad || way.norm() > kMoved_m) return true;
+  }
+  return false;
+}
+
 // Returns a board as landing.target.apriltag.board reads it.
 std::string BoardText(const PadsArguments& arguments, const PadMap& map) {
   std::string text = "tags:\n";
@@ -150,9 +162,11 @@ void RunPads(const PadsArguments& arguments) {
   std::vector<std::vector<PadSighting>> images;
   CatchInterrupts();
   ProgressBar progress(source->frame_count());
-  for (Frame frame; !WasInterrupted() && source->Next(&frame); progress.Show(images.size())) {
+  std::size_t done = 0;
+  for (Frame frame; !WasInterrupted() && source->Next(&frame); progress.Show(++done)) {
     CheckImageSize(lens, frame.image.cols, frame.image.rows, frame.name);
-    images.push_back(Find(frame.image, &tags));
+    std::vector<PadSighting> found = Find(frame.image, &tags);
+    if (images.empty() || IsMoved(found, images.back())) images.push_back(std::move(found));
   }
   if (WasInterrupted()) throw Interrupted("interrupted: no map is made from a part of a recording");
   const std::vector<double> sizes(tags.size(), arguments.size_m);

@@ -126,6 +126,7 @@ class DoctorVisit {
     use.sight_s = options_.fly.guidance.sight_s;
     use.pad_position = flight.pad_position;
     use.no_position = flight.no_position;
+    use.has_reserve = !flight.floor.empty() && !flight.no_position;
     use.has_pad_origin = !options_.fly.pad_origin.empty();
     use.sends_distance = options_.fly.messages.sends_distance;
     use.attitude_rate_hz = options_.fly.autopilot.attitude_rate_hz;

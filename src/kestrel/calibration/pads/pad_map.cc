@@ -93,6 +93,7 @@ class Adjustment {
     options.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem, &summary);
+    if (!summary.IsSolutionUsable()) throw InputError("no places agree with these images");
     Describe(&problem, &map);
     return map;
   }
@@ -162,7 +163,9 @@ class Adjustment {
     for (std::size_t pad = 1; pad < pads_.size(); ++pad) {
       if (pads_[pad]) blocks.push_back(pads_[pad]->data());
     }
-    const bool is_known = !blocks.empty() && covariance.Compute(blocks, problem);
+    if (!covariance.Compute(blocks, problem)) {
+      throw InputError("these images do not determine the places of the pads");
+    }
     for (std::size_t pad = 0; pad < pads_.size(); ++pad) {
       if (!pads_[pad]) continue;
       PadPlace& place = map->places[pad].emplace();
@@ -170,7 +173,7 @@ class Adjustment {
       place.position = {x, y};
       place.yaw = std::remainder(yaw, 2 * M_PI);
       place.images = ImagesOf(pad);
-      if (pad > 0 && is_known) SetSigmas(covariance, pads_[pad]->data(), &place);
+      if (pad > 0) SetSigmas(covariance, pads_[pad]->data(), &place);
     }
   }
   int ImagesOf(std::size_t pad) const {

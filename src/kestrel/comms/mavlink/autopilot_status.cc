@@ -90,7 +90,7 @@ void AutopilotStatus::Handle(const mavlink::Packet& packet, const TimeSync& cloc
   } else if (const auto channels = packet.As<mavlink::RcChannels>()) {
     throttle_centred_ = IsThrottleCentred(*channels) ? std::optional(received) : std::nullopt;
   } else if (const auto gnss = packet.As<mavlink::GpsRawInt>()) {
-    HandleGnss(*gnss);
+    HandleGnss(*gnss, received);
   } else if (const auto ekf = packet.As<mavlink::EkfStatusReport>()) {
     constexpr std::uint16_t kBad = mavlink::kEstimatorConstantPosition |
                                    mavlink::kEkfUninitialized | mavlink::kEkfGpsGlitching;
@@ -130,8 +130,8 @@ void AutopilotStatus::HandleSystem(const mavlink::SysStatus& message) {
   battery_ = battery;
 }
 
-void AutopilotStatus::HandleGnss(const mavlink::GpsRawInt& message) {
-  AutopilotGnss gnss{message.fix_type, {}};
+void AutopilotStatus::HandleGnss(const mavlink::GpsRawInt& message, Time received) {
+  AutopilotGnss gnss{received, message.fix_type, {}};
   if (message.satellites_visible != std::numeric_limits<std::uint8_t>::max()) {
     gnss.satellites = message.satellites_visible;
   }

@@ -42,6 +42,7 @@ struct AutopilotBattery {
 
 // The autopilot's first GNSS receiver.
 struct AutopilotGnss {
+  Time received;
   int fix = 0;  // GPS_FIX_TYPE: 2: 2-D, 3: 3-D, 4: DGPS, 5 and 6: RTK; less: none
   std::optional<int> satellites;
 };
@@ -77,7 +78,7 @@ class AutopilotStatus {
 
  private:
   void HandleSystem(const mavlink::SysStatus& message);
-  void HandleGnss(const mavlink::GpsRawInt& message);
+  void HandleGnss(const mavlink::GpsRawInt& message, Time received);
   void HandleAltitude(const mavlink::Altitude& message);
   void HandleRange(const mavlink::DistanceSensor& message, const TimeSync& clock);
 

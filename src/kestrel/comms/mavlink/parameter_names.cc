@@ -7,7 +7,7 @@ namespace {
 // ArduCopter 4.7 changed from centimetres and hundredths of a degree to metres and degrees.
 constexpr double kCenti = 0.01;
 
-constexpr std::array<ParameterNames, 20> kRenamed = {{
+constexpr std::array<ParameterNames, 21> kRenamed = {{
     {{{{"ATC_ANGLE_MAX"}, {"ANGLE_MAX", kCenti}}}},
     {{{{"LAND_ALT_LOW_M"}, {"LAND_ALT_LOW", kCenti}}}},
     {{{{"LAND_SPD_HIGH_MS"}, {"LAND_SPEED_HIGH", kCenti}}}},
@@ -19,6 +19,7 @@ constexpr std::array<ParameterNames, 20> kRenamed = {{
     {{{{"PSC_JERK_D"}, {"PSC_D_JERK"}, {"PSC_JERK_Z"}}}},
     {{{{"PSC_JERK_NE"}, {"PSC_NE_JERK"}, {"PSC_JERK_XY"}}}},
     {{{{"PSC_NE_POS_P"}, {"PSC_POSXY_P"}}}},
+    {{{{"PSC_NE_VEL_D"}, {"PSC_VELXY_D"}}}},
     {{{{"PSC_NE_VEL_I"}, {"PSC_VELXY_I"}}}},
     {{{{"PSC_NE_VEL_P"}, {"PSC_VELXY_P"}}}},
     {{{{"RTL_ALT_M"}, {"RTL_ALT", kCenti}}}},

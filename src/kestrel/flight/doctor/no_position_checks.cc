@@ -25,14 +25,18 @@ void CheckHoverThrust(ParameterRules* rules) {
 
 }  // namespace
 
-void CheckNoPositionOfArduPilot(ParameterRules* rules) {
-  constexpr double kLandsAlways = 3;
+void CheckReserveOfArduPilot(ParameterRules* rules) {
   constexpr unsigned kTakesThrust = 8;
   const auto options = static_cast<unsigned>(rules->Find("GUID_OPTIONS").value_or(0));
   rules->Want("GUID_OPTIONS", Verdict::kWrong,
               {static_cast<double>(options & ~kTakesThrust),
                "bit 3: a climb rate is taken for a thrust, and guidance refuses"},
               [](double value) { return (static_cast<unsigned>(value) & kTakesThrust) == 0; });
+}
+
+void CheckNoPositionOfArduPilot(ParameterRules* rules) {
+  constexpr double kLandsAlways = 3;
+  CheckReserveOfArduPilot(rules);
   rules->WantExactly("FENCE_ENABLE", Verdict::kWrong, {0, "it does not arm without a position"});
   rules->Want("FS_EKF_ACTION", Verdict::kDoubtful,
               {1, "it lands in any mode once its estimator has lost the position"},

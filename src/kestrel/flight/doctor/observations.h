@@ -36,6 +36,7 @@ struct DoctorUse {
   double sight_s = 0.5;                // so long it flies on near the deck without a sighting
   bool pad_position = false;           // the pad is the autopilot's position
   bool no_position = false;            // it has none, and is flown without
+  bool has_reserve = false;            // it is flown without once its position is lost
   // False where the autopilot has no position by itself.
   bool has_position() const { return !pad_position && !no_position; }
   bool has_pad_origin = false;         // Kestrel sets the origin of its frame

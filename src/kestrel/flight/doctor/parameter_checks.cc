@@ -53,7 +53,8 @@ constexpr std::array<ListedCheck, 38> kOfArduPilot = {{
     {"FS_EKF_ACTION", "--pad-position: 1, land; --no-position: not 3, which always lands"},
     {"FS_THR_ENABLE", "--pad-position: 3, land, 7 or 0; a return climbs"},
     {"FENCE_ENABLE", "--pad-position, --no-position: 0, else it arms with a position only"},
-    {"GUID_OPTIONS", "--no-position: without bit 3, which takes a climb rate for a thrust"},
+    {"GUID_OPTIONS",
+     "--no-position, --floor: without bit 3, which takes a climb rate for a thrust"},
     {"MOT_THST_HOVER", "--no-position: learnt, not 0.35 as it comes"},
     {"MNT1_TYPE", "with a gimbal: its type; 1, servos, reports the set-point"},
     {"MNT1_DEFLT_MODE", "with a gimbal: not 0, retracted"},
@@ -297,6 +298,7 @@ void CheckArduPilot(ParameterRules* rules) {
   CheckEstimatorOfArduPilot(rules);
   CheckTrustOfArduPilot(rules);
   if (rules->all().use.guides) CheckGuidanceOfArduPilot(rules);
+  if (rules->all().use.has_reserve) CheckReserveOfArduPilot(rules);
   if (rules->all().use.guides && rules->moves()) CheckAgilityOfArduPilot(rules);
   if (rules->all().calibration.gimbal) CheckGimbalOfArduPilot(rules);
   CheckCameraOfArduPilot(rules);

@@ -65,6 +65,8 @@ class FlightModel {
 
   // Time from sending a set-point to its effect, s.
   double delay_s() const { return delay_s_; }
+  // Part of the newest commanded velocity that meets gusts, and that the UAV does not follow.
+  const Eigen::Vector2d& fed_velocity() const { return fed_velocity_; }
 
   // Takes the horizontal velocity and acceleration that the UAV is to have when the command takes
   // effect, and replaces them by those to command. The next set-point observed is the one of the

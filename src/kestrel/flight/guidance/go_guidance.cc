@@ -186,10 +186,14 @@ Guidance::Wish GoGuidance::Choose(const GuidanceInput& input) {
 void GoGuidance::KeepAway(const GuidanceInput& input, const Situation& now, SetPoint* command) {
   const bool is_near_ground = input.target && now.height_m < options().sight_height_m;
   if (is_near_ground || phase() == GuidancePhase::kAct) return;
-  if (!is_at_work()) return KeepApart(now.feet.head<2>(), going_to_, input.others, command);
+  // The UAV does not follow what meets gusts: its way is without it.
+  const Vector2d fed = flight_model().fed_velocity();
+  command->velocity.head<2>() -= fed;
   for (const OtherUav& other : input.others) {
-    if (other.goes_first) KeepApart(now.feet.head<2>(), going_to_, {&other, 1}, command);
+    if (is_at_work() && !other.goes_first) continue;
+    KeepApart(now.feet.head<2>(), going_to_, {&other, 1}, command);
   }
+  command->velocity.head<2>() += fed;
 }
 
 void GoGuidance::ChoosePhase(const GuidanceInput& input, const Situation& now) {
@@ -197,6 +201,7 @@ void GoGuidance::ChoosePhase(const GuidanceInput& input, const Situation& now) {
   if (carries_) return Deliver(input, now);
   if (input.target) KeepPlace(input, now);
   if (MayGiveWay() && MustGiveWay(now.feet.head<2>(), input.others, kClimbOff_m)) {
+    waits_since_.reset();
     return Enter(GuidancePhase::kGoAround, "gives way to another UAV of the team");
   }
   if (phase() == GuidancePhase::kAct) return Act(input);
@@ -378,6 +383,7 @@ void GoGuidance::LookWhetherGone(const GuidanceInput& input, const Situation& no
 }
 
 void GoGuidance::TryAgain(const char* reason) {
+  waits_since_.reset();
   ++failures_;
   skips_ = job_.delivers && failures_ >= kTries;
   if (!job_.delivers && failures_ >= kTries) {
@@ -513,8 +519,9 @@ double GoGuidance::ClimbRate(const Situation& now) const {
     const double sink = std::max(GuidanceOptions::kSinkGain * left_m, kLastSink_mps);
     return -std::min(sink, kLastGain * left_m);
   }
-  if (now.off_m >= kConePart * Cone(now.height_m)) return 0;
-  return -GuidanceOptions::kSinkGain * (left_m - kWait_m);
+  // Beside the object it rises, to see it, but does not sink.
+  const double climb = -GuidanceOptions::kSinkGain * (left_m - kWait_m);
+  return now.off_m >= kConePart * Cone(now.height_m) ? std::max(climb, 0.0) : climb;
 }
 
 }  // namespace kestrel

@@ -52,7 +52,9 @@ void GustFeed::Move(double ahead_s) {
   if (!time_) return;
   const double lasts_s = kLasting_s * (1 - std::exp(-(ahead_s + kAnswer_s) / kLasting_s));
   const Vector2d lasting = lasts_s * push_change_;
-  const Vector2d wanted = -(push_ + lasting);
+  Vector2d wanted = -(push_ + lasting);
+  const double most = wanted.norm();
+  if (most > kMostPush) wanted *= kMostPush / most;
   const auto& [place, p, i, d] = control_;
   const double seconds = is_moving_ ? ToSeconds(*time_ - path_.time) : kLostAfter_s;
   if (!(seconds < kLostAfter_s)) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/flight/guidance/gust_feed.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kWalk = Radians(3);  // per square root of a second
 constexpr double kOtherPad = 25;      // squared, in variances
+constexpr int kMostContradictions = 8;
 
 }  // namespace
 
@@ -20,7 +21,10 @@ void PadHeading::Add(Time time, double heading, double sigma, int symmetry) {
   const double noise = sigma * sigma;
   const double expected = seen_ ? VarianceAt(time) : 0;
   const double error = std::remainder(heading - heading_, period);
-  const bool is_new = !seen_ || period != period_ || error * error > kOtherPad * (expected + noise);
+  const bool is_contradiction = seen_ && error * error > kOtherPad * (expected + noise);
+  contradictions_ = is_contradiction ? contradictions_ + 1 : 0;
+  const bool is_new = !seen_ || period != period_ || contradictions_ > kMostContradictions;
+  if (is_contradiction && !is_new) return;
   const double gain = is_new ? 1 : expected / (expected + noise);
   heading_ = is_new ? heading : heading_ + gain * error;
   variance_ = gain * noise;

@@ -26,6 +26,7 @@ class PadHeading {
   double heading_ = 0;
   double variance_ = 0;
   double period_ = 0;
+  int contradictions_ = 0;  // frames in a row
 };
 
 }  // namespace kestrel

@@ -69,7 +69,9 @@ RelativeOutput RelativeGuidance::Update(const RelativeInput& input) {
   RelativeOutput output;
   if (HasLink(input)) {
     FollowMode(input);
-    if (is_active_ && !input.pad) GiveUp(input, "the attitude was not sent: lands where it is");
+    if (is_active_ && !(input.pad && input.has_attitude)) {
+      GiveUp(input, "the attitude is not sent: lands where it is");
+    }
     if (is_active_) WatchHeading(input);
     if (is_active_) ChoosePhase(input);
     if (is_active_) {
@@ -113,7 +115,8 @@ void RelativeGuidance::FollowMode(const RelativeInput& input) {
 }
 
 bool RelativeGuidance::CanBegin(const RelativeInput& input) {
-  return input.pad && input.pad_age_s < kLost_s && input.pad->Sigma(State::kVelocity) <= kKnown_mps;
+  return input.pad && input.has_attitude && input.pad_age_s < kLost_s &&
+         input.pad->Sigma(State::kVelocity) <= kKnown_mps;
 }
 
 void RelativeGuidance::Start(const RelativeInput& input) {
@@ -201,6 +204,7 @@ void RelativeGuidance::Lose(const RelativeInput& input) {
     lost_after_s_ += 0.25;
   }
   sunk_m_ = 0;
+  low_since_.reset();
   lost_height_m_ = -pad.way().z();
   Enter(GuidancePhase::kSearch, "the pad is lost: level, against the wind as it was", input.now);
 }
@@ -222,7 +226,14 @@ void RelativeGuidance::FollowLoss(const RelativeInput& input) {
 // the climb rate is controlled.
 void RelativeGuidance::EndLoss(const RelativeInput& input) {
   if (input.has_pilot) return GiveUp(input, "the pad is lost: fly by hand, or it lands");
-  if (HeightWithoutPad(input) < kLandBelow_m || !KnowsClimb(input)) {
+  constexpr double kLow_s = 0.3;  // one echo of a range finder is none
+  if (HeightWithoutPad(input) >= kLandBelow_m) {
+    low_since_.reset();
+  } else if (!low_since_) {
+    low_since_ = input.now;
+  }
+  const bool is_low = low_since_ && ToSeconds(input.now - *low_since_) > kLow_s;
+  if (is_low || !KnowsClimb(input)) {
     return GiveUp(input, "the pad is lost: lands where it is");
   }
   reason_ = "the pad is lost: sinks, against the wind as it was";

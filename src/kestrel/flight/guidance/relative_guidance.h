@@ -36,11 +36,12 @@ struct RelativeInput {
   bool is_guided = false;  // the mode in which the autopilot obeys these set-points
   bool is_allowed = true;  // false: there is a reason against it, and the mode is to be ended
   bool is_armed = false;
-  bool is_landed = false;   // the autopilot reports that it is on the ground
-  bool is_link_up = true;   // messages come from the autopilot, and its attitude
-  bool has_pilot = false;   // there is a transmitter, with the throttle in its middle
-  double mode_age_s = 0;    // time since the autopilot reported its mode
-  double link_delay_s = 0;  // from sending a set-point to its use
+  bool is_landed = false;    // the autopilot reports that it is on the ground
+  bool is_link_up = true;    // messages come from the autopilot
+  bool has_attitude = true;  // and its attitude among them
+  bool has_pilot = false;    // there is a transmitter, with the throttle in its middle
+  double mode_age_s = 0;     // time since the autopilot reported its mode
+  double link_delay_s = 0;   // from sending a set-point to its use
 };
 
 // A command for an autopilot that knows its attitude only, in axes of the UAV's heading: ahead, to
@@ -137,6 +138,7 @@ class RelativeGuidance {
   double height_m_ = 0;                    // of the body above the pad, to hold
   // Without the pad: its age from which the UAV sinks, the height of the loss, and how far it has
   // sunk.
+  std::optional<Time> low_since_;
   double lost_after_s_ = 0, lost_height_m_ = 0, sunk_m_ = 0;
   std::optional<Eigen::Vector2d> sent_;  // the last acceleration
   Time last_;

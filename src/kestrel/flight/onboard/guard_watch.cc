@@ -18,6 +18,7 @@ GuardTask TaskOfGuard(const GuidedFlight& guided, const Autopilot& autopilot, Ti
 }
 
 GuardTask TaskOfGuard(const NoPositionFlight& flight, const Autopilot& autopilot) {
+  if (flight.is_handing_over() && autopilot.is_guided_mode()) return GuardTask::kLower;
   if (!IsGuidedByLeanMode(autopilot.kind(), autopilot.custom_mode())) return GuardTask::kNothing;
   if (flight.is_at_deck()) return GuardTask::kLand;
   const bool is_its_own = flight.is_flying() || flight.has_given_up();

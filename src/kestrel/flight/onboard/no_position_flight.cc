@@ -18,7 +18,8 @@
 namespace kestrel {
 namespace {
 
-constexpr double kAttitudeAge_s = 0.5;  // after so long without one the link is away
+constexpr double kAttitudeAge_s = 0.5;  // after so long without one it is not known
+constexpr double kLinkAge_s = 0.5;      // after so long without a message the link is away
 constexpr double kRangeAge_s = 0.5;     // of the range finder's newest distance
 constexpr Duration kCheckPeriod = std::chrono::milliseconds(500);
 constexpr Duration kHandOver = std::chrono::milliseconds(1500);  // longest wait for GUIDED_NOGPS
@@ -63,6 +64,8 @@ void NoPositionFlight::TakeClimb(double climb_mps) {
 // Without such a measurement its velocity is a guess.
 void NoPositionFlight::TakePose(const PoseSample& pose) {
   const auto& estimator = autopilot_.status().estimator();
+  // After a loss of GNSS the estimator guesses for seconds, and says nothing of it.
+  if (job_.is_reserve) return;
   if (!estimator || !pose.motion || (estimator->flags & mavlink::kEstimatorConstantPosition) != 0 ||
       (estimator->flags & mavlink::kEstimatorVelocityHorizontal) == 0) {
     return;
@@ -72,16 +75,37 @@ void NoPositionFlight::TakePose(const PoseSample& pose) {
 
 void NoPositionFlight::WatchPosition(Time now, bool is_flown) {
   KnowAutopilot(now);
-  const bool is_lost = loss_.IsLost(autopilot_, now);
-  if (is_in_charge() || !is_lost || !is_flown || kind_ == AutopilotKind::kUnknown) return;
+  const bool is_lost = loss_.IsLost(autopilot_);
+  if (is_in_charge() || !is_flown || kind_ == AutopilotKind::kUnknown) return;
+  CheckReserve(now);
+  // The pilot may have taken over since guidance flew last.
+  if (!is_lost || !autopilot_.is_guided_mode() || !refusal_.empty()) return;
   const RelativeInput input = Input(now);
-  if (!RelativeGuidance::CanBegin(input) || !WhyNot(now).empty()) return;
+  if (!RelativeGuidance::CanBegin(input)) return;
   took_over_ = now;
   Notify(mavlink::kSeverityWarning, "the position is lost: lands by the pad alone");
   guidance_->Update(input);  // it has not begun
   was_mode_ = is_given_ = IsMode();
   was_armed_ = was_refused_mode_ = true;
-  if (!was_mode_) autopilot_.RequestMode(FlightMode::kGuidedByLean);
+  is_handing_over_ = !was_mode_;
+  if (is_handing_over_) autopilot_.RequestMode(FlightMode::kGuidedByLean);
+}
+
+void NoPositionFlight::CheckReserve(Time now) {
+  if (now < permission_due_) return;
+  permission_due_ = now + kCheckPeriod;
+  refusal_ = WhyNot(now);
+  if (warning_.IsDue(/*is_flying=*/true, refusal_.empty(), now)) {
+    Notify(mavlink::kSeverityWarning, "a loss of GNSS would end the landing: " + refusal_);
+  }
+}
+
+// The flight by position goes on where the pilot leaves the mode, or begins the next flight.
+void NoPositionFlight::EndReserve(bool is_mode, bool is_armed) {
+  if (is_mode || !autopilot_.is_guided_mode()) is_handing_over_ = false;
+  const bool is_landing = autopilot_.custom_mode() == CustomModeOf(kind_, FlightMode::kLand);
+  const bool is_left = !is_mode && !is_handing_over_ && !is_landing;
+  if (is_left || (is_armed && !was_armed_)) took_over_.reset();
 }
 
 void NoPositionFlight::AddSight(Time now, const TrackSnapshot& track) {
@@ -140,10 +164,11 @@ bool NoPositionFlight::IsMode() const {
 // the pilot must then give the mode anew.
 void NoPositionFlight::WatchMode(Time now, bool is_seen) {
   const bool is_armed = autopilot_.is_armed();
+  const bool is_mode = IsMode();
+  if (took_over_ && autopilot_.is_here()) EndReserve(is_mode, is_armed);
   if (was_armed_ && !is_armed) guidance_->Rearm();
   was_armed_ = is_armed;
   if (!autopilot_.is_here()) return;
-  const bool is_mode = IsMode();
   if (is_mode && !was_mode_) is_given_ = true;
   if (!is_mode) is_given_ = is_begun_ = false;
   was_mode_ = is_mode;
@@ -160,7 +185,7 @@ void NoPositionFlight::WatchMode(Time now, bool is_seen) {
     Notify(mavlink::kSeverityWarning, "GUIDED needs a position: give GUIDED_NOGPS");
   }
   was_refused_mode_ = is_other;
-  const bool is_stuck = is_other && took_over_ && now - *took_over_ > kHandOver;
+  const bool is_stuck = is_handing_over_ && now - *took_over_ > kHandOver;
   if (is_stuck) Request(GuidanceRequest::kLand, now);
   if (!is_given_ || is_begun_ || !is_flying) return;
   is_given_ = false;
@@ -209,7 +234,8 @@ RelativeInput NoPositionFlight::Input(Time now) {
   input.nose = pad_.Nose();
   input.is_armed = autopilot_.is_armed();
   input.is_landed = autopilot_.landed_state() == LandedState::kOnGround;
-  input.is_link_up = ToSeconds(now - attitude_time_) < kAttitudeAge_s;
+  input.is_link_up = ToSeconds(now - autopilot_.received()) < kLinkAge_s;
+  input.has_attitude = ToSeconds(now - attitude_time_) < kAttitudeAge_s;
   input.has_pilot = autopilot_.status().HasPilot(now);
   input.mode_age_s = ToSeconds(now - autopilot_.mode_reported());
   input.link_delay_s = ToSeconds(link_delay);

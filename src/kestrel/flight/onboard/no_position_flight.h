@@ -42,7 +42,10 @@ class NoPositionFlight {
   // Takes over at 'now' if this is the reserve, the position is lost and the pad in view.
   // 'is_flown': the UAV flies by set-points, and is not on the deck.
   void WatchPosition(Time now, bool is_flown);
-  // False: it is the reserve, and has not taken over.
+  // True until the autopilot has entered the mode for it.
+  bool is_handing_over() const { return is_handing_over_; }
+  // False: it is the reserve, and has not taken over in this flight, or the pilot has left its
+  // mode.
   bool is_in_charge() const { return !job_.is_reserve || took_over_.has_value(); }
   // Sends what is due at 'now'; true when it was the first set-point of a new frame.
   bool Fly(Time now, const TrackSnapshot& track);
@@ -61,6 +64,8 @@ class NoPositionFlight {
 
  private:
   void KnowAutopilot(Time now);
+  void CheckReserve(Time now);
+  void EndReserve(bool is_mode, bool is_armed);
   void AddSight(Time now, const TrackSnapshot& track);
   void WatchMode(Time now, bool is_seen);
   bool IsMode() const;
@@ -83,6 +88,7 @@ class NoPositionFlight {
   SendSchedule schedule_;
   PositionLoss loss_;
   std::optional<Time> took_over_;
+  bool is_handing_over_ = false;
 
   Time attitude_time_{};
   double heading_ = 0;  // by the autopilot, rad from east to north

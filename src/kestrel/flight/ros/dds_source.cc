@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/flight/ros/dds_source.h"
 
+#include <algorithm>
 #include <string_view>
 #include <utility>
 
@@ -79,7 +80,11 @@ void DdsSource::RequireOwnLens(const DdsCamera& camera, const LiveSourceChoice& 
 
 void DdsSource::NoteFrames(const DdsCamera& camera) {
   if (frames_) {
-    frames_->further.push_back(camera.camera_frame());
+    const std::string frame = camera.camera_frame();
+    if (frame == frames_->camera || std::ranges::count(frames_->further, frame) > 0) {
+      notify_(fmt::format("two cameras have the frame {}: one mount is taken for both", frame));
+    }
+    frames_->further.push_back(frame);
     return;
   }
   frames_.emplace();

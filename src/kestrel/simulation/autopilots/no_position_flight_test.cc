@@ -193,6 +193,31 @@ TEST_P(NoPositionFlightTest, OtherPadBesideDoesNotMakeItLeanFar) {
   EXPECT_LT(Degrees(lean), 11) << flight.reported;
 }
 
+TEST_P(NoPositionFlightTest, LandsWhenNoAttitudeIsSent) {
+  NoPositionSetup setup = Hover(3, 3);
+  setup.silent_after_s = kNoPositionStart_s + 8;
+  PointedFlight flight = NoPositionFlightOf(setup);
+  flight.Fly(setup.silent_after_s + 1.5);
+  EXPECT_THAT(flight.reported, HasSubstr("the attitude is not sent: lands where it is"));
+  EXPECT_TRUE(IsIn(flight, FlightMode::kLand)) << flight.reported;
+}
+
+// Kestrel does not take back what the pilot has left.
+TEST_P(NoPositionFlightTest, PilotEndsLandingWithoutPosition) {
+  NoPositionSetup setup = Landing(5);
+  setup.gnss_lost_after_s = kNoPositionStart_s + 0.5;
+  PointedFlight flight = NoPositionFlightOf(setup);
+  flight.Fly(kNoPositionStart_s + 2.5);
+  ASSERT_THAT(flight.reported, HasSubstr("lands by the pad alone"));
+  mavlink::SetMode mode;
+  mode.target_system = 1;
+  mode.base_mode = mavlink::kModeFlagCustom;
+  mode.custom_mode = CustomModeOf(Kind(), FlightMode::kAltitude);
+  flight.SendFromGround(mode);
+  flight.Fly(4);
+  EXPECT_TRUE(IsIn(flight, FlightMode::kAltitude)) << flight.reported;
+}
+
 TEST_P(NoPositionFlightTest, GuardLandsWhenKestrelIsKilled) {
   PointedFlight flight = NoPositionFlightOf(Hover(2, 3));
   Settle(&flight);

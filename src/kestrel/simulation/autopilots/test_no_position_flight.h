@@ -26,6 +26,7 @@ struct NoPositionSetup {
   double turn_after_s = -1;  // of the compass, by 40 degrees
   bool has_sticks = false;
   bool has_flow = false;
+  double silent_after_s = -1;     // no attitude comes any more, but heartbeats
   double gnss_lost_after_s = -1;  // negative: there is none from the first
   const char* touchdown_heading = "any";
   std::string parameters;  // besides those that doctor demands
@@ -40,6 +41,8 @@ inline PointedFlight NoPositionFlightOf(const NoPositionSetup& setup) {
   options.estimate.has_gnss = is_normal;
   options.estimate.gnss_lost_after_s = setup.gnss_lost_after_s;
   options.estimate.has_flow = setup.has_flow;
+  options.estimate.silent_after_s = setup.silent_after_s;
+  options.estimate.silent_for_s = 1000;
   options.estimate.hover_thrust_error = setup.hover_thrust_error;
   options.estimate.battery_sag = setup.battery_sag;
   options.estimate.vibration = setup.vibration;
