@@ -19,7 +19,7 @@ namespace kestrel {
 namespace {
 
 constexpr double kAttitudeAge_s = 0.5;  // after so long without one it is not known
-constexpr double kLinkAge_s = 0.5;      // after so long without a message the link is away
+constexpr double kMessageAge_s = 0.5;   // after so long without a message the link is away
 constexpr double kRangeAge_s = 0.5;     // of the range finder's newest distance
 constexpr Duration kCheckPeriod = std::chrono::milliseconds(500);
 constexpr Duration kHandOver = std::chrono::milliseconds(1500);  // longest wait for GUIDED_NOGPS
@@ -234,7 +234,7 @@ RelativeInput NoPositionFlight::Input(Time now) {
   input.nose = pad_.Nose();
   input.is_armed = autopilot_.is_armed();
   input.is_landed = autopilot_.landed_state() == LandedState::kOnGround;
-  input.is_link_up = ToSeconds(now - autopilot_.received()) < kLinkAge_s;
+  input.is_link_up = ToSeconds(now - autopilot_.received()) < kMessageAge_s;
   input.has_attitude = ToSeconds(now - attitude_time_) < kAttitudeAge_s;
   input.has_pilot = autopilot_.status().HasPilot(now);
   input.mode_age_s = ToSeconds(now - autopilot_.mode_reported());
