@@ -24,6 +24,7 @@ constexpr double kGimbalControl_hz = 5;
 constexpr double kStatusRate_hz = 2;
 constexpr double kAcceleration_hz = 50;
 constexpr double kClimbRate_hz = 20;
+constexpr double kGnssRate_hz = 5;  // where a flight goes on without it
 constexpr double kTruePoseRate_hz = 100;
 // After so long without a heartbeat the autopilot is away.
 constexpr double kAwayAfter_s = 3;
@@ -465,7 +466,8 @@ void Autopilot::WantStreams() {
   streams_.WantIfThere(is_px4 ? mavlink::EstimatorStatus::kId : mavlink::EkfStatusReport::kId,
                        kStatusRate_hz);
   streams_.WantIfThere(mavlink::SysStatus::kId, kStatusRate_hz);
-  streams_.WantIfThere(mavlink::GpsRawInt::kId, kStatusRate_hz);
+  streams_.WantIfThere(mavlink::GpsRawInt::kId,
+                       options_.wants_climb ? kGnssRate_hz : kStatusRate_hz);
   if (options_.wants_acceleration) {
     streams_.WantIfThere(is_px4 ? mavlink::HighresImu::kId : mavlink::RawImu::kId,
                          kAcceleration_hz);

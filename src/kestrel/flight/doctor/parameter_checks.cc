@@ -428,10 +428,8 @@ void CheckPilotOfPx4(ParameterRules* rules) {
                  "the sticks do not end OFFBOARD, only the mode switch does");
 }
 
-void CheckGuidanceOfPx4(ParameterRules* rules) {
+void CheckSpeedsOfPx4(ParameterRules* rules) {
   constexpr double kLandingMargin = 1.2;
-  CheckLossOfPx4(rules);
-  CheckPilotOfPx4(rules);
   const double landing_mps = std::max(1.5, std::ceil(kLandingMargin * rules->target_mps()));
   rules->WantAtLeast("LNDMC_XY_VEL_MAX", Verdict::kWrong, rules->target_mps(),
                      {landing_mps,
@@ -441,6 +439,13 @@ void CheckGuidanceOfPx4(ParameterRules* rules) {
                      {std::ceil(rules->wanted_mps()),
                       "slower than the target and a margin: it "
                       "falls behind"});
+}
+
+void CheckGuidanceOfPx4(ParameterRules* rules) {
+  CheckLossOfPx4(rules);
+  CheckPilotOfPx4(rules);
+  const bool stands = rules->all().use.no_position && !rules->moves();
+  if (!stands) CheckSpeedsOfPx4(rules);
   CheckTilt("MPC_TILTMAX_AIR", rules);
 }
 

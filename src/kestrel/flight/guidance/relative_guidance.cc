@@ -31,7 +31,7 @@ constexpr double kClimb_mps = 1, kWiden_mps = 0.5;
 constexpr double kLost_s = 0.3, kWiden_s = 1.5, kFirstEnd_s = 3, kLastEnd_s = 5;
 constexpr double kLargestDrift_m = 1.5;  // two standard deviations
 // The descent without the pad, and where the autopilot's own landing takes over.
-constexpr double kBlindSink_mps = 0.6, kLandBelow_m = 0.5;
+constexpr double kBlindSink_mps = 0.6, kLandBelow_m = 0.25, kAtRest_mps = 0.2;
 // The last bit of a landing.
 constexpr double kContact_m = 0.05, kCommitUnseen_s = 1, kLongestCommit_s = 3;
 constexpr double kPilotPatience_s = 1.5;  // until LAND is requested instead of his mode
@@ -223,16 +223,20 @@ void RelativeGuidance::FollowLoss(const RelativeInput& input) {
 }
 
 // LAND is level, and drifts with the wind: the UAV sinks against what it knows of the wind, where
-// the climb rate is controlled.
+// the climb rate is controlled, until it is low, or stands on something.
 void RelativeGuidance::EndLoss(const RelativeInput& input) {
   if (input.has_pilot) return GiveUp(input, "the pad is lost: fly by hand, or it lands");
-  constexpr double kLow_s = 0.3;  // one echo of a range finder is none
-  if (HeightWithoutPad(input) >= kLandBelow_m) {
+  constexpr double kSure_s = 0.3;   // one echo of a range finder is none
+  constexpr double kSinking_s = 1;  // until it sinks
+  const bool is_at_rest = input.pad_age_s > lost_after_s_ + kSinking_s &&
+                          input.pad->ClimbSigma() < kKnownClimb_mps &&
+                          input.pad->velocity().z() < kAtRest_mps;
+  if (HeightWithoutPad(input) >= kLandBelow_m && !is_at_rest) {
     low_since_.reset();
   } else if (!low_since_) {
     low_since_ = input.now;
   }
-  const bool is_low = low_since_ && ToSeconds(input.now - *low_since_) > kLow_s;
+  const bool is_low = low_since_ && ToSeconds(input.now - *low_since_) > kSure_s;
   if (is_low || !KnowsClimb(input)) {
     return GiveUp(input, "the pad is lost: lands where it is");
   }

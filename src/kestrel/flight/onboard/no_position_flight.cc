@@ -56,7 +56,10 @@ void NoPositionFlight::TakeAcceleration(Time time, const Eigen::Vector3d& accele
   pad_.AddAcceleration(time, acceleration);
 }
 
+// PX4 sends 0 where it does not know it.
 void NoPositionFlight::TakeClimb(double climb_mps) {
+  const auto& estimator = autopilot_.status().estimator();
+  if (estimator && (estimator->flags & mavlink::kEstimatorVelocityVertical) == 0) return;
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   pad_.AddOwnVelocity({kUnknown, kUnknown, climb_mps});
 }

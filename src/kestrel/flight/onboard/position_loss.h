@@ -11,7 +11,7 @@ namespace kestrel {
 
 // Notices that an autopilot loses its position: when its estimator reports none, and already when
 // its first GNSS receiver loses the fix that it had, from when on it guesses for seconds. Two
-// reports in a row count, half a second apart.
+// reports in a row count: of GNSS 0.2 s apart, of the estimator half a second.
 class PositionLoss {
  public:
   // Call it steadily. True while the position is lost.
