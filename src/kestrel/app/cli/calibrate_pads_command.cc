@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <filesystem>
-#include <iostream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,7 +14,7 @@
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/io/bags/source_calibration.h"
-#include "kestrel/io/recording/output_folder.h"
+#include "kestrel/io/recording/euroc/calibration_output.h"
 #include "kestrel/vision/tags/tag_board_detector.h"
 
 namespace kestrel {
@@ -63,7 +61,7 @@ std::vector<PadSighting> Find(const cv::Mat& image, std::vector<SoughtTag>* tags
   return found;
 }
 
-// Images of a camera that stands tell no more than one of them.
+// Images of a camera that stands say no more than one of them.
 bool IsMoved(const std::vector<PadSighting>& image, const std::vector<PadSighting>& last) {
   constexpr double kMoved_m = 0.03;
   if (image.size() != last.size()) return true;
@@ -120,17 +118,6 @@ void RequireUse(const PadMap& map, bool force) {
   fmt::print(stderr, "kestrel: warning: {}\n", why);
 }
 
-void WriteBoard(const std::string& text, const PadsArguments& arguments) {
-  if (arguments.output.empty()) {
-    std::cout << text << std::flush;
-    return;
-  }
-  const std::filesystem::path path(arguments.output);
-  OutputFolder(path.has_parent_path() ? path.parent_path() : ".", arguments.force)
-          .OpenText(path.filename())
-      << text;
-}
-
 void RequirePads(const PadsArguments& arguments) {
   if (arguments.ids.size() < 2) throw InputError("--ids: expected two tags or more");
   TagBoard board;
@@ -144,21 +131,8 @@ void RequirePads(const PadsArguments& arguments) {
   }
 }
 
-void RunPads(const PadsArguments& arguments) {
-  RequirePads(arguments);
-  if (!arguments.output.empty()) {
-    const std::filesystem::path path(arguments.output);
-    OutputFolder(path.has_parent_path() ? path.parent_path() : ".", arguments.force)
-        .NewFile(path.filename());
-  }
-  const std::unique_ptr<FrameSource> source =
-      OpenFrames(arguments.bag.Recording({arguments.recording}));
-  const auto calibration = CalibrationOf(*source, arguments.camera, PrintUnusedKeys);
-  if (!calibration) {
-    throw InputError(arguments.recording + ": has no calibration, give one by --camera FILE");
-  }
-  const CameraIntrinsics& lens = calibration->intrinsics;
-  std::vector<SoughtTag> tags = TagsOf(arguments, CameraModel(lens));
+std::vector<std::vector<PadSighting>> SightingsIn(FrameSource* source, const CameraIntrinsics& lens,
+                                                  std::vector<SoughtTag> tags) {
   std::vector<std::vector<PadSighting>> images;
   CatchInterrupts();
   ProgressBar progress(source->frame_count());
@@ -169,11 +143,25 @@ void RunPads(const PadsArguments& arguments) {
     if (images.empty() || IsMoved(found, images.back())) images.push_back(std::move(found));
   }
   if (WasInterrupted()) throw Interrupted("interrupted: no map is made from a part of a recording");
-  const std::vector<double> sizes(tags.size(), arguments.size_m);
+  return images;
+}
+
+void RunPads(const PadsArguments& arguments) {
+  RequirePads(arguments);
+  RequireFreeForCalibration(arguments.output, arguments.force);
+  const std::unique_ptr<FrameSource> source =
+      OpenFrames(arguments.bag.Recording({arguments.recording}));
+  const auto calibration = CalibrationOf(*source, arguments.camera, PrintUnusedKeys);
+  if (!calibration) {
+    throw InputError(arguments.recording + ": has no calibration, give one by --camera FILE");
+  }
+  const CameraIntrinsics& lens = calibration->intrinsics;
+  const auto images = SightingsIn(source.get(), lens, TagsOf(arguments, CameraModel(lens)));
+  const std::vector<double> sizes(arguments.ids.size(), arguments.size_m);
   const PadMap map = EstimatePadMap(images, sizes, lens.fx_px);
   PrintResult(arguments, map);
   RequireUse(map, arguments.force);
-  WriteBoard(BoardText(arguments, map), arguments);
+  WriteCalibrationText(BoardText(arguments, map), arguments.output, arguments.force);
 }
 
 }  // namespace

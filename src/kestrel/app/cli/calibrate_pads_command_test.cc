@@ -68,7 +68,7 @@ TEST_F(CalibratePadsCommandTest, BoardHasPlacesOfTagsOnFloor) {
   }
 }
 
-TEST_F(CalibratePadsCommandTest, BadInputIsOneLine) {
+TEST_F(CalibratePadsCommandTest, ReportsBadInputInOneLine) {
   ExpectInputError(Command("3"), "--ids: expected two tags or more");
   ExpectInputError(Command("3,3"), "--ids");
   ExpectInputError(Command("3,99999"), "99999");

@@ -118,7 +118,7 @@ class Adjustment {
     return RigidTransform{RotationBy({view[0], view[1], view[2]}), {view[3], view[4], view[5]}}
         .Inverse();
   }
-  // By the nearest pad that is known; nothing: the image shows no other pad.
+  // Returns a first view by the nearest pad that is known; nothing: the image shows no other pad.
   std::optional<ViewVector> FirstView(const std::vector<PadSighting>& image) const {
     if (image.size() < 2) return std::nullopt;
     const PadSighting* nearest = nullptr;

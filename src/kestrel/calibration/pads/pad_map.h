@@ -18,7 +18,7 @@ struct PadSighting {
   RigidTransform camera_from_pad;
 };
 
-// Where a pad lies in the plane of all, in the frame of the first one.
+// Place of a pad in the plane of all, in the frame of the first one.
 struct PadPlace {
   Eigen::Vector2d position{0, 0};  // m
   double yaw = 0;                  // of its x axis, rad from x to y

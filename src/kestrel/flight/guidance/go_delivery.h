@@ -13,7 +13,7 @@ class GoDelivery {
  public:
   explicit GoDelivery(const GuidanceOptions& options);
 
-  // Where the feet are to be.
+  // Place and height to which the feet go.
   struct Goal {
     Eigen::Vector2d place;
     double height_m;

@@ -35,7 +35,7 @@ class GustFeed {
   // Moves the path on to the newest observation, for the push 'ahead_s' later.
   void Move(double ahead_s);
 
-  // Of the path beside the one that is flown, m/s and m/s^2.
+  // Motion of the path beside the one that is flown, m/s and m/s^2.
   const Eigen::Vector2d& velocity() const { return path_.velocity; }
   const Eigen::Vector2d& acceleration() const { return path_.acceleration; }
 

@@ -248,7 +248,7 @@ bool RelativeGuidance::KnowsClimb(const RelativeInput& input) const {
   return !streams_ || input.pad->ClimbSigma() < kKnownClimb_mps;
 }
 
-// Of the feet, m.
+// Height of the feet, m, above what is below, else above the pad.
 double RelativeGuidance::HeightWithoutPad(const RelativeInput& input) const {
   const bool is_measured = input.pad->ClimbSigma() < kKnownClimb_mps;
   const double height_m = is_measured ? -input.pad->way().z() : lost_height_m_ - sunk_m_;

@@ -37,14 +37,14 @@ constexpr double kThrustLag_s = 0.12;
 // (m/s^2), but not less.
 constexpr double kVibration_s = 2, kNoise = 0.1, kQuickest_s = 0.05;
 constexpr double kMeasured_s = 0.3;  // so long its newest value counts
-// Of the mean disturbance, and how long without the pad the newest one is flown against. Later the
-// mean one is: to cancel all of the wind takes away what brakes a UAV that nobody sees.
+// Memory of the mean disturbance, and how long without the pad the newest one is flown against.
+// Later the mean one is: to cancel all of the wind takes away what brakes a UAV that nobody sees.
 constexpr double kSteady_s = 4, kNewest_s = 3;
 constexpr double kMeasuredGusts = 0.2;  // m/s^2, what the accelerometer leaves of gusts
 constexpr double kContradiction = 25;   // squared, in variances
 constexpr double kContradicted_s = 0.5;
-// Of the UAV's own velocity: each report, which repeats errors of those before. It counts once the
-// pad has been out of sight for so long.
+// Noise of the UAV's own velocity in a report, which repeats errors of those before. It counts once
+// the pad has been out of sight for so long.
 constexpr double kOwnVelocityNoise = 0.3, kOutOfSight_s = 0.3;
 constexpr double kSubStep_s = 0.05;
 constexpr double kLargestGap_s = 0.5;  // between two attitudes

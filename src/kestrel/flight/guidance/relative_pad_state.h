@@ -58,10 +58,10 @@ class RelativePadState {
   // False when it was not used: it is not later than the one before.
   bool AddAttitude(Time time, const Eigen::Quaterniond& world_from_body,
                    const Eigen::Vector3d& rate_in_body);
-  // What the accelerometer measures in the body (FLU), m/s^2: upwards at rest.
+  // Takes what the accelerometer measures in the body (FLU), m/s^2: upwards at rest.
   void AddAcceleration(Time time, const Eigen::Vector3d& measured);
-  // The UAV's velocity in the autopilot's world (m/s) at the newest attitude, by what the autopilot
-  // measures without this program; NaN in an axis: it does not know.
+  // Takes the UAV's velocity in the autopilot's world (m/s) at the newest attitude, by what the
+  // autopilot measures without this program; NaN in an axis: it does not know.
   void AddOwnVelocity(const Eigen::Vector3d& velocity_in_world);
   // From now on the rotors are commanded to accelerate the UAV upwards by so much (m/s^2).
   void set_climb_acceleration(double acceleration) { commanded_ = acceleration; }

@@ -24,7 +24,10 @@ void RequireFreeForCalibration(const std::string& file, bool force) {
 
 void WriteCalibration(const CameraCalibration& calibration, double rate_hz, const std::string& file,
                       bool force) {
-  const std::string text = EurocCalibrationText(calibration, rate_hz);
+  WriteCalibrationText(EurocCalibrationText(calibration, rate_hz), file, force);
+}
+
+void WriteCalibrationText(const std::string& text, const std::string& file, bool force) {
   if (file.empty()) {
     std::cout << text << std::flush;
     return;

@@ -17,4 +17,7 @@ void RequireFreeForCalibration(const std::string& file, bool force);
 void WriteCalibration(const CameraCalibration& calibration, double rate_hz, const std::string& file,
                       bool force);
 
+// The same for the text of another result of a calibration.
+void WriteCalibrationText(const std::string& text, const std::string& file, bool force);
+
 }  // namespace kestrel
