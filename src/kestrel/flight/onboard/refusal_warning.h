@@ -7,15 +7,20 @@
 
 namespace kestrel {
 
+// The warning for a mode that is given to an autopilot of which nobody knows whether it flies.
+constexpr char kNotKnownToFly[] =
+    "guidance waits: the autopilot does not report whether it is in the air";
+
 // When to warn a pilot, once a flight, that guidance would be refused, before the pilot tries: PX4
-// refuses OFFBOARD without set-points, and reports no reason.
+// refuses OFFBOARD without set-points, and reports no reason. Or, once a mode, that it waits.
 class RefusalWarning {
  public:
-  // True when the warning is due. 'may_begin': there is no reason to refuse.
-  bool IsDue(bool is_flying, bool may_begin, Time now) {
+  // True when the warning is due. 'is_on': the flight, or the mode. 'may_begin': there is no reason
+  // to refuse.
+  bool IsDue(bool is_on, bool may_begin, Time now) {
     constexpr double kPatience_s = 4;  // reasons of the first seconds pass
-    if (!is_flying) was_given_ = false;
-    if (!is_flying || may_begin) {
+    if (!is_on) was_given_ = false;
+    if (!is_on || may_begin) {
       since_.reset();
       return false;
     }
@@ -26,8 +31,8 @@ class RefusalWarning {
   }
 
  private:
-  std::optional<Time> since_;  // refused in flight
-  bool was_given_ = false;     // in this flight
+  std::optional<Time> since_;  // refused
+  bool was_given_ = false;     // in this flight, or mode
 };
 
 }  // namespace kestrel
