@@ -106,7 +106,8 @@ class NoPositionFlight {
   bool was_refused_mode_ = false;  // the one that needs a position
   Time permission_due_{};
   std::string refusal_ = "the autopilot is not known yet";
-  RefusalWarning warning_, unknown_;
+  RefusalWarning warning_;
+  RefusalWarning unknown_{0};  // PX4 leaves the mode soon
   Time request_due_{};
   GuidancePhase reported_phase_ = GuidancePhase::kIdle;
   std::string reported_reason_;

@@ -53,7 +53,9 @@ class SetPointFlight {
   // The flight by position where that is in charge; else null.
   GuidedFlight* by_position() { return guided_ && !is_without_position() ? &*guided_ : nullptr; }
   // The flight by the pad alone where that is in charge; else null.
-  const NoPositionFlight* by_pad() const { return is_without_position() ? &*no_position_ : nullptr; }
+  const NoPositionFlight* by_pad() const {
+    return is_without_position() ? &*no_position_ : nullptr;
+  }
 
   // Task of the guard if this is the last sign of life.
   GuardTask TaskOfGuard(Time now) const;
