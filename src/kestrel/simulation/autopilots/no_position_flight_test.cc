@@ -100,6 +100,31 @@ TEST_P(NoPositionFlightTest, CompassThatTurnsDoesNotMoveIt) {
   EXPECT_LT(MeasureHover(&flight, 20, 3).largest, 0.4) << flight.reported;
 }
 
+// An acceleration that lasts is taken for tilt by the autopilot.
+TEST_P(NoPositionFlightTest, FollowsPadThatAcceleratesForSeconds) {
+  NoPositionSetup setup = Hover(3, 0);
+  setup.job.pad_moves = true;
+  setup.pad_mps = 7.5;
+  setup.drive_after_s = kNoPositionStart_s + 10;
+  setup.drive_acceleration = 1.5;
+  PointedFlight flight = NoPositionFlightOf(setup);
+  flight.Fly(kNoPositionStart_s + 9);
+  EXPECT_LT(MeasureHover(&flight, 8, 3).within_95, 0.6) << flight.reported;
+  EXPECT_TRUE(IsIn(flight, FlightMode::kGuidedByLean)) << flight.reported;
+}
+
+TEST_P(NoPositionFlightTest, WrongHoverThrustNeitherSinksNorRises) {
+  for (const double error : {-0.2, 0.2}) {
+    NoPositionSetup setup = Hover(3, 0);
+    setup.hover_thrust_error = error;
+    PointedFlight flight = NoPositionFlightOf(setup);
+    flight.Fly(kNoPositionStart_s + 0.1);
+    const HoverErrors errors = MeasureHover(&flight, 20, 3);
+    EXPECT_LT(errors.height_95, 0.3) << error;
+    EXPECT_LT(errors.fastest_sink_mps, 0.5) << error;
+  }
+}
+
 TEST_P(NoPositionFlightTest, GoesOnAfterPadWasLostForASecond) {
   PointedFlight flight = NoPositionFlightOf(Hover(3, 3));
   Settle(&flight);
