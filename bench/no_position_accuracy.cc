@@ -41,7 +41,8 @@ class Report {
     for (const double pad_mps : {1.0, 2.0}) {
       Land(fmt::format("a pad at {:g} m/s", pad_mps), pad_mps, 3, 0.15);
     }
-    LandWhenGnssIsLost();
+    LandByPosition("is lost", &NoPositionSetup::gnss_lost_after_s);
+    LandByPosition("jumps by 5 m", &NoPositionSetup::gnss_jumps_after_s);
     for (const double height_m : {1.0, 3.0, 6.0}) {
       for (const double lost_s : {0.5, 1.0, 3.0, 60.0}) Lose(height_m, lost_s, false);
       Lose(height_m, 60, true);
@@ -150,12 +151,12 @@ class Report {
     setup.touchdown_heading = "30";
     LandAll(fmt::format("landing on {}, wind {:g} m/s", pad, wind_mps), setup, limit_m);
   }
-  // In a landing by position from 5 m.
-  void LandWhenGnssIsLost() {
+  // Begins at 5 m. 'fault': when it happens.
+  void LandByPosition(const std::string& what, double NoPositionSetup::*fault) {
     NoPositionSetup setup;
     setup.altitude_m = 5;
-    setup.gnss_lost_after_s = kNoPositionStart_s + 0.5;
-    LandAll("GNSS is lost in a landing at 5 m, wind 3 m/s", setup, 0.15);
+    setup.*fault = kNoPositionStart_s + 0.5;
+    LandAll(fmt::format("GNSS {} in a landing at 5 m, wind 3 m/s", what), setup, 0.15);
   }
   void LandAll(const std::string& name, const NoPositionSetup& setup, double limit_m) {
     std::vector<double> offsets, times, headings;

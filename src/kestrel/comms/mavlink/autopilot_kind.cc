@@ -77,7 +77,7 @@ constexpr std::array<std::pair<std::uint32_t, std::string_view>, 29> kPx4Modes =
      {Px4CustomMode(4, 17), "EXTERNAL7"},
      {Px4CustomMode(4, 18), "EXTERNAL8"},
      {Px4CustomMode(4, 19), "COURSE"},
-     {Px4CustomMode(4, 20), "DESCEND"},
+     {kPx4Descend, "DESCEND"},
      {Px4CustomMode(5, 0), "ACRO"},
      {kPx4Offboard, "OFFBOARD"},
      {Px4CustomMode(7, 0), "STABILIZED"},
@@ -194,7 +194,8 @@ std::string ModeName(AutopilotKind kind, std::uint32_t custom_mode) {
 
 bool IsLandingMode(AutopilotKind kind, std::uint32_t custom_mode) {
   if (kind == AutopilotKind::kArduPilot) return custom_mode == kArduCopterLand;
-  return kind == AutopilotKind::kPx4 && (custom_mode == kPx4Land || custom_mode == kPx4Precland);
+  return kind == AutopilotKind::kPx4 &&
+         (custom_mode == kPx4Land || custom_mode == kPx4Precland || custom_mode == kPx4Descend);
 }
 
 bool IsGuidedMode(AutopilotKind kind, std::uint32_t custom_mode) {

@@ -61,15 +61,7 @@ const char* ToString(LandedState state) {
 }
 
 std::string FailsafeInWords(AutopilotKind kind, std::uint32_t custom_mode) {
-  const std::string mode = ModeName(kind, custom_mode);
-  if (kind == AutopilotKind::kPx4) {
-    return fmt::format(
-        "the autopilot is still in its failsafe (mode {}): give another mode, e.g. Hold, then "
-        "OFFBOARD",
-        mode);
-  }
-  return fmt::format(
-      "the autopilot is in a failsafe (mode {}): see to its cause, then give GUIDED again", mode);
+  return fmt::format("the autopilot is in a failsafe (mode {})", ModeName(kind, custom_mode));
 }
 
 std::int64_t NanosecondsOfBoot(std::uint32_t boot_ms) {

@@ -95,9 +95,7 @@ class AutopilotStatus {
   std::optional<Time> throttle_centred_;  // when it was last
 };
 
-// Returns why an autopilot that reports a failsafe in this mode is not flown by set-points, and
-// what the pilot has to do. PX4 stays in its failsafe, and refuses OFFBOARD, until another mode is
-// given.
+// Returns "the autopilot is in a failsafe (mode RTL)".
 std::string FailsafeInWords(AutopilotKind kind, std::uint32_t custom_mode);
 
 // Returns the nanoseconds of a time in truncated milliseconds: half of one is added for the mean

@@ -23,12 +23,12 @@ void PadHeading::Add(Time time, double heading, double sigma, int symmetry) {
   const double error = std::remainder(heading - heading_, period);
   const bool is_contradiction = seen_ && error * error > kOtherPad * (expected + noise);
   contradictions_ = is_contradiction ? contradictions_ + 1 : 0;
-  const bool is_new = !seen_ || period != period_ || contradictions_ > kMostContradictions;
+  const bool is_new = !seen_ || period > period_ || contradictions_ > kMostContradictions;
   if (is_contradiction && !is_new) return;
   const double gain = is_new ? 1 : expected / (expected + noise);
   heading_ = is_new ? heading : heading_ + gain * error;
   variance_ = gain * noise;
-  period_ = period;
+  if (is_new) period_ = period;
   seen_ = time;
 }
 

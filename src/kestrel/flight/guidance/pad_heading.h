@@ -12,8 +12,9 @@ namespace kestrel {
 class PadHeading {
  public:
   // A frame shows it so: 'heading' and its standard deviation (rad), in a frame that does not turn
-  // with the UAV. 'symmetry': turns after which the pad looks the same; 0: any, and the frame says
-  // nothing.
+  // with the UAV. 'symmetry': turns after which the pad looks the same in it; 0: any, and the frame
+  // says nothing. One that shows more than those before, as the tags on a ring's board, decides
+  // anew; one that shows less does not.
   void Add(Time time, double heading, double sigma, int symmetry);
 
   // Returns heading and period alone; nothing: no frame has shown it.

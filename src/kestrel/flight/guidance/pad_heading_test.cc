@@ -31,6 +31,17 @@ TEST(PadHeadingTest, FramesOfAnyQuarterMakeOneHeading) {
   EXPECT_LT(variance, kSigma * kSigma / 3);
 }
 
+// Tags on the board of a ring are not seen in each frame, and not from far away.
+TEST(PadHeadingTest, FrameThatShowsMoreDecidesAndOneThatShowsLessDoesNot) {
+  PadHeading heading;
+  heading.Add(Second(10), Radians(20), kSigma, 4);
+  heading.Add(Second(10.1), Radians(290), kSigma, 1);
+  for (int i = 2; i < 20; ++i) heading.Add(Second(10 + 0.1 * i), Radians(20), kSigma, 4);
+  const auto estimate = heading.At(Second(12));
+  EXPECT_DOUBLE_EQ(estimate->yaw_period, kFullTurn);
+  EXPECT_NEAR(std::remainder(estimate->motion.yaw() - Radians(290), kFullTurn), 0, 1e-9);
+}
+
 TEST(PadHeadingTest, PadWithoutHeadingHasNone) {
   PadHeading heading;
   heading.Add(Second(10), 0.3, kSigma, 0);

@@ -36,6 +36,8 @@ constexpr double kBlindSink_mps = 0.6, kLandBelow_m = 0.25, kAtRest_mps = 0.2;
 constexpr double kContact_m = 0.05, kCommitUnseen_s = 1, kLongestCommit_s = 3;
 constexpr double kPilotPatience_s = 1.5;  // until LAND is requested instead of his mode
 
+constexpr char kTurns[] = "turns to the heading over the pad";
+
 Vector2d Limited(const Vector2d& vector, double most) {
   const double size = vector.norm();
   return size > most ? Vector2d(most / size * vector) : vector;
@@ -184,16 +186,20 @@ void RelativeGuidance::Wait(const RelativeInput& input) {
   if (heading_.is_reached() || ignores_heading_) {
     return Enter(GuidancePhase::kDescend, "", input.now);
   }
-  reason_ = heading_.is_known() ? "turns to the heading over the pad"
-                                : "waits above the pad: its heading is not known";
+  reason_ = heading_.is_known() ? kTurns : "waits above the pad: its heading is not known";
 }
 
 // To give up for a heading would be a landing beside the pad.
 void RelativeGuidance::WatchHeading(const RelativeInput& input) {
   heading_.Update(input.now, input.nose, input.pad_heading, input.link_delay_s);
-  if (heading_.IsOverdue(input.now, phase_ == GuidancePhase::kFollow && job_.lands)) {
-    ignores_heading_ = true;
-  }
+  const bool waits = phase_ == GuidancePhase::kFollow || phase_ == GuidancePhase::kDescend;
+  if (heading_.IsOverdue(input.now, waits && job_.lands)) ignores_heading_ = true;
+}
+
+// In the descent the pad may show that its heading is another one.
+bool RelativeGuidance::HasToTurn() const {
+  constexpr double kFar = Radians(10);
+  return !ignores_heading_ && std::abs(heading_.error().value_or(0)) > kFar;
 }
 
 // The time that it may fly without the pad follows from how well velocity and bias are known.
@@ -258,6 +264,8 @@ double RelativeGuidance::HeightWithoutPad(const RelativeInput& input) const {
 void RelativeGuidance::Descend(const RelativeInput& input) {
   const double feet_m = FeetHeight(input);
   const bool is_low = feet_m < options_.commit_height_m;
+  reason_ = HasToTurn() ? kTurns : "";
+  if (HasToTurn()) return;
   if (is_low && input.pad_age_s < kLost_s / 2 && IsAbove(input, options_.cone_m, kStill_mps)) {
     Enter(GuidancePhase::kCommit, "", input.now);
   }
@@ -297,7 +305,7 @@ double RelativeGuidance::WantedClimb(const RelativeInput& input) const {
     case GuidancePhase::kDescend: {
       const double least_m = options_.commit_height_m - 0.1;
       if (feet_m < least_m) return kHeightGain * (least_m - feet_m);
-      if (!IsAbove(input, Cone(feet_m), 1)) return 0;
+      if (!IsAbove(input, Cone(feet_m), 1) || HasToTurn()) return 0;
       return -std::clamp(kSinkGain * feet_m, kSlowest, kFastest);
     }
     case GuidancePhase::kCommit:

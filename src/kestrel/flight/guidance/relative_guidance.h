@@ -108,6 +108,7 @@ class RelativeGuidance {
   void EndLoss(const RelativeInput& input);
   void Wait(const RelativeInput& input);
   void WatchHeading(const RelativeInput& input);
+  bool HasToTurn() const;
   void Descend(const RelativeInput& input);
   void Commit(const RelativeInput& input);
   bool KnowsClimb(const RelativeInput& input) const;

@@ -50,20 +50,13 @@ FlightProgram::FlightProgram(const FlightOptions& options, const FlightParts& pa
     sender_.emplace(options, tracker_, parts.profile, pad_->size_m, pad_->range_m,
                     parts.guidance != nullptr, parts.autopilot, parts.connection, report_);
   }
-  if (parts.sends_pad_position) {
-    pad_position_.emplace(ParseGlobalPosition(options_.pad_origin), parts.autopilot,
-                          parts.connection, report_);
-  }
-  if (parts.without_position) {
-    no_position_.emplace(options, *parts.without_position, parts.autopilot, parts.connection,
-                         report_);
-  }
-  if (parts.guidance && !IsWithoutPosition()) {
-    guided_.emplace(options, tracker_, parts.guidance, !parts.source_has_poses, parts.autopilot,
-                    parts.connection, report_);
-    if (parts.sends_pad_position) guided_->set_position_by_pad();
-    if (parts.box) guided_->set_box(*parts.box);
-  }
+  flown_.emplace(options, tracker_,
+                 SetPointTask{.guidance = parts.guidance,
+                              .without_position = parts.without_position,
+                              .sends_pad_position = parts.sends_pad_position,
+                              .box = parts.box,
+                              .is_in_its_frame = !parts.source_has_poses},
+                 parts.autopilot, parts.connection, report_);
   if (parts.pointed != nullptr) {
     gimbal_.emplace(options, *parts.pointed, pad_, tracker_, parts.autopilot, parts.connection,
                     report_);
@@ -360,12 +353,11 @@ void FlightProgram::Communicate() {
     if (parts_.source_has_poses) poses_.Add(source_pose_.Get());  // a repeated one is ignored
     const Time now = Now();
     parts_.autopilot->Tick(now);
-    if (pad_position_) pad_position_->Send(now, track_.Get());
     SendTarget(now);
     if (gimbal_) Point(now);
     if (camera_) camera_->Tick(now, track_.Get(), poses_);
     WatchFlight(now);
-    if (guard_ && !guard_->Watch(now, TaskOfTheGuard(now))) {
+    if (guard_ && !guard_->Watch(now, flown_->TaskOfGuard(now))) {
       End({FlightOutcome::kNotLanded, {}, guard_->reason()});
     }
   }
@@ -386,9 +378,11 @@ void FlightProgram::ResumePointing() {
 
 void FlightProgram::SendTarget(Time now) {
   const TrackSnapshot& track = track_.Get();
-  if (sender_) {
-    if (guided_) sender_->set_may_stand(!guided_->is_flying());
-    if (IsWithoutPosition()) sender_->set_may_stand(!no_position_->is_flying());
+  if (const NoPositionFlight* const flight = flown_->by_pad()) {
+    phase_ = flight->target_phase();
+    height_m_ = flight->height_m();
+  } else if (sender_) {
+    sender_->set_may_stand(!flown_->is_flying());
     if (sender_->Send(now, track, poses_)) latency_.step(kMessage).Add(Now() - track.captured);
     phase_ = sender_->phase();
     height_m_ = sender_->height_m();
@@ -398,32 +392,20 @@ void FlightProgram::SendTarget(Time now) {
 }
 
 void FlightProgram::Fly(Time now, const TrackSnapshot& track) {
-  if (no_position_) {
-    if (guided_) no_position_->WatchPosition(now, guided_->is_flying() && !guided_->is_at_deck());
-    if (no_position_->Fly(now, track)) latency_.step(kSetPoint).Add(Now() - track.captured);
-    if (IsWithoutPosition()) {
-      guidance_phase_ = no_position_->phase();
-      set_points_ = no_position_->set_points();
-      return;
-    }
-  }
-  if (!guided_) return;
-  guided_->Take(order_);
-  {
+  if (GuidedFlight* const guided = flown_->by_position()) {
+    guided->Take(order_);
+    guided->set_video_delay(VideoDelay());
     const std::lock_guard lock(team_mutex_);
-    if (auto team = std::exchange(team_, std::nullopt)) guided_->Take(*std::move(team));
-    to_objects_ = kestrel::ToObjects(*guided_, poses_, now, to_objects_);
+    if (auto team = std::exchange(team_, std::nullopt)) guided->Take(*std::move(team));
+    to_objects_ = kestrel::ToObjects(*guided, poses_, now, to_objects_);
   }
-  guided_->set_video_delay(VideoDelay());
-  if (guided_->Fly(now, track, poses_)) latency_.step(kSetPoint).Add(Now() - track.captured);
-  guidance_phase_ = guided_->phase();
-  ended_mark_ = guided_->ended().mark;
-  set_points_ = guided_->set_points();
-}
-
-GuardTask FlightProgram::TaskOfTheGuard(Time now) const {
-  if (IsWithoutPosition()) return TaskOfGuard(*no_position_, *parts_.autopilot);
-  return TaskOfGuard(*guided_, *parts_.autopilot, now);
+  if (flown_->Fly(now, track, poses_)) latency_.step(kSetPoint).Add(Now() - track.captured);
+  if (const GuidedFlight* const guided = flown_->by_position()) ended_mark_ = guided->ended().mark;
+  guidance_phase_ = flown_->phase();
+  set_points_ = flown_->set_points();
+  // Without a position there are none.
+  const bool awaits_poses = parts_.source_has_poses || !flown_->is_without_position();
+  if (awaits_poses != std::exchange(awaits_poses_, awaits_poses)) events_.AwaitPoses(awaits_poses);
 }
 
 // The delay that all cameras have, as far as it is known.
@@ -434,29 +416,21 @@ Duration FlightProgram::VideoDelay() const {
   return delay;
 }
 
-// A position that comes from the pad ends with its sight: the autopilot's own guess goes on for
-// seconds. Where it has none, what it sends is a guess from the first.
 void FlightProgram::TakeAutopilotPose(const PoseSample& pose) {
-  if (IsWithoutPosition()) return no_position_->TakePose(pose);
-  if (parts_.source_has_poses) return;
-  if (pad_position_ && !pad_position_->is_known(Now())) return;
+  if (!flown_->TakePose(pose, Now()) || parts_.source_has_poses) return;
   poses_.Add(pose);
   TakePose(pose);
 }
 
 void FlightProgram::TakeAutopilotAttitude(const PoseSample& attitude) {
-  if (pad_position_) pad_position_->TakeAttitude(attitude);
-  if (no_position_) no_position_->TakeAttitude(attitude);
+  flown_->TakeAttitude(attitude);
 }
 
 void FlightProgram::TakeAutopilotAcceleration(Time time, const Eigen::Vector3d& acceleration) {
-  if (pad_position_) pad_position_->TakeAcceleration(time, acceleration);
-  if (no_position_) no_position_->TakeAcceleration(time, acceleration);
+  flown_->TakeAcceleration(time, acceleration);
 }
 
-void FlightProgram::TakeAutopilotClimb(double climb_mps) {
-  if (no_position_) no_position_->TakeClimb(climb_mps);
-}
+void FlightProgram::TakeAutopilotClimb(double climb_mps) { flown_->TakeClimb(climb_mps); }
 
 void FlightProgram::TakeAutopilotGimbal(const GimbalSample& report) {
   if (gimbal_) gimbal_->TakeReport(report);
@@ -500,13 +474,14 @@ void FlightProgram::ShowAutopilot(Time now) {
   const std::lock_guard lock(autopilot_mutex_);
   AutopilotState& state = autopilot_state_;
   UpdateState(autopilot, now, &state);
-  if (!guided_ || IsWithoutPosition()) return;
-  const FollowingDemand& demand = guided_->demand();
+  const GuidedFlight* const guided = flown_->by_position();
+  if (guided == nullptr) return;
+  const FollowingDemand& demand = guided->demand();
   LimitsInUse& limits = state.limits.emplace();
   limits.lean_share = demand.lean_share();
   limits.speed_share = demand.speed_share();
   limits.climb_share = demand.climb_share();
-  if (guided_->cannot_follow()) limits.cannot_follow = "needs " + demand.InWords();
+  if (guided->cannot_follow()) limits.cannot_follow = "needs " + demand.InWords();
 }
 
 LandingWatchInput FlightProgram::LandingInput(Time now) {
@@ -536,24 +511,10 @@ LandingWatchInput FlightProgram::LandingInput(Time now) {
     const TurnState target = Propagate(track.target->motion, ahead_s, noise_);
     input.pattern = {target.position(), target.covariance.topLeftCorner<3, 3>()};
   }
-  if (IsWithoutPosition()) {
-    input.has_contact = input.has_contact || no_position_->phase() == GuidancePhase::kLanded;
-    if (no_position_->is_flying()) gave_up_.clear();
-    const bool is_coming_down = no_position_->phase() == GuidancePhase::kCommit;
-    if (no_position_->is_flying() || is_coming_down) {
-      input.heading_error = no_position_->heading_error();
-    }
-    if (const std::string reason = no_position_->gave_up(); !reason.empty()) gave_up_ = reason;
-    input.gave_up = gave_up_;
-    return input;
-  }
-  if (!guided_) return input;
-  input.has_contact = input.has_contact || guided_->phase() == GuidancePhase::kLanded;
-  if (guided_->is_flying()) {
-    gave_up_.clear();
-    input.heading_error = guided_->heading_error();
-  }
-  if (const std::string& reason = guided_->gave_up(); !reason.empty()) gave_up_ = reason;
+  input.has_contact = input.has_contact || flown_->phase() == GuidancePhase::kLanded;
+  if (flown_->is_flying()) gave_up_.clear();
+  input.heading_error = flown_->heading_error();
+  if (const std::string reason = flown_->gave_up(); !reason.empty()) gave_up_ = reason;
   input.gave_up = gave_up_;
   return input;
 }
@@ -584,7 +545,7 @@ FlightReport FlightProgram::Report() const {
     const std::lock_guard lock(autopilot_mutex_);
     autopilot = autopilot_state_;
   }
-  if (guided_ || no_position_) autopilot.guidance = guidance_phase_.load();
+  if (is_flown()) autopilot.guidance = guidance_phase_.load();
   autopilot.target = phase_;
   autopilot.link = parts_.connection->counters();
   return report;
@@ -606,8 +567,7 @@ std::string FlightProgram::State() const {
   }
   state += fmt::format("; target {}", ToString(phase_.load()));
   if (phase_ == TargetPhase::kFound) state += fmt::format(", {:.1f} m below", height_m_.load());
-  if (guided_ || no_position_)
-    return state + fmt::format("; guidance: {}", ToString(guidance_phase_.load()));
+  if (is_flown()) return state + fmt::format("; guidance: {}", ToString(guidance_phase_.load()));
   return state + fmt::format("; {} messages sent", messages_.load());
 }
 

@@ -22,14 +22,12 @@
 #include "kestrel/flight/onboard/exposure_drive.h"
 #include "kestrel/flight/onboard/flight_options.h"
 #include "kestrel/flight/onboard/guard_watch.h"
-#include "kestrel/flight/onboard/guided_flight.h"
 #include "kestrel/flight/onboard/landing_watch.h"
 #include "kestrel/flight/onboard/latency_statistics.h"
-#include "kestrel/flight/onboard/no_position_flight.h"
 #include "kestrel/flight/onboard/open_live_source.h"
-#include "kestrel/flight/onboard/pad_position.h"
 #include "kestrel/flight/onboard/pointed_gimbal.h"
 #include "kestrel/flight/onboard/recording_switch.h"
+#include "kestrel/flight/onboard/set_point_flight.h"
 #include "kestrel/flight/onboard/sign_of_life.h"
 #include "kestrel/flight/onboard/target_sender.h"
 #include "kestrel/flight/onboard/tracking_camera.h"
@@ -148,8 +146,7 @@ class FlightProgram {
   void Point(Time now);
   void SendTarget(Time now);
   void Fly(Time now, const TrackSnapshot& track);
-  bool IsWithoutPosition() const { return no_position_ && no_position_->is_in_charge(); }
-  GuardTask TaskOfTheGuard(Time now) const;
+  bool is_flown() const { return parts_.guidance || parts_.without_position; }
   void WatchFlight(Time now);
   LandingWatchInput LandingInput(Time now);
   void ShowAutopilot(Time now);
@@ -183,9 +180,8 @@ class FlightProgram {
   std::optional<PadInSight> pad_;
   TargetTrackerOptions tracker_;
   std::optional<TargetSender> sender_;  // nothing: there is nothing to land on
-  std::optional<PadPosition> pad_position_;
-  std::optional<GuidedFlight> guided_;
-  std::optional<NoPositionFlight> no_position_;  // instead of guided_, or its reserve
+  std::optional<SetPointFlight> flown_;
+  bool awaits_poses_ = true;  // for the frames
   std::optional<PointedGimbal> gimbal_;
   std::atomic<bool> resumes_pointing_{false};  // set by any thread
   std::optional<TrackingCamera> camera_;       // its marks are applied by the vision's thread

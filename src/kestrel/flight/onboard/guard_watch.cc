@@ -10,21 +10,6 @@
 
 namespace kestrel {
 
-GuardTask TaskOfGuard(const GuidedFlight& guided, const Autopilot& autopilot, Time now) {
-  if (guided.is_at_deck() && autopilot.is_guided_mode()) return GuardTask::kLand;
-  if (!guided.is_flying()) return GuardTask::kNothing;
-  const bool is_lost = !guided.has_pose() && !autopilot.is_position_good(now).value_or(true);
-  return guided.is_position_by_pad() || is_lost ? GuardTask::kLower : GuardTask::kStop;
-}
-
-GuardTask TaskOfGuard(const NoPositionFlight& flight, const Autopilot& autopilot) {
-  if (flight.is_handing_over() && autopilot.is_guided_mode()) return GuardTask::kLower;
-  if (!IsGuidedByLeanMode(autopilot.kind(), autopilot.custom_mode())) return GuardTask::kNothing;
-  if (flight.is_at_deck()) return GuardTask::kLand;
-  const bool is_its_own = flight.is_flying() || flight.has_given_up();
-  return is_its_own ? GuardTask::kLower : GuardTask::kNothing;
-}
-
 GuardWatch::GuardWatch(GuardLink* guard, Autopilot* autopilot, const Connection* connection,
                        const GuardOptions& options, std::function<void(const std::string&)> report)
     : guard_(guard),

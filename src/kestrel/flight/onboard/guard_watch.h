@@ -9,14 +9,8 @@
 #include "kestrel/comms/mavlink/autopilot.h"
 #include "kestrel/comms/mavlink/connection.h"
 #include "kestrel/core/base/time.h"
-#include "kestrel/flight/onboard/guided_flight.h"
-#include "kestrel/flight/onboard/no_position_flight.h"
 
 namespace kestrel {
-
-// Task of the guard if this is the last sign of life.
-GuardTask TaskOfGuard(const GuidedFlight& guided, const Autopilot& autopilot, Time now);
-GuardTask TaskOfGuard(const NoPositionFlight& flight, const Autopilot& autopilot);
 
 // Gives the guard its signs of life, and informs the user and the ground station what becomes of
 // it. Used by the link's thread only.

@@ -114,9 +114,7 @@ std::optional<Eigen::Vector2d> HomeOf(const Autopilot& autopilot) {
   return LocalFromGlobal(autopilot.kind(), *autopilot.origin(), *autopilot.home()).head<2>();
 }
 
-std::string WhyNotGuide(const Autopilot& autopilot, const GuidanceOptions& options,
-                        const Eigen::Vector3d& position, Time now, bool is_position_by_pad) {
-  const FlightLimitsOptions& limits = options.limits;
+std::string WhyNotFly(const Autopilot& autopilot, bool has_position) {
   if (autopilot.kind() != AutopilotKind::kArduPilot && autopilot.kind() != AutopilotKind::kPx4) {
     return "the autopilot is neither ArduPilot nor PX4";
   }
@@ -124,9 +122,20 @@ std::string WhyNotGuide(const Autopilot& autopilot, const GuidanceOptions& optio
     return fmt::format("the vehicle is {}, expected a multicopter",
                        VehicleName(autopilot.vehicle_type()));
   }
-  if (autopilot.is_in_failsafe()) {
-    return FailsafeInWords(autopilot.kind(), autopilot.custom_mode());
+  if (!autopilot.is_in_failsafe()) return "";
+  const std::string failsafe = FailsafeInWords(autopilot.kind(), autopilot.custom_mode());
+  if (autopilot.kind() == AutopilotKind::kPx4) {
+    return fmt::format("{}: give another mode, e.g. {}, then OFFBOARD", failsafe,
+                       has_position ? "Hold" : "Altitude");
   }
+  return fmt::format("{}: see to its cause, then give {} again", failsafe,
+                     has_position ? "GUIDED" : "GUIDED_NOGPS");
+}
+
+std::string WhyNotGuide(const Autopilot& autopilot, const GuidanceOptions& options,
+                        const Eigen::Vector3d& position, Time now, bool is_position_by_pad) {
+  const FlightLimitsOptions& limits = options.limits;
+  if (std::string why = WhyNotFly(autopilot, /*has_position=*/true); !why.empty()) return why;
   if (!autopilot.is_position_good(now).value_or(true)) {
     return "the autopilot has no good estimate of its position";
   }

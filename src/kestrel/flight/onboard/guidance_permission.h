@@ -27,6 +27,11 @@ GuidanceOptions OptionsFor(const Autopilot& autopilot, GuidanceOptions options,
 // The autopilot's home position in the world, if it has reported one.
 std::optional<Eigen::Vector2d> HomeOf(const Autopilot& autopilot);
 
+// Returns one line that says why this autopilot is not flown by set-points at all: not a
+// multicopter, or in a failsafe, with what the pilot has to do about that. PX4 stays in its
+// failsafe, and refuses OFFBOARD, until another mode is given. Empty when it is flown.
+std::string WhyNotFly(const Autopilot& autopilot, bool has_position);
+
 // Returns one line that says why guidance must not begin with this autopilot and the body at
 // 'position' at 'now': not a multicopter, no position estimate, no home, limits beyond its own, an
 // unsafe reaction to the loss of set-points, out of the geofence around home. Empty when it may.

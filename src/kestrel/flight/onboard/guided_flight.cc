@@ -108,7 +108,7 @@ void GuidedFlight::KnowAutopilot(Time now) {
 void GuidedFlight::WatchMode(const GuidanceInput& input, Time now) {
   const bool is_mode = autopilot_.is_here() ? autopilot_.is_guided_mode() : was_mode_;
   if (is_mode && !was_mode_) is_given_ = true;
-  const bool is_landing = autopilot_.custom_mode() == CustomModeOf(kind_, FlightMode::kLand);
+  const bool is_landing = autopilot_.is_landing_mode();
   if (!is_mode && is_begun_ && phase() == GuidancePhase::kLanded && !input.uav && !is_landing) {
     left_on_deck_ = now;
     Notify(mavlink::kSeverityWarning,
@@ -121,8 +121,12 @@ void GuidedFlight::WatchMode(const GuidanceInput& input, Time now) {
   was_armed_ = input.is_armed;
   if (!is_begun_ && now >= permission_due_) CheckPermission(input, now);
   const bool is_flying = input.is_armed && IsInFlight(autopilot_.landed_state());
-  if (warning_.IsDue(is_flying, is_begun_ || may_begin_, now)) {
+  if (warning_.IsDue(is_flying, is_begun_ || may_begin_ || is_landing, now)) {
     Notify(mavlink::kSeverityWarning, "guidance would be refused now: " + refusal_);
+  }
+  if (unknown_.IsDue(is_given_ && input.is_armed,
+                     autopilot_.landed_state() != LandedState::kUnknown, now)) {
+    Notify(mavlink::kSeverityWarning, kNotKnownToFly);
   }
   if (!is_given_ || is_begun_ || !is_flying) return;
   CheckPermission(input, now);

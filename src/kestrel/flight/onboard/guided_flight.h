@@ -126,6 +126,7 @@ class GuidedFlight {
   bool may_begin_ = false;  // guidance may begin
   std::string refusal_;     // reason why it may not
   RefusalWarning warning_;
+  RefusalWarning unknown_{0};  // PX4 leaves the mode soon
   bool knows_parameters_ = false;
 
   Time reported_frame_;  // the newest frame used for a set-point

@@ -233,6 +233,23 @@ TEST_F(GuidedFlightTest, SendsNothingDuringTakeOff) {
   EXPECT_GT(SetPointsDuring(1), 30) << reported_;
 }
 
+TEST_F(GuidedFlightTest, SaysThatItWaitsWhereNobodyKnowsWhetherItFlies) {
+  Start(mavlink::kAutopilotArduPilot);
+  landed_ = 0;
+  Pass(2);
+  heartbeat_.custom_mode = kGuided;
+  EXPECT_EQ(SetPointsDuring(6), 0);
+  EXPECT_THAT(reported_, HasSubstr("does not report whether it is in the air"));
+}
+
+TEST_F(GuidedFlightTest, FailsafeIsRefusedWithWhatPilotHasToDo) {
+  Start(mavlink::kAutopilotPx4);
+  heartbeat_.custom_mode = kPositionControl;
+  heartbeat_.system_status = mavlink::kStateCritical;
+  Pass(6);
+  EXPECT_THAT(reported_, HasSubstr("failsafe (mode POSCTL): give another mode, e.g. Hold, then"));
+}
+
 TEST_F(GuidedFlightTest, DoesNotStartInModeEnteredBefore) {
   Start(mavlink::kAutopilotArduPilot);
   heartbeat_.custom_mode = kGuided;

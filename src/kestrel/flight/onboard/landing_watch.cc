@@ -116,7 +116,13 @@ std::string LandingWatch::WhySightCounts(const FlightEnd& by_place) const {
 
 FlightEnd LandingWatch::JudgePlace() const {
   constexpr double kSure = 2;  // standard deviations
-  if (!place_ && !seen_) return {FlightOutcome::kDownSomewhere, {}, "the pattern was never seen"};
+  if (!place_ && !seen_) {
+    return {FlightOutcome::kDownSomewhere,
+            {},
+            sight_ ? fmt::format("no position, and the pattern was last seen {:.1f} m away",
+                                 sight_->feet.head<2>().norm())
+                   : "the pattern was never seen"};
+  }
   if (!place_) {
     return {FlightOutcome::kDownSomewhere,
             {},

@@ -132,6 +132,15 @@ TEST_F(LandingWatchTest, ReportsPatternNeverSeen) {
   EXPECT_THAT(InWords(*watch_.end()), HasSubstr("never seen"));
 }
 
+TEST_F(LandingWatchTest, ReportsWherePatternWasSeenWithoutPosition) {
+  input_.is_armed = true;
+  input_.state = LandedState::kInAir;
+  input_.sight = {input_.now, {3, 0, 2}};
+  Pass(4);
+  Disarm();
+  EXPECT_THAT(InWords(*watch_.end()), HasSubstr("the pattern was last seen 3.0 m away"));
+}
+
 // Comes down to 'height_m' in sight of the pattern, and then without a position.
 TEST_F(LandingWatchTest, UsesLastSightWhenPositionIsLost) {
   const struct {

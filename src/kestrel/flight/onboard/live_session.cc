@@ -241,10 +241,11 @@ void Flight::StayWithinSight(double range_m) {
   const auto note = [this](const std::string& text, EventLevel level = EventLevel::kInfo) {
     opening_.push_back({Now(), level, text});
   };
-  if (!options_.guides) {
-    return note(fmt::format(
-        "this camera sees the pad from {:.1f} m at most: begin the autopilot's landing below that",
-        range_m));
+  const auto& relative = options_.without_position;
+  const bool searches = options_.guides && (!relative || relative->is_reserve);
+  if (!searches) {
+    return note(fmt::format("this camera sees the pad from {:.1f} m at most: begin{} below that",
+                            range_m, options_.guides ? "" : " the autopilot's landing"));
   }
   GuidanceOptions& guidance = flight().guidance;
   const double requested_m = guidance.search_altitude_m;

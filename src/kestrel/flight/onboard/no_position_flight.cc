@@ -106,8 +106,7 @@ void NoPositionFlight::CheckReserve(Time now) {
 // The flight by position goes on where the pilot leaves the mode, or begins the next flight.
 void NoPositionFlight::EndReserve(bool is_mode, bool is_armed) {
   if (is_mode || !autopilot_.is_guided_mode()) is_handing_over_ = false;
-  const bool is_landing = autopilot_.custom_mode() == CustomModeOf(kind_, FlightMode::kLand);
-  const bool is_left = !is_mode && !is_handing_over_ && !is_landing;
+  const bool is_left = !is_mode && !is_handing_over_ && !autopilot_.is_landing_mode();
   if (is_left || (is_armed && !was_armed_)) took_over_.reset();
 }
 
@@ -134,6 +133,7 @@ bool NoPositionFlight::Fly(Time now, const TrackSnapshot& track) {
   input.is_guided = is_begun_;
   input.is_allowed = refusal_.empty();
   const RelativeOutput output = guidance_->Update(input);
+  WatchPad(input);
   ReportPhase(output);
   Request(output.request, now);
   // The pad's estimate counts on what is sent.
@@ -142,6 +142,18 @@ bool NoPositionFlight::Fly(Time now, const TrackSnapshot& track) {
   if (!output.set_point || !may_send || !Send(*output.set_point, now)) return false;
   ++set_points_;
   return is_news && is_begun_;
+}
+
+void NoPositionFlight::WatchPad(const RelativeInput& input) {
+  constexpr double kLost_s = 1;
+  if (phase() == GuidancePhase::kLanded) {
+    target_phase_ = TargetPhase::kContact;
+  } else if (input.pad && input.pad_age_s < kLost_s) {
+    target_phase_ = TargetPhase::kFound;
+    height_m_ = -input.pad->way().z();
+  } else if (target_phase_ != TargetPhase::kSearching) {
+    target_phase_ = TargetPhase::kLost;
+  }
 }
 
 void NoPositionFlight::KnowAutopilot(Time now) {
@@ -180,8 +192,14 @@ void NoPositionFlight::WatchMode(Time now, bool is_seen) {
     refusal_ = WhyNot(now);
   }
   const bool is_flying = is_armed && IsInFlight(autopilot_.landed_state());
-  if (warning_.IsDue(is_flying, is_begun_ || refusal_.empty(), now)) {
+  // An autopilot that comes down by itself may do so for this guidance.
+  const bool may_begin = is_begun_ || refusal_.empty() || autopilot_.is_landing_mode();
+  if (warning_.IsDue(is_flying, may_begin, now)) {
     Notify(mavlink::kSeverityWarning, "guidance would be refused now: " + refusal_);
+  }
+  if (unknown_.IsDue(is_given_ && is_armed, autopilot_.landed_state() != LandedState::kUnknown,
+                     now)) {
+    Notify(mavlink::kSeverityWarning, kNotKnownToFly);
   }
   const bool is_other = autopilot_.is_guided_mode() && !is_mode;
   if (is_other && !was_refused_mode_) {
@@ -201,14 +219,7 @@ void NoPositionFlight::WatchMode(Time now, bool is_seen) {
 }
 
 std::string NoPositionFlight::WhyNot(Time now) const {
-  if (kind_ != AutopilotKind::kArduPilot && kind_ != AutopilotKind::kPx4) {
-    return "the autopilot is neither ArduPilot nor PX4";
-  }
-  if (!autopilot_.is_multicopter()) {
-    return fmt::format("the vehicle is {}, expected a multicopter",
-                       VehicleName(autopilot_.vehicle_type()));
-  }
-  if (autopilot_.is_in_failsafe()) return FailsafeInWords(kind_, autopilot_.custom_mode());
+  if (std::string why = WhyNotFly(autopilot_, /*has_position=*/false); !why.empty()) return why;
   if (!autopilot_.parameters().is_done()) return "the autopilot's parameters are not read yet";
   const auto flags = autopilot_.parameters().Find(kArduPilotOptions);
   if (flags && (static_cast<unsigned>(*flags) & kTakesThrust) != 0) {

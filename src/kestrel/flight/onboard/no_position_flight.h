@@ -17,6 +17,7 @@
 #include "kestrel/flight/onboard/position_loss.h"
 #include "kestrel/flight/onboard/refusal_warning.h"
 #include "kestrel/flight/onboard/send_schedule.h"
+#include "kestrel/flight/session/flight_report.h"
 #include "kestrel/flight/session/track_snapshot.h"
 
 namespace kestrel {
@@ -55,6 +56,9 @@ class NoPositionFlight {
     return phase() == GuidancePhase::kLanded || phase() == GuidancePhase::kCommit;
   }
   bool is_flying() const { return guidance_->is_active() && !is_at_deck(); }
+  // How it stands with the pad, for people.
+  TargetPhase target_phase() const { return target_phase_; }
+  double height_m() const { return height_m_; }   // of the body above the pad, where it is found
   int set_points() const { return set_points_; }  // sent
   bool has_given_up() const { return guidance_->has_given_up(); }
   // See Guidance.
@@ -67,6 +71,7 @@ class NoPositionFlight {
   void CheckReserve(Time now);
   void EndReserve(bool is_mode, bool is_armed);
   void AddSight(Time now, const TrackSnapshot& track);
+  void WatchPad(const RelativeInput& input);
   void WatchMode(Time now, bool is_seen);
   bool IsMode() const;
   std::string WhyNot(Time now) const;
@@ -102,9 +107,12 @@ class NoPositionFlight {
   Time permission_due_{};
   std::string refusal_ = "the autopilot is not known yet";
   RefusalWarning warning_;
+  RefusalWarning unknown_{0};  // PX4 leaves the mode soon
   Time request_due_{};
   GuidancePhase reported_phase_ = GuidancePhase::kIdle;
   std::string reported_reason_;
+  TargetPhase target_phase_ = TargetPhase::kSearching;
+  double height_m_ = 0;
   int set_points_ = 0;
 };
 

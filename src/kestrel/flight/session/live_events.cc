@@ -50,7 +50,7 @@ void LiveEvents::Push(Frame frame) {
 }
 
 Time LiveEvents::DeadlineOf(const Frame& frame, Time now) const {
-  if (pose_wait_ == Duration::zero()) return now;
+  if (pose_wait_ == Duration::zero() || !awaits_poses_) return now;
   const Time pose_due = frame.time + lead_ + DurationFromSeconds(pose_delay_s_);
   return std::max(now, pose_due) + pose_wait_;
 }
@@ -98,6 +98,17 @@ void LiveEvents::Queue(const Event& sample) {
   samples_[(first_sample_ + sample_count_++) % samples_.size()] = sample;
 }
 
+void LiveEvents::AwaitPoses(bool are_awaited) {
+  {
+    const std::lock_guard lock(mutex_);
+    awaits_poses_ = are_awaited;
+    if (!are_awaited) {
+      for (WaitingFrame& waiting : frames_) waiting.deadline = {};
+    }
+  }
+  changed_.notify_one();
+}
+
 void LiveEvents::Close() {
   {
     const std::lock_guard lock(mutex_);
@@ -143,7 +154,7 @@ Event LiveEvents::TakeSample() {
 
 Event LiveEvents::TakeFrame() {
   ++counters_.frames;
-  if (!frames_.front().has_pose) ++counters_.unposed_frames;
+  if (awaits_poses_ && !frames_.front().has_pose) ++counters_.unposed_frames;
   Event event = std::move(frames_.front().frame);
   frames_.erase(frames_.begin());
   is_reader_busy_ = true;

@@ -40,6 +40,8 @@ class LiveEvents : public EventSource {
   void Push(const PoseSample& pose);
   void Push(const GimbalSample& report);  // no frame waits for it
   void Push(const ZoomSample& report);    // nor for this one
+  // False: no poses come that a frame could wait for, and none waits.
+  void AwaitPoses(bool are_awaited);
   // Ends the stream: Next returns EndOfStream and waits no more.
   void Close();
 
@@ -78,6 +80,7 @@ class LiveEvents : public EventSource {
   std::optional<Time> newest_pose_;  // that was put in
   double pose_delay_s_ = 0;          // the largest of the last seconds
   Time delay_learnt_;
+  bool awaits_poses_ = true;
   std::size_t most_frames_;           // that may wait
   std::vector<WaitingFrame> frames_;  // those of a camera in order of time
   bool is_reader_busy_ = true;        // with a frame, or it has not come yet

@@ -54,6 +54,20 @@ TEST(LiveEvents, FrameWaitsUntilTimeout) {
   EXPECT_EQ(events.counters().unposed_frames, 1u);
 }
 
+TEST(LiveEvents, FramesDoNotWaitForPosesThatDoNotCome) {
+  LiveEvents events({.pose_wait_s = 1}, Duration::zero());
+  const Time start = Now();
+  events.Push(PoseSample{start - milliseconds(250), {}});
+  events.Next();
+  events.Push(Frame{"", start, {}});
+  events.AwaitPoses(false);
+  EXPECT_EQ(InWords(events.Next()).front(), 'f') << "it waited already";
+  events.Push(Frame{"", start, {}});
+  EXPECT_EQ(InWords(events.Next()).front(), 'f');
+  EXPECT_LT(Now() - start, milliseconds(800));
+  EXPECT_EQ(events.counters().unposed_frames, 0u);
+}
+
 // Over a slow link every pose comes 250 ms late: the test lasts as long.
 TEST(LiveEvents, FrameWaitsForConstantlyLatePoses) {
   LiveEvents events({.pose_wait_s = 0.2}, Duration::zero());

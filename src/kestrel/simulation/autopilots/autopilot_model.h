@@ -113,6 +113,8 @@ class AutopilotModel {
   // Without GNSS and flow, and without ODOMETRY of late.
   bool LacksPosition() const { return external_ && !HasPosition(state_.time); }
   bool NeedsPosition(std::uint32_t custom_mode) const;
+  bool Descends() const;
+  std::uint32_t ReportedMode() const { return Descends() ? kPx4Descend : custom_mode_; }
   void UseExternalNavigation();
   void MistakeAttitude(Time now);
   void MeasureAcceleration();

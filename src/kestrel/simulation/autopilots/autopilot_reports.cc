@@ -20,8 +20,14 @@ void AutopilotModel::SendText(Severity severity, const std::string& text) const 
   send_(message);
 }
 
+// PX4's LAND without a position, which it takes for a failsafe.
+bool AutopilotModel::Descends() const {
+  return is_px4() && LacksPosition() && IsIn(FlightMode::kLand);
+}
+
 std::uint8_t AutopilotModel::LandedState() const {
   if (!is_armed_ || detector_.has_landed()) return mavlink::kLandedOnGround;
+  if (Descends()) return mavlink::kLandedInAir;
   if (LandsByTarget() || IsIn(FlightMode::kLand)) return mavlink::kLandedLanding;
   return mavlink::kLandedInAir;
 }
@@ -33,9 +39,9 @@ mavlink::Heartbeat AutopilotModel::HeartbeatOf() const {
   message.autopilot = is_px4() ? mavlink::kAutopilotPx4 : mavlink::kAutopilotArduPilot;
   message.base_mode = mavlink::kModeFlagCustom;
   if (is_armed_) message.base_mode |= mavlink::kModeFlagArmed;
-  message.custom_mode = custom_mode_;
+  message.custom_mode = ReportedMode();
   message.system_status = is_armed_ ? mavlink::kStateActive : mavlink::kStateStandby;
-  if (is_in_failsafe_) message.system_status = mavlink::kStateCritical;
+  if (is_in_failsafe_ || Descends()) message.system_status = mavlink::kStateCritical;
   message.mavlink_version = kVersion;
   return message;
 }
@@ -60,7 +66,7 @@ bool AutopilotModel::SendMessage(std::uint32_t id, Time now) {
       return true;
     case mavlink::CurrentMode::kId:
       send_(mavlink::CurrentMode{
-          .standard_mode = 0, .custom_mode = custom_mode_, .intended_custom_mode = custom_mode_});
+          .standard_mode = 0, .custom_mode = ReportedMode(), .intended_custom_mode = custom_mode_});
       return true;
     case mavlink::ExtendedSysState::kId:
       send_(mavlink::ExtendedSysState{.vtol_state = 0, .landed_state = LandedState()});

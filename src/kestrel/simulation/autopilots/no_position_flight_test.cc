@@ -24,6 +24,14 @@ class NoPositionFlightTest : public testing::TestWithParam<AutopilotFirmware> {
   static bool IsIn(const PointedFlight& flight, FlightMode mode) {
     return flight.model.custom_mode() == CustomModeOf(Kind(), mode);
   }
+  // A ground station gives a mode.
+  static mavlink::SetMode ModeOf(FlightMode flight_mode) {
+    mavlink::SetMode mode;
+    mode.target_system = 1;
+    mode.base_mode = mavlink::kModeFlagCustom;
+    mode.custom_mode = CustomModeOf(Kind(), flight_mode);
+    return mode;
+  }
   static NoPositionSetup Hover(double altitude_m, double wind_mps) {
     NoPositionSetup setup;
     setup.firmware = GetParam();
@@ -92,6 +100,31 @@ TEST_P(NoPositionFlightTest, CompassThatTurnsDoesNotMoveIt) {
   EXPECT_LT(MeasureHover(&flight, 20, 3).largest, 0.4) << flight.reported;
 }
 
+// An acceleration that lasts is taken for tilt by the autopilot.
+TEST_P(NoPositionFlightTest, FollowsPadThatAcceleratesForSeconds) {
+  NoPositionSetup setup = Hover(3, 0);
+  setup.job.pad_moves = true;
+  setup.pad_mps = 7.5;
+  setup.drive_after_s = kNoPositionStart_s + 10;
+  setup.drive_acceleration = 1.5;
+  PointedFlight flight = NoPositionFlightOf(setup);
+  flight.Fly(kNoPositionStart_s + 9);
+  EXPECT_LT(MeasureHover(&flight, 8, 3).within_95, 0.6) << flight.reported;
+  EXPECT_TRUE(IsIn(flight, FlightMode::kGuidedByLean)) << flight.reported;
+}
+
+TEST_P(NoPositionFlightTest, WrongHoverThrustNeitherSinksNorRises) {
+  for (const double error : {-0.2, 0.2}) {
+    NoPositionSetup setup = Hover(3, 0);
+    setup.hover_thrust_error = error;
+    PointedFlight flight = NoPositionFlightOf(setup);
+    flight.Fly(kNoPositionStart_s + 0.1);
+    const HoverErrors errors = MeasureHover(&flight, 20, 3);
+    EXPECT_LT(errors.height_95, 0.3) << error;
+    EXPECT_LT(errors.fastest_sink_mps, 0.5) << error;
+  }
+}
+
 TEST_P(NoPositionFlightTest, GoesOnAfterPadWasLostForASecond) {
   PointedFlight flight = NoPositionFlightOf(Hover(3, 3));
   Settle(&flight);
@@ -123,6 +156,23 @@ TEST_P(NoPositionFlightTest, ClimbsAndLandsWhenPadIsLostForGood) {
   EXPECT_LT(moved_m(), 4);
 }
 
+// PX4 reports a failsafe then: no reason to give another mode.
+TEST_P(NoPositionFlightTest, GivesNoAdviceWhileItHasUavLand) {
+  PointedFlight flight = NoPositionFlightOf(Hover(6, 0));
+  Settle(&flight);
+  flight.SendFromGround(ModeOf(FlightMode::kLand));
+  flight.Fly(6);
+  ASSERT_TRUE(flight.model.is_armed());
+  EXPECT_THAT(flight.reported, Not(HasSubstr("guidance would be refused"))) << flight.reported;
+}
+
+TEST_P(NoPositionFlightTest, SaysThatItWaitsWhereNobodyKnowsWhetherItFlies) {
+  PointedFlight flight = NoPositionFlightOf(Hover(3, 0));
+  flight.hides_landed_state = true;
+  flight.Fly(kNoPositionStart_s + 6);
+  EXPECT_THAT(flight.reported, HasSubstr("does not report whether it is in the air"));
+}
+
 TEST_P(NoPositionFlightTest, VelocityByFlowKeepsItWhereItLostPad) {
   NoPositionSetup setup = Hover(3, 3);
   setup.has_flow = true;
@@ -134,15 +184,19 @@ TEST_P(NoPositionFlightTest, VelocityByFlowKeepsItWhereItLostPad) {
   EXPECT_LT((flight.model.truth().world_from_body.translation - place).head<2>().norm(), 0.5);
 }
 
+// Also where only the last metres show which of the pad's four headings it is.
 TEST_P(NoPositionFlightTest, LandsWithTheHeadingThatIsWanted) {
-  NoPositionSetup setup = Landing(3);
-  setup.touchdown_heading = "30";
-  PointedFlight flight = NoPositionFlightOf(setup);
-  EXPECT_TRUE(flight.Land(60)) << flight.reported;
-  ASSERT_TRUE(flight.model.result().contact) << flight.reported;
-  EXPECT_TRUE(flight.model.result().contact->on_board);
-  const double heading = flight.model.result().contact->heading_in_pattern;
-  EXPECT_NEAR(Degrees(std::remainder(heading - Radians(30), kFullTurn)), 0, 3) << flight.reported;
+  for (const double quarters_beyond_m : {100.0, 1.5}) {
+    NoPositionSetup setup = Landing(3);
+    setup.touchdown_heading = "30";
+    setup.quarters_beyond_m = quarters_beyond_m;
+    PointedFlight flight = NoPositionFlightOf(setup);
+    EXPECT_TRUE(flight.Land(60)) << flight.reported;
+    ASSERT_TRUE(flight.model.result().contact) << flight.reported;
+    EXPECT_TRUE(flight.model.result().contact->on_board);
+    const double heading = flight.model.result().contact->heading_in_pattern;
+    EXPECT_NEAR(Degrees(std::remainder(heading - Radians(30), kFullTurn)), 0, 3) << flight.reported;
+  }
 }
 
 TEST_P(NoPositionFlightTest, LandsByPadAloneWhenGnssIsLostInDescent) {
@@ -209,11 +263,7 @@ TEST_P(NoPositionFlightTest, PilotEndsLandingWithoutPosition) {
   PointedFlight flight = NoPositionFlightOf(setup);
   flight.Fly(kNoPositionStart_s + 2.5);
   ASSERT_THAT(flight.reported, HasSubstr("lands by the pad alone"));
-  mavlink::SetMode mode;
-  mode.target_system = 1;
-  mode.base_mode = mavlink::kModeFlagCustom;
-  mode.custom_mode = CustomModeOf(Kind(), FlightMode::kAltitude);
-  flight.SendFromGround(mode);
+  flight.SendFromGround(ModeOf(FlightMode::kAltitude));
   flight.Fly(4);
   EXPECT_TRUE(IsIn(flight, FlightMode::kAltitude)) << flight.reported;
 }

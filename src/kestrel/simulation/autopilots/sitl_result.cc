@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "kestrel/core/geometry/angles.h"
+
 namespace kestrel {
 namespace {
 
@@ -10,8 +12,10 @@ std::string LandingInWords(const SitlResult& result) {
   if (!result.contact) return "did not come down in a landing mode\n";
   const std::string where =
       result.contact->on_board
-          ? fmt::format("on the board, {:.3f} m from the pattern's centre (true)",
-                        result.offset_m())
+          ? fmt::format(
+                "on the board, {:.3f} m from the pattern's centre, {:.1f} degrees from its "
+                "heading (true)",
+                result.offset_m(), Degrees(result.contact->heading_in_pattern))
           : fmt::format("beside the board, {:.2f} m from the pattern's centre (true)",
                         result.offset_m());
   std::string disarmed = "not disarmed";

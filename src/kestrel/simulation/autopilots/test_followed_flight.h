@@ -49,16 +49,16 @@ class FollowedFlight : public LinkedFlight {
     std::optional<ViewLimits> view;
     if (down_deg) view.emplace(camera_.intrinsics, *camera_.body_from_camera);
     const TargetTrackerOptions tracker = FollowPipelineOptions().Tracker();
-    Guide(flight, tracker, [view](const GuidanceOptions& guidance) {
-      return std::make_unique<FollowGuidance>(guidance, view);
-    });
+    FlyBySetPoints(flight, tracker, {.guidance = [view](const GuidanceOptions& guidance) {
+                     return std::make_unique<FollowGuidance>(guidance, view);
+                   }});
     if (!down_deg) Point(std::nullopt, tracker);
     for (double& error : stays_) error = random_.Normal();
     if (!down_deg) GiveControl(255, 190);
   }
 
-  GuidancePhase phase() const { return guided_->phase(); }
-  void Confirm() { guided_->Take({++orders_, 1}); }
+  GuidancePhase phase() const { return flown_->phase(); }
+  void Confirm() { flown_->by_position()->Take({++orders_, 1}); }
   // Confirms as soon as guidance has the UAV; false when it has not followed after that time.
   bool FollowWithin(double longest_s) {
     for (double s = 0; s < longest_s; s += kLook_s) {

@@ -63,12 +63,12 @@ class GoFlight : private OwnField, public LinkedFlight {
     constexpr double kLook_s = 0.5;
     for (double s = 0; s < longest_s && gave_up().empty(); s += kLook_s) {
       Fly(kLook_s);
-      if (flown_->is_done()) return true;
+      if (go_->is_done()) return true;
     }
     return false;
   }
-  std::string gave_up() const { return guided_->gave_up(); }
-  GuidancePhase phase() const { return guided_->phase(); }
+  std::string gave_up() const { return flown_->gave_up(); }
+  GuidancePhase phase() const { return flown_->phase(); }
   const std::vector<HuntObject>& field() { return world.field().objects(); }
 
  protected:
@@ -78,12 +78,13 @@ class GoFlight : private OwnField, public LinkedFlight {
                      setup.seed, HuntCalibration()) {
     GoJob job = ParseGoJob(setup.job);
     job.delivers = setup.box.has_value();
-    Guide(setup.flight, {}, [this, job](const GuidanceOptions& guidance) {
+    SetPointTask task{.guidance = [this, job](const GuidanceOptions& guidance) {
       auto made = std::make_unique<GoGuidance>(guidance, job);
-      flown_ = made.get();
+      go_ = made.get();
       return made;
-    });
-    if (setup.box) guided_->set_box(BoxOf(setup));
+    }};
+    if (setup.box) task.box = BoxOf(setup);
+    FlyBySetPoints(setup.flight, {}, task);
   }
 
   void Show(Time captured, const SoughtObject& sought) {
@@ -105,7 +106,7 @@ class GoFlight : private OwnField, public LinkedFlight {
     return GlobalFromLocal(kind, at, {setup.box->x(), setup.box->y(), 0});
   }
 
-  const GoGuidance* flown_ = nullptr;
+  const GoGuidance* go_ = nullptr;
 };
 
 // One that sees rendered images: all that flies is what `kestrel fly` flies.
@@ -241,7 +242,7 @@ class SightedGoFlight : public GoFlight {
     Show(image.captured, sought_);
   }
 
-  virtual void LeaveEnded() { sought_.Leave(guided_->ended().mark); }
+  virtual void LeaveEnded() { sought_.Leave(flown_->by_position()->ended().mark); }
 
   double Focal() const { return camera_.intrinsics.fx_px; }
 

@@ -18,11 +18,8 @@
 #include "kestrel/comms/mavlink/packet_parser.h"
 #include "kestrel/comms/mavlink/packet_writer.h"
 #include "kestrel/core/camera/calibration.h"
-#include "kestrel/flight/onboard/guard_watch.h"
-#include "kestrel/flight/onboard/guided_flight.h"
-#include "kestrel/flight/onboard/no_position_flight.h"
-#include "kestrel/flight/onboard/pad_position.h"
 #include "kestrel/flight/onboard/pointed_gimbal.h"
+#include "kestrel/flight/onboard/set_point_flight.h"
 #include "kestrel/simulation/autopilots/test_autopilot.h"
 
 namespace kestrel {
@@ -57,6 +54,7 @@ class LinkedFlight : public TestAutopilot {
   int set_points = 0;  // sent to the gimbal
   int refusals = 0;    // of modes and set-points by the autopilot, since Kestrel is gone
   std::string reported;
+  bool hides_landed_state = false;  // the autopilot does not report whether it flies
 
  protected:
   LinkedFlight(AutopilotFirmware firmware, const AutopilotModelOptions& options,
@@ -76,21 +74,9 @@ class LinkedFlight : public TestAutopilot {
   void Point(const std::optional<PadInSight>& pad, const TargetTrackerOptions& tracker) {
     pointed_.emplace(FlightOptions(), camera_, pad, tracker, &autopilot_, &connection_, Report());
   }
-  void Guide(const FlightOptions& options, const TargetTrackerOptions& tracker,
-             const GuidanceMaker& make) {
-    guided_.emplace(options, tracker, make, true, &autopilot_, &connection_, Report());
-    if (pad_position_) guided_->set_position_by_pad();
-  }
-
-  // Flies over the pad without any position.
-  void FlyWithoutPosition(const RelativeJob& job, const FlightOptions& options) {
-    no_position_.emplace(options, job, &autopilot_, &connection_, Report());
-  }
-
-  // Sends the place over the pad, which is then the autopilot's position.
-  void SendPadPosition() {
-    pad_position_.emplace(GlobalPosition{473977420, 85455940, 0}, &autopilot_, &connection_,
-                          Report());
+  void FlyBySetPoints(const FlightOptions& options, const TargetTrackerOptions& tracker,
+                      const SetPointTask& task) {
+    flown_.emplace(options, tracker, task, &autopilot_, &connection_, Report());
   }
 
   // The vision: takes and processes images, and updates the track.
@@ -106,12 +92,7 @@ class LinkedFlight : public TestAutopilot {
     if (!is_alive_) return;
     autopilot_.Tick(now);
     See();
-    if (pad_position_) pad_position_->Send(now, track_);
-    if (guided_ && no_position_) {
-      no_position_->WatchPosition(now, guided_->is_flying() && !guided_->is_at_deck());
-    }
-    if (no_position_) no_position_->Fly(now, track_);
-    if (guided_ && !IsWithoutPosition()) guided_->Fly(now, track_, poses_);
+    if (flown_) flown_->Fly(now, track_, poses_);
     if (pointed_) pointed_->Point(now, track_, poses_);
   }
 
@@ -127,9 +108,7 @@ class LinkedFlight : public TestAutopilot {
   PoseHistory poses_{512, std::chrono::milliseconds(500)};
   TrackSnapshot track_;
   std::optional<PointedGimbal> pointed_;
-  std::optional<GuidedFlight> guided_;
-  std::optional<PadPosition> pad_position_;
-  std::optional<NoPositionFlight> no_position_;
+  std::optional<SetPointFlight> flown_;
 
  private:
   static AutopilotOptions LinkOptions(bool has_gimbal) {
@@ -146,19 +125,16 @@ class LinkedFlight : public TestAutopilot {
   AutopilotListener Listener() {
     AutopilotListener listener;
     listener.attitude = [this](const PoseSample& attitude) {
-      if (pad_position_) pad_position_->TakeAttitude(attitude);
-      if (no_position_) no_position_->TakeAttitude(attitude);
+      if (flown_) flown_->TakeAttitude(attitude);
     };
     listener.acceleration = [this](Time time, const Eigen::Vector3d& acceleration) {
-      if (pad_position_) pad_position_->TakeAcceleration(time, acceleration);
-      if (no_position_) no_position_->TakeAcceleration(time, acceleration);
+      if (flown_) flown_->TakeAcceleration(time, acceleration);
     };
     listener.climb = [this](double climb_mps) {
-      if (no_position_) no_position_->TakeClimb(climb_mps);
+      if (flown_) flown_->TakeClimb(climb_mps);
     };
     listener.pose = [this](const PoseSample& pose) {
-      if (IsWithoutPosition()) return no_position_->TakePose(pose);
-      if (pad_position_ && !pad_position_->is_known(now)) return;
+      if (flown_ && !flown_->TakePose(pose, now)) return;
       poses_.Add(pose);
       TakePose(pose);
     };
@@ -172,14 +148,10 @@ class LinkedFlight : public TestAutopilot {
     return [this](const std::string& text) { reported += text + "\n"; };
   }
 
-  bool IsWithoutPosition() const { return no_position_ && no_position_->is_in_charge(); }
-
   void Guard() {
-    if (!guided_ && !no_position_) return;
+    if (!flown_) return;
     if (is_alive_) {
-      const GuardTask task = IsWithoutPosition() ? TaskOfGuard(*no_position_, autopilot_)
-                                                 : TaskOfGuard(*guided_, autopilot_, now);
-      life_ = LifeOf(task, autopilot_, connection_);
+      life_ = LifeOf(flown_->TaskOfGuard(now), autopilot_, connection_);
       guard_.TakeLife(life_.task, life_.kind, now);
     }
     const GuardAction action = guard_.Update(now);
@@ -197,6 +169,7 @@ class LinkedFlight : public TestAutopilot {
   template <class Message>
   void Deliver(const Message& message) {
     from_autopilot_.Parse(writer_.Write(message), [this](const mavlink::Packet& packet) {
+      if (hides_landed_state && packet.id == mavlink::ExtendedSysState::kId) return;
       TakePacket(packet, life_, now, &guard_);
       if (!is_alive_) return CountRefusal(packet);
       autopilot_.Handle(packet, now);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -26,9 +27,11 @@ struct NoPositionSetup {
   double turn_after_s = -1;  // of the compass, by 40 degrees
   bool has_sticks = false;
   bool has_flow = false;
-  double silent_after_s = -1;     // no attitude comes any more, but heartbeats
-  double gnss_lost_after_s = -1;  // negative: there is none from the first
+  double silent_after_s = -1;      // no attitude comes any more, but heartbeats
+  double gnss_lost_after_s = -1;   // in a landing by position; negative: see below
+  double gnss_jumps_after_s = -1;  // the same, by 5 m; both negative: there is none from the first
   const char* touchdown_heading = "any";
+  double quarters_beyond_m = std::numeric_limits<double>::infinity();  // see TestEye
   std::string parameters;  // besides those that doctor demands
   std::uint64_t seed = 1;
 };
@@ -37,9 +40,10 @@ constexpr double kNoPositionStart_s = 8;  // the pilot gives the mode
 
 inline PointedFlight NoPositionFlightOf(const NoPositionSetup& setup) {
   AutopilotModelOptions options;
-  const bool is_normal = setup.gnss_lost_after_s >= 0;
+  const bool is_normal = setup.gnss_lost_after_s >= 0 || setup.gnss_jumps_after_s >= 0;
   options.estimate.has_gnss = is_normal;
   options.estimate.gnss_lost_after_s = setup.gnss_lost_after_s;
+  options.estimate.jump_after_s = setup.gnss_jumps_after_s;
   options.estimate.has_flow = setup.has_flow;
   options.estimate.silent_after_s = setup.silent_after_s;
   options.estimate.silent_for_s = 1000;
@@ -79,6 +83,7 @@ inline PointedFlight NoPositionFlightOf(const NoPositionSetup& setup) {
           vehicle,
           {.has_gimbal = false,
            .half_view_deg = kHalfView_deg,
+           .cameras = {{.quarters_beyond_m = setup.quarters_beyond_m}},
            .guides = is_normal,
            .without_position = job,
            .flight = flight,

@@ -46,8 +46,10 @@ inline CameraCalibration TestCamera(bool has_gimbal, double half_view_deg, doubl
 class TrueDetector : public TargetDetector {
  public:
   // 'seen': the true camera_from_target of the image; nothing: it is out of view.
-  TrueDetector(const CameraModel& camera, const std::optional<RigidTransform>* seen)
-      : camera_(camera), seen_(*seen) {}
+  // 'quarters_beyond_m': see TestEye.
+  TrueDetector(const CameraModel& camera, const std::optional<RigidTransform>* seen,
+               const double* quarters_beyond_m)
+      : camera_(camera), seen_(*seen), quarters_beyond_m_(*quarters_beyond_m) {}
 
   TargetReport Detect(const cv::Mat& /*image*/, const TargetHint& /*hint*/,
                       TargetWorkspace& /*workspace*/) const override {
@@ -57,6 +59,10 @@ class TrueDetector : public TargetDetector {
     TargetDetection detection{};
     detection.camera_from_target = *seen_;
     Eigen::Vector3d& center = detection.camera_from_target.translation;
+    if (center.norm() > quarters_beyond_m_) {
+      detection.camera_from_target.rotation *= RotationBy({0, 0, kFullTurn / 4});
+      detection.heading_symmetry = 4;
+    }
     const double sigma_m = kError * center.norm();
     for (double& axis : center) axis += sigma_m * random_.Normal();
     detection.covariance.setZero();
@@ -75,6 +81,7 @@ class TrueDetector : public TargetDetector {
   CameraModel camera_;
   TargetShape shape_;
   const std::optional<RigidTransform>& seen_;
+  const double& quarters_beyond_m_;
   mutable Random random_{1};
 };
 
@@ -82,7 +89,9 @@ class TrueDetector : public TargetDetector {
 struct TestEye {
   double sight_range_m = kTestSightRange_m;
   double half_view_deg = 0;  // 0: that of the flight
-  double tilt_deg = 0;       // where it looks: 0 down, 90 ahead
+  // From where on the pad looks the same after each quarter turn.
+  double quarters_beyond_m = std::numeric_limits<double>::infinity();
+  double tilt_deg = 0;  // where it looks: 0 down, 90 ahead
   // Faults, while the UAV is lower above the pad than 'wrong_below_m'.
   double wrong_below_m = std::numeric_limits<double>::infinity();
   double late_s = 0;         // how late the stamps are
@@ -123,12 +132,16 @@ class PointedFlight : public LinkedFlight {
         pipeline_(Calibrations(), Detectors(), PipelineOptions()) {
     const PadInSight pad{1.2, kTestSightRange_m, TargetTrackerOptions()};
     if (choice.has_gimbal) Point(pad, pad.tracker);
-    if (choice.sends_pad_position) SendPadPosition();
-    if (choice.without_position) FlyWithoutPosition(*choice.without_position, choice.flight);
-    if (!choice.guides) return;
-    Guide(choice.flight, pad.tracker, [](const GuidanceOptions& guidance) {
-      return std::make_unique<LandingGuidance>(guidance);
-    });
+    SetPointTask task{.without_position = choice.without_position,
+                      .sends_pad_position = choice.sends_pad_position};
+    if (choice.guides) {
+      task.guidance = [](const GuidanceOptions& guidance) {
+        return std::make_unique<LandingGuidance>(guidance);
+      };
+    }
+    FlightOptions flight = choice.flight;
+    flight.pad_origin = "47.397742,8.545594";
+    FlyBySetPoints(flight, pad.tracker, task);
   }
 
   PointingErrors FlyAndMeasure(double seconds) {
@@ -215,8 +228,8 @@ class PointedFlight : public LinkedFlight {
   std::vector<std::unique_ptr<const TargetDetector>> Detectors() const {
     std::vector<std::unique_ptr<const TargetDetector>> detectors;
     for (const Eye& eye : eyes_) {
-      detectors.push_back(
-          std::make_unique<TrueDetector>(CameraModel(eye.camera.intrinsics), &eye.seen));
+      detectors.push_back(std::make_unique<TrueDetector>(CameraModel(eye.camera.intrinsics),
+                                                         &eye.seen, &eye.own.quarters_beyond_m));
     }
     return detectors;
   }

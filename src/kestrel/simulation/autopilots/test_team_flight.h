@@ -35,7 +35,7 @@ class TeamGoFlight : public SightedGoFlight {
       share_due_ = now + DurationFromSeconds(TeamOptions::kSendPeriod_s);
       if (track_.captured > Time()) member.Share(map_.Confirmed(), track_.captured);
     }
-    flight_ = ToObjects(*guided_, poses_, now, flight_);
+    flight_ = ToObjects(*flown_->by_position(), poses_, now, flight_);
     member.SetFlight(flight_.at);
     if (now < choose_due_) return;
     choose_due_ = now + DurationFromSeconds(TeamOptions::kDigestPeriod_s);
@@ -44,7 +44,7 @@ class TeamGoFlight : public SightedGoFlight {
     sought_.Assign({goal.number, goal.own_id, goal.object});
     TeamInFlight team = InFlight(goal);
     team.time = now;  // the radio has another clock
-    guided_->Take(std::move(team));
+    flown_->by_position()->Take(std::move(team));
   }
 
   const Eigen::Vector3d& place() const { return model.truth().world_from_body.translation; }
