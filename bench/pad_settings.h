@@ -24,7 +24,7 @@ inline void AddOptions(CLI::App* app, const std::string& counted, const std::str
                        PadSettings* settings) {
   app->add_option("--target", settings->target.kind, "Kind of the pad (ring-cross)");
   app->add_option("--board", settings->target.nested.board,
-                  "Board of nested and ring-with-tags (built in)");
+                  "Board of nested and ring-with-tags, as in examples/boards");
   app->add_option("--" + counted, settings->count, fmt::format("{} ({})", what, settings->count))
       ->check(CLI::Range(1, 100000));
   app->add_option("--seed", settings->seed, "Seed of the first (1)");

@@ -2,7 +2,9 @@
 #include "kestrel/vision/search/pad_samples.h"
 
 #include <algorithm>
+#include <array>
 
+#include "kestrel/core/base/robust_statistics.h"
 #include "kestrel/core/image/gray_sampling.h"
 
 namespace kestrel {
@@ -42,8 +44,33 @@ std::span<const float> PadSamples::Read(const cv::Mat& image, float dx, float dy
   return {gray_.data(), count_};
 }
 
+// Replaces the gray value in the middle of each cell by the median over the middle and four places
+// aside: a dot or a scratch on the print hides one place.
+void PadSamples::TakeMedians(const cv::Mat& image, std::size_t grid_width) {
+  constexpr float kAside = 0.25F;  // cells
+  // From a cell to the next one of the row, or of the column.
+  const auto step = [&](std::size_t i, std::size_t place, std::size_t stride) {
+    const std::size_t before = place > 0 ? i - stride : i;
+    const std::size_t after = place + 1 < grid_width ? i + stride : i;
+    const float share = kAside * static_cast<float>(stride) / static_cast<float>(after - before);
+    return std::pair(share * (u_[after] - u_[before]), share * (v_[after] - v_[before]));
+  };
+  for (std::size_t i = 0; i < count_; ++i) {
+    if (gray_[i] < 0) continue;
+    const auto [across_u, across_v] = step(i, i % grid_width, 1);
+    const auto [down_u, down_v] = step(i, i / grid_width, grid_width);
+    std::array grays{gray_[i], SampleGray(image, u_[i] + across_u, v_[i] + across_v),
+                     SampleGray(image, u_[i] - across_u, v_[i] - across_v),
+                     SampleGray(image, u_[i] + down_u, v_[i] + down_v),
+                     SampleGray(image, u_[i] - down_u, v_[i] - down_v)};
+    if (std::ranges::min(grays) >= 0) gray_[i] = MedianInPlace(grays);
+  }
+}
+
 std::span<const float> PadSamples::ReadCells(const cv::Mat& image, int grid_width, double cell_px) {
   const std::span<const float> blurred = Read(image);
+  constexpr double kWide = 6;  // px: so that the edges of a cell's neighbours blur no place of it
+  if (cell_px >= kWide) TakeMedians(image, static_cast<std::size_t>(grid_width));
   // A blur by 'kBlurPx', undone to first order and then some: the series goes on.
   constexpr double kBlurPx = 0.8;
   constexpr double kMost = 0.5;

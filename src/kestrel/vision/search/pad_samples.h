@@ -31,8 +31,9 @@ class PadSamples {
              std::span<const Eigen::Vector2d> places);
   // Reads the gray values at the places, moved by (dx, dy) px; negative outside of the image.
   std::span<const float> Read(const cv::Mat& image, float dx = 0, float dy = 0);
-  // The same where the points are the cells of a grid, row by row, of 'cell_px' each: small cells
-  // are sharpened, because lens and pixels mix them with their neighbours.
+  // The same where the points are the cells of a grid, row by row, of 'cell_px' each. Wide cells
+  // are read by a median over their middle. Small cells are sharpened, because lens and pixels mix
+  // them with their neighbours.
   std::span<const float> ReadCells(const cv::Mat& image, int grid_width, double cell_px);
 
   std::size_t count() const { return count_; }
@@ -40,6 +41,8 @@ class PadSamples {
   float v(std::size_t i) const { return v_[i]; }
 
  private:
+  void TakeMedians(const cv::Mat& image, std::size_t grid_width);
+
   std::size_t count_ = 0;
   std::vector<float> x_, y_, z_, u_, v_, moved_u_, moved_v_, gray_;
 };

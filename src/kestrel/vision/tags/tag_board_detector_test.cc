@@ -334,6 +334,28 @@ TEST_F(TagBoardDetectorTest, FindsTagWithoutHintUnderShadowEdge) {
 }
 
 // In the logarithms a light cell that blurs into the margin cuts the frame.
+TEST_F(TagBoardDetectorTest, DotInMiddleOfEachCellHidesNoBit) {
+  Use(BoardOfTag("aruco_4x4_50", 7, 0.6));
+  const PrintedTag printed = board_.Printed().front();
+  Random random(29);
+  for (double height = 1; height < 2.5; height *= 1.2) {
+    const RigidTransform pose = RandomBoardBelow(height, 0.3, 0.1, &random);
+    cv::Mat image = Image(pose, random.Bits());
+    for (int row = 0; row < printed.grid.width; ++row) {
+      for (int column = 0; column < printed.grid.width; ++column) {
+        const Eigen::Vector2d middle = printed.OnBoard(column + 0.5, row + 0.5);
+        Eigen::Vector2d pixel;
+        ASSERT_EQ(camera_.Project(pose * Eigen::Vector3d(middle.x(), middle.y(), 0), &pixel),
+                  ProjectionStatus::kOk);
+        const bool is_white = printed.grid.at(column, row) == TagCell::kWhite;
+        cv::circle(image, cv::Point(cv::Point2d(pixel.x() + 0.5, pixel.y() + 0.5)), 1,
+                   cv::Scalar(is_white ? 30 : 215), cv::FILLED);
+      }
+    }
+    EXPECT_TRUE(Detect(image).detection) << height;
+  }
+}
+
 TEST_F(TagBoardDetectorTest, FindsTagWithLightCellsBlurredIntoMargin) {
   Use({{OneTag("tag36h11", 7, 0.5)}});
   Random random(31);
