@@ -63,6 +63,7 @@ FlightProgram::FlightProgram(const FlightOptions& options, const FlightParts& pa
                     parts.connection, report_);
     if (parts.sends_pad_position) guided_->set_position_by_pad();
     if (parts.box) guided_->set_box(*parts.box);
+    if (parts.place) guided_->set_place(*parts.place);
   }
   if (parts.pointed != nullptr) {
     gimbal_.emplace(options, *parts.pointed, pad_, tracker_, parts.autopilot, parts.connection,
