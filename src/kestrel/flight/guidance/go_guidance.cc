@@ -50,6 +50,7 @@ constexpr double kHalted_mps = 0.5;  // a UAV that is slower stands still where 
 constexpr double kStands_mps = 0.2;  // at most, of an object that stands
 constexpr double kLayer_m = 1.5;     // between the heights at which the UAVs of a team travel
 constexpr double kClimbOff_m = 6;    // near the ground, from a UAV at work that goes first
+constexpr double kClimbOff_s = 2;    // the same, by how they fly on: the climb takes that long
 constexpr double kSame_m = 0.5;     // an object that stands is no further from where it was gripped
 constexpr double kFarView_m = 0.5;  // below the height of travel: the widest view
 constexpr double kGone_s = 2;       // an object that is not seen for so long from above is gone
@@ -257,7 +258,7 @@ void GoGuidance::ChoosePhase(const GuidanceInput& input, const Situation& now) {
   if (is_done_) return;
   if (carries_) return Deliver(input, now);
   if (input.target) KeepPlace(input, now);
-  if (MayGiveWay() && MustGiveWay(now.feet.head<2>(), input.others, kClimbOff_m)) {
+  if (MustClimbOff(input, now)) {
     waits_since_.reset();
     return Enter(GuidancePhase::kGoAround, "gives way to another UAV of the team");
   }
@@ -515,9 +516,15 @@ bool GoGuidance::is_at_deck() const {
          job_.height_m < options().commit_height_m;
 }
 
-// Once the gripper moves the UAV does not leave the object.
-bool GoGuidance::MayGiveWay() const {
-  return IsLow() && !(phase() == GuidancePhase::kAct && job_.grips());
+// Once the gripper moves the UAV does not leave the object. Above objects that move two come to
+// each other faster than the climb lasts.
+bool GoGuidance::MustClimbOff(const GuidanceInput& input, const Situation& now) const {
+  if (!IsLow() || (phase() == GuidancePhase::kAct && job_.grips())) return false;
+  return std::ranges::any_of(input.others, [&](const OtherUav& other) {
+    const Vector2d way = other.position - now.feet.head<2>();
+    const Vector2d later = way + kClimbOff_s * (other.velocity - now.velocity.head<2>());
+    return other.goes_first && std::min(way.norm(), later.norm()) < kClimbOff_m;
+  });
 }
 
 bool GoGuidance::Rests(Time now) const {

@@ -70,7 +70,7 @@ class GoGuidance : public DescentGuidance {
   void Leave(bool is_taken, const char* reason);
   void Deliver(const GuidanceInput& input, const Situation& now);
   bool IsLow() const;  // in a phase near the object
-  bool MayGiveWay() const;
+  bool MustClimbOff(const GuidanceInput& input, const Situation& now) const;
   bool IsInFence(const Eigen::Vector2d& place) const;
   // Requests a motion of the gripper; true once the autopilot has accepted it.
   bool Operate(const GuidanceInput& input, GuidanceRequest motion);
