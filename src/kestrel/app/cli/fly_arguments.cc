@@ -139,11 +139,16 @@ void FlyArguments::AddTo(CLI::App* command) {
   CLI::Option* follow_flag = command->get_option("--follow");
   CLI::Option* go_flag =
       command
-          ->add_option("--go", go,
-                       "Fly to the best object of this class in the map, and down on it")
-          ->type_name("CLASS")
-          ->needs(hunt_flag)
-          ->needs(guide_flag);
+          ->add_option(
+              "--go", go,
+              "Fly to the best object of this class in the map (--hunt) and down on it, to "
+              "what is marked (--follow), or to a place")
+          ->type_name("CLASS|marked|LAT,LON")
+          ->needs(guide_flag)
+          ->excludes(position_flag)
+          ->excludes(no_position_flag)
+          ->excludes("--floor")
+          ->excludes("--ceiling");
   command
       ->add_option("--then", then,
                    "There: hover, look (keeps pictures), drop or pick (the gripper), also with the "
@@ -184,6 +189,35 @@ std::optional<RelativeJob> FlyArguments::WithoutPosition() const {
                      .is_reserve = !no_position};
 }
 
+// A text with a comma is a place. There the UAV stays at the lowest height of limits.floor_m or
+// above.
+void FlyArguments::ReadGo(const FlyOptions& options) {
+  job = ParseGoJob(then);
+  const bool is_place = go.find(',') != std::string::npos;
+  const bool is_marked = task.name == "follow" && go == "marked";
+  if (is_place) {
+    place = ParseGlobalPosition(go);
+    if (!place) throw InputError(fmt::format("--go '{}': expected LAT,LON in degrees", go));
+    job.target = GoTarget::kPlace;
+    const double least_m = options.guidance.limits.floor_m - options.guidance.leg_m;
+    if (then.find(',') == std::string::npos) job.height_m = std::max(job.height_m, least_m);
+    if (!team.team.empty())
+      throw InputError("--go LAT,LON: expected no --team, which goes to objects");
+  } else if (is_marked) {
+    job.target = GoTarget::kMarked;
+  } else if (!go.empty() && task.name != "hunt") {
+    throw InputError(fmt::format(
+        "--go '{}': expected LAT,LON, marked with --follow, or a class with --hunt", go));
+  }
+  if (box.empty()) return;
+  box_place = ParseGlobalPosition(box);
+  if (!box_place) throw InputError(fmt::format("--box '{}': expected LAT,LON in degrees", box));
+  if (job.action != GoAction::kPick || job.target != GoTarget::kObject) {
+    throw InputError("--box: expected --then pick, and --go CLASS");
+  }
+  job.delivers = true;
+}
+
 KestrelOptions FlyArguments::ReadOptions() {
   RequireFlyable(source);
   KestrelOptions options = source.options.Read();
@@ -203,7 +237,8 @@ KestrelOptions FlyArguments::ReadOptions() {
   if (pad_position && autopilot.empty()) {
     throw InputError("--pad-position: expected --autopilot URL");
   }
-  if (guide && task.name == "follow" && !console) {
+  ReadGo(options.fly);
+  if (guide && task.name == "follow" && !place && !console) {
     throw InputError("--follow --guide: expected --console, on which a person confirms the flight");
   }
   if (guide && task.name == "hunt" && go.empty()) {
@@ -219,13 +254,6 @@ KestrelOptions FlyArguments::ReadOptions() {
   if (!floor.empty() && task.name != "land") {
     throw InputError("--floor: expected a landing, not --hunt or --follow");
   }
-  job = ParseGoJob(then);
-  if (!box.empty()) {
-    box_place = ParseGlobalPosition(box);
-    if (!box_place) throw InputError(fmt::format("--box '{}': expected LAT,LON in degrees", box));
-    if (job.action != GoAction::kPick) throw InputError("--box: expected --then pick");
-  }
-  job.delivers = box_place.has_value();
   if (no_guard) options.fly.guard.enabled = false;
   if (console && !console->empty()) {
     options.console = WithAddress(options.console, *console, "--console");

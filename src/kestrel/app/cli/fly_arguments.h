@@ -36,11 +36,14 @@ struct FlyArguments {
   std::string floor, ceiling;  // a person's answers; empty: none was given
   bool no_guard = false;
   TaskArgument task;
-  std::string model;           // file with the model of the objects
-  std::string go;              // class of the objects to one of which the UAV goes; empty: to none
-  std::string then = "hover";  // its job there, as ParseGoJob reads it
-  GoJob job;                   // the same; by ReadOptions
-  std::string box;             // LAT,LON where it takes the objects; empty: it keeps one
+  std::string model;  // file with the model of the objects
+  // Class of the objects to one of which the UAV goes, "marked", or LAT,LON; empty: it goes
+  // nowhere.
+  std::string go;
+  std::string then = "hover";           // its job there, as ParseGoJob reads it
+  GoJob job;                            // the same, and what the UAV goes to; by ReadOptions
+  std::optional<GlobalPosition> place;  // of a job at a place; by ReadOptions
+  std::string box;                      // LAT,LON where it takes the objects; empty: it keeps one
   std::optional<GlobalPosition> box_place;  // the same; by ReadOptions
   TeamArguments team;
   bool loop = false;
@@ -59,6 +62,9 @@ struct FlyArguments {
   // does not name becomes that of the options. Throws InputError for arguments of `land` that a
   // flight does not support, and when the options are not valid. Once only.
   KestrelOptions ReadOptions();
+
+ private:
+  void ReadGo(const FlyOptions& options);
 };
 
 }  // namespace kestrel

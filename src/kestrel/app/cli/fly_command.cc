@@ -91,7 +91,8 @@ class FlightLog : public ObservationSink {
 
 std::shared_ptr<const Task> TaskOf(const FlyArguments& arguments, const KestrelOptions& options) {
   return MakeTask(arguments.task.name, options,
-                  {.model = ReadModel(arguments.model), .go = arguments.go});
+                  {.model = ReadModel(arguments.model),
+                   .go = arguments.job.target == GoTarget::kObject ? arguments.go : ""});
 }
 
 // A flight: its sinks and its team around a session.
@@ -304,6 +305,7 @@ class Flight {
     if (arguments_.profile != "auto") options.profile = ParseLinkProfile(arguments_.profile);
     options.points = arguments_.point;
     options.job = arguments_.job;
+    options.place = arguments_.place;
     options.box = arguments_.box_place;
     options.sends_pad_position = arguments_.pad_position;
     options.without_position = arguments_.WithoutPosition();

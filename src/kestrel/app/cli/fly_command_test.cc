@@ -209,9 +209,20 @@ TEST_F(FlyCommandTest, RefusesFlightToObjectBeforeItBegins) {
   ExpectInputError(fly + " --go red --then pick --box here", "--box 'here': expected LAT,LON");
   ExpectInputError(fly + " --go red --set fly.guidance.search_radius_m=200",
                    "expected at most 100 (limits.geofence_radius_m)");
+  ExpectInputError(fly + " --go nan,8.5", "--go 'nan,8.5': expected LAT,LON");
+  ExpectInputError(fly + " --go 97.4,8.5", "--go '97.4,8.5': expected LAT,LON");
+  ExpectInputError(fly + " --go 47.4,8.5 --then pick", "pick: expected an object");
+  ExpectInputError(fly + " --go 47.4,8.5 --then drop,0.5",
+                   "the height above a place, where nothing is seen, is 0.5, expected at least");
+  ExpectInputError(fly + " --go 47.4,8.5 --team a", "--go LAT,LON: expected no --team");
+  const std::string follow = "fly sim:follow --autopilot sim:ardupilot --guide --follow --console";
+  ExpectInputError(follow + " --go red", "--go 'red': expected LAT,LON, marked with --follow");
+  ExpectInputError(follow + " --go marked",
+                   "--go marked: the camera, fixed as it is, does not look straight down");
+  ExpectInputError("fly sim:hunt --autopilot sim:ardupilot --guide --go red",
+                   "--go 'red': expected LAT,LON");
   for (const char* wrong :
        {"fly sim:hunt --autopilot sim:ardupilot --hunt --go red",
-        "fly sim:hunt --autopilot sim:ardupilot --guide --go red",
         "fly sim:hunt --autopilot sim:ardupilot --hunt --follow --guide --go red",
         "fly sim:hunt --autopilot sim:ardupilot --hunt --guide --box 47.3,8.5"}) {
     EXPECT_EQ(Run(wrong).status, 2) << wrong;

@@ -63,6 +63,9 @@ class FlightModel {
   // The UAV's state is not known for a moment: the next samples do not continue the previous ones.
   void Forgo() { newest_.reset(); }
 
+  // Meets no gust until now, as one that rests on something: what it does not follow is none.
+  void Rest() { gusts_.Forget(); }
+
   // Time from sending a set-point to its effect, s.
   double delay_s() const { return delay_s_; }
   // Part of the newest commanded velocity that meets gusts, and that the UAV does not follow.

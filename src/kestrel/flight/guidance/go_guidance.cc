@@ -39,16 +39,22 @@ constexpr double kLastGain = 2;        // 1/s: it brakes before the ground, and 
 // A UAV that sinks more slowly for so long on command to descend rests on something.
 constexpr double kStandstill_mps = 0.05;
 constexpr double kRests_s = 1;
+constexpr double kTouches_s = 0.5;  // after which the ground holds it
 constexpr double kBelow_m = 1;  // from the UAV to the object, while it looks whether that is gone
 // Near an object whose place is known so well the UAV flies on for this long without a sight.
 constexpr double kLongestSight_s = 3;
 constexpr double kSureSigma_m = 0.1;
+constexpr double kRise_mps = 1;      // while it does not see an object below
+constexpr double kLostSigmas = 2;    // of max_sigma_m: it climbs off
+constexpr double kHalted_mps = 0.5;  // a UAV that is slower stands still where it is
 constexpr double kStands_mps = 0.2;  // at most, of an object that stands
 constexpr double kLayer_m = 1.5;     // between the heights at which the UAVs of a team travel
 constexpr double kClimbOff_m = 6;    // near the ground, from a UAV at work that goes first
-constexpr double kSame_m = 0.5;  // an object that stands is no further from where it was gripped
-constexpr double kGone_s = 2;    // an object that is not seen for so long from above is gone
-constexpr double kUnseen_s = 5;  // the same, of one that may never have been seen by this UAV
+constexpr double kClimbOff_s = 2;    // the same, by how they fly on: the climb takes that long
+constexpr double kSame_m = 0.5;     // an object that stands is no further from where it was gripped
+constexpr double kFarView_m = 0.5;  // below the height of travel: the widest view
+constexpr double kGone_s = 2;       // an object that is not seen for so long from above is gone
+constexpr double kUnseen_s = 5;     // the same, of one that may never have been seen by this UAV
 
 // True when a UAV that goes first is within the distance.
 bool MustGiveWay(const Vector2d& place, std::span<const OtherUav> others, double distance_m) {
@@ -66,9 +72,9 @@ bool IsSureOf(const GuidanceInput& input) {
 const char* InWords(GoAction action) {
   switch (action) {
     case GoAction::kHover:
-      return "done: has hovered above the object";
+      return "done: has hovered above the goal";
     case GoAction::kLook:
-      return "done: has looked at the object";
+      return "done: has looked at the goal";
     case GoAction::kDrop:
       return "done: the gripper is open";
     case GoAction::kPick:
@@ -97,11 +103,28 @@ GoGuidance::GoGuidance(const GuidanceOptions& options, const GoJob& job)
                 "guidance.search_radius_m", "limits.geofence_radius_m");
   RequireAtMost(job.height_m, options.search_altitude_m, "the height above the object",
                 "guidance.search_altitude_m");
+  if (job.target != GoTarget::kPlace) return;
+  if (job.action == GoAction::kPick) {
+    throw InputError("pick: expected an object, or what is marked; at a place nothing is seen");
+  }
+  const double least_m = options.limits.floor_m - options.leg_m;
+  if (job.height_m >= least_m) return;
+  throw InputError(fmt::format(
+      "the height above a place, where nothing is seen, is {:g}, expected at least {:g} "
+      "(limits.floor_m less guidance.leg_m)",
+      job.height_m, least_m));
 }
 
 void GoGuidance::Begin(const GuidanceInput& input) {
   yaw_ = HeadingOf(input.uav->world_from_body.rotation);
   home_ = input.uav->world_from_body.translation.head<2>();
+  order_ = input.order.number;
+  Reset();
+  StartSearch();
+  if (job_.target == GoTarget::kMarked) Await("waits for a mark, and for its confirmation");
+}
+
+void GoGuidance::Reset() {
   ended_ = {};
   mark_ = failures_ = 0;
   carries_ = skips_ = false;
@@ -111,7 +134,30 @@ void GoGuidance::Begin(const GuidanceInput& input) {
   waits_since_.reset();
   rests_since_.reset();
   gripped_.reset();
-  StartSearch();
+}
+
+// An order counts for what is marked now. Another one begins anew.
+void GoGuidance::TakeOrder(const GuidanceInput& input) {
+  if (input.order.number != order_) {
+    order_ = input.order.number;
+    if (input.order.mark == 0) return Await("was stopped: needs a new confirmation");
+    if (input.order.mark != input.mark) {
+      return Await("refused: something else is marked now");
+    }
+    if (!input.target) return Await("refused: what is marked is not seen");
+    Reset();
+    is_confirmed_ = true;
+    return StartSearch();
+  }
+  if (is_confirmed_ && mark_ != 0 && mark_ != input.mark) {
+    Await("something else is marked: needs a confirmation");
+  }
+}
+
+void GoGuidance::Await(const char* reason) {
+  is_confirmed_ = false;
+  waits_at_.reset();
+  Enter(GuidancePhase::kLook, reason);
 }
 
 void GoGuidance::ResumeAfterLink() {
@@ -150,6 +196,18 @@ bool GoGuidance::IsInFence(const Vector2d& place) const {
 }
 
 Guidance::Wish GoGuidance::Choose(const GuidanceInput& input) {
+  // A gripper may rest on the object: the climb takes the UAV off again.
+  if (input.is_landed && !IsLow() && phase() != GuidancePhase::kGoAround) {
+    End("the UAV is on the ground");
+    return {};
+  }
+  if (job_.target == GoTarget::kMarked) TakeOrder(input);
+  if (!is_confirmed_) {
+    Wish wish;
+    wish.set_point = Wait(Look(input));
+    wish.set_point.yaw = yaw_;
+    return wish;
+  }
   // The vision has not heard yet that the job at this object has ended.
   const bool has_ended = ended_.mark != 0 && input.mark == ended_.mark && !carries_;
   // Near the object the view of another one is that of none; but what is seen below may have got
@@ -163,21 +221,19 @@ Guidance::Wish GoGuidance::Choose(const GuidanceInput& input) {
     without.target.reset();
     return Choose(without);
   }
-  // A gripper may rest on the object: the climb takes the UAV off again.
-  if (input.is_landed && !IsLow() && phase() != GuidancePhase::kGoAround) {
-    End("the UAV is on the ground");
-    return {};
-  }
   const Situation now = Look(input);
   travel_m_ = std::min(options().search_altitude_m + kLayer_m * input.layer,
                        options().limits.ceiling_m - options().leg_m);
   ChoosePhase(input, now);
   Wish wish;
-  wish.follows_target = input.target.has_value() && !carries_;
+  // Gusts are met where it matters. On its way the drag looks like one, and the ground holds it.
+  if (!IsLow() || Rests(input.now)) flight_model().Rest();
+  wish.follows_target = input.target.has_value() && !carries_ && job_.target != GoTarget::kPlace;
   if (input.gripper.number == answers_before_) wish.request = motion_;
   wish.set_point = Command(input, now);
   wish.set_point.yaw = yaw_;
   KeepAway(input, now, &wish.set_point);
+  wish.is_flying = !Rests(input.now);
   return wish;
 }
 
@@ -186,13 +242,15 @@ Guidance::Wish GoGuidance::Choose(const GuidanceInput& input) {
 void GoGuidance::KeepAway(const GuidanceInput& input, const Situation& now, SetPoint* command) {
   const bool is_near_ground = input.target && now.height_m < options().sight_height_m;
   if (is_near_ground || phase() == GuidancePhase::kAct) return;
-  // The UAV does not follow what meets gusts: its way is without it.
   const Vector2d fed = flight_model().fed_velocity();
-  command->velocity.head<2>() -= fed;
+  const Vector2d own = command->velocity.head<2>() - fed;
+  command->velocity.head<2>() = own;
   for (const OtherUav& other : input.others) {
     if (is_at_work() && !other.goes_first) continue;
     KeepApart(now.feet.head<2>(), going_to_, {&other, 1}, command);
   }
+  // Beside another UAV gusts are not met: their path would go on towards it.
+  if (command->velocity.head<2>() != own) return flight_model().Rest();
   command->velocity.head<2>() += fed;
 }
 
@@ -200,7 +258,7 @@ void GoGuidance::ChoosePhase(const GuidanceInput& input, const Situation& now) {
   if (is_done_) return;
   if (carries_) return Deliver(input, now);
   if (input.target) KeepPlace(input, now);
-  if (MayGiveWay() && MustGiveWay(now.feet.head<2>(), input.others, kClimbOff_m)) {
+  if (MustClimbOff(input, now)) {
     waits_since_.reset();
     return Enter(GuidancePhase::kGoAround, "gives way to another UAV of the team");
   }
@@ -228,7 +286,7 @@ bool GoGuidance::FindObject(const GuidanceInput& input) {
     if (job_.delivers && input.mark != mark_) failures_ = 0;
     mark_ = input.mark;
     pursuit().Reset();
-    Enter(GuidancePhase::kApproach, "flies to the object");
+    Enter(GuidancePhase::kApproach, "flies to the goal");
   }
   return true;
 }
@@ -242,21 +300,27 @@ void GoGuidance::ChooseApproach(const GuidanceInput& input, const Situation& now
     set_reason("waits above the object: another UAV of the team is near");
   } else if (MayDescend(now)) {
     waits_since_.reset();
-    Enter(GuidancePhase::kDescend, "above the object, which is in sight");
-  } else if (IsLongerThan(kUnseen_s, waits_since_, input.now)) {
-    Leave(false, "the object is not seen from above: goes on to the next one");
-  } else {
+    Enter(GuidancePhase::kDescend, job_.target == GoTarget::kPlace
+                                       ? "above the place"
+                                       : "above the object, which is in sight");
+  } else if (!IsLongerThan(kUnseen_s, waits_since_, input.now)) {
     set_reason("waits above the object: it is not in sight, or not known well enough");
+  } else if (job_.target == GoTarget::kMarked) {
+    Lose(input.now);
+  } else {
+    Leave(false, "the object is not seen from above: goes on to the next one");
   }
 }
 
 void GoGuidance::ChooseDescent(const GuidanceInput& input, const Situation& now) {
   const double cone_m = Cone(now.height_m);
   const bool is_near_ground = now.height_m < options().sight_height_m;
-  if (!now.is_known) return TryAgain("the object's place is not known well enough");
+  if (input.target->position_sigma_m() > kLostSigmas * options().max_sigma_m) {
+    return TryAgain("the object's place is not known well enough");
+  }
   if (now.off_m > 2 * cone_m) {
-    if (is_near_ground) return TryAgain("too far beside the object");
-    return Enter(GuidancePhase::kApproach, "too far beside the object");
+    if (is_near_ground) return TryAgain("too far beside the goal");
+    return Enter(GuidancePhase::kApproach, "too far beside the goal");
   }
   const double wait_m = job_.height_m + kWait_m;
   if (is_near_ground && now.height_m > wait_m - kReach_m && !IsSureOf(input)) {
@@ -274,15 +338,15 @@ void GoGuidance::ChooseDescent(const GuidanceInput& input, const Situation& now)
   Remember(true, input.now, &waits_since_);
   if (now.is_in_sight && IsAbove(now)) {
     rests_since_.reset();
-    Enter(GuidancePhase::kCommit, "near the object, and above it");
+    Enter(GuidancePhase::kCommit, "near the goal, and above it");
   } else if (IsLongerThan(kAimWait_s, waits_since_, input.now)) {
-    TryAgain("does not come to above the object");
+    TryAgain("does not come to above the goal");
   }
 }
 
 // A gripper must be nearer than a view from above.
 bool GoGuidance::IsAbove(const Situation& now) const {
-  if (!job_.grips()) return now.off_m < kConePart * Cone(now.height_m);
+  if (!job_.is_exact()) return now.off_m < kConePart * Cone(now.height_m);
   return now.off_m < kAim_m && now.slip_mps < kAim_mps;
 }
 
@@ -290,13 +354,12 @@ void GoGuidance::ChooseCommit(const GuidanceInput& input, const Situation& now) 
   if (!IsSureOf(input)) {
     return Enter(GuidancePhase::kDescend, "near the object, and not in sight: looks from higher");
   }
-  if (now.off_m > kCommitCones * Cone(now.height_m)) return TryAgain("beside the object");
+  if (now.off_m > kCommitCones * Cone(now.height_m)) return TryAgain("beside the goal");
   if (HasReached(input, now)) {
     gripped_.reset();
-    return Enter(GuidancePhase::kAct,
-                 job_.grips() ? "uses the gripper" : "hovers above the object");
+    return Enter(GuidancePhase::kAct, job_.grips() ? "uses the gripper" : "hovers above the goal");
   }
-  if (ToSeconds(input.now - entered()) > kAimWait_s) TryAgain("does not come to the object");
+  if (ToSeconds(input.now - entered()) > kAimWait_s) TryAgain("does not come to the goal");
 }
 
 bool GoGuidance::HasReached(const GuidanceInput& input, const Situation& now) {
@@ -304,7 +367,7 @@ bool GoGuidance::HasReached(const GuidanceInput& input, const Situation& now) {
   Remember(rests && now.height_m > job_.height_m + kReach_m, input.now, &rests_since_);
   const bool is_down =
       now.height_m <= job_.height_m + kReach_m || IsLongerThan(kRests_s, rests_since_, input.now);
-  return is_down && (job_.grips() ? MayGrip(*input.target, now) : IsAbove(now));
+  return is_down && (job_.is_exact() ? MayGrip(*input.target, now) : IsAbove(now));
 }
 
 // The gripper must be there when it closes, a moment later.
@@ -378,7 +441,10 @@ void GoGuidance::LookWhetherGone(const GuidanceInput& input, const Situation& no
   const double seen_s = input.target_age_s + GuidanceInput::kMostVideoDelay_s;
   if (seen_s < looked_s && IsWhereGripped(input)) return TryAgain("the object is still there");
   const bool is_above = (now.feet.head<2>() - place()).norm() < kBelow_m;
-  if (input.is_camera_up && is_above) unseen_s_ += SecondsSinceLast(input.now);
+  // One that moves has gone on, and may be beside the view from near by.
+  const bool has_moved = std::isnan(gripped_at_.x());
+  const bool is_wide = !has_moved || now.feet.z() > travel_m_ - kFarView_m;
+  if (input.is_camera_up && is_above && is_wide) unseen_s_ += SecondsSinceLast(input.now);
   if (unseen_s_ >= kGone_s) Finish();
 }
 
@@ -388,7 +454,7 @@ void GoGuidance::TryAgain(const char* reason) {
   skips_ = job_.delivers && failures_ >= kTries;
   if (!job_.delivers && failures_ >= kTries) {
     fault_ = has_gripped_ ? "the object is still there after all tries: gave up"
-                          : "does not come down on the object: gave up";
+                          : "does not come down on the goal: gave up";
   }
   has_gripped_ = false;
   Enter(GuidancePhase::kGoAround, reason);
@@ -407,6 +473,9 @@ void GoGuidance::Finish() {
 }
 
 void GoGuidance::Lose(Time now) {
+  if (job_.target == GoTarget::kMarked) {
+    return Await("what is marked is lost: needs a new confirmation");
+  }
   if (!job_.delivers) return SearchAfterLoss(now);
   Leave(false, "the object is lost: goes on to the next one");
   ended_.mark = 0;  // it may be found again
@@ -447,9 +516,20 @@ bool GoGuidance::is_at_deck() const {
          job_.height_m < options().commit_height_m;
 }
 
-// Once the gripper moves the UAV does not leave the object.
-bool GoGuidance::MayGiveWay() const {
-  return IsLow() && !(phase() == GuidancePhase::kAct && job_.grips());
+// Once the gripper moves the UAV does not leave the object. Above objects that move two come to
+// each other faster than the climb lasts.
+bool GoGuidance::MustClimbOff(const GuidanceInput& input, const Situation& now) const {
+  if (!IsLow() || (phase() == GuidancePhase::kAct && job_.grips())) return false;
+  return std::ranges::any_of(input.others, [&](const OtherUav& other) {
+    const Vector2d way = other.position - now.feet.head<2>();
+    const Vector2d later = way + kClimbOff_s * (other.velocity - now.velocity.head<2>());
+    return other.goes_first && std::min(way.norm(), later.norm()) < kClimbOff_m;
+  });
+}
+
+bool GoGuidance::Rests(Time now) const {
+  const bool is_down = phase() == GuidancePhase::kCommit || phase() == GuidancePhase::kAct;
+  return is_down && !carries_ && IsLongerThan(kTouches_s, rests_since_, now);
 }
 
 bool GoGuidance::IsLow() const {
@@ -487,10 +567,15 @@ SetPoint GoGuidance::Pursue(const GuidanceInput& input, const Situation& now) {
   double climb = ClimbRate(now);
   if (phase() == GuidancePhase::kDescend) {
     climb = std::max(climb, -stale().MaxSink(now.height_m, input.link_delay_s));
-    if (!now.is_in_sight) climb = std::max(climb, 0.0);
+    if (!now.is_in_sight) climb = std::max(climb, kRise_mps);
   }
   command.velocity.z() = climb;
   return command;
+}
+
+SetPoint GoGuidance::Wait(const Situation& now) {
+  if (!waits_at_ && now.velocity.norm() < kHalted_mps) waits_at_ = now.feet;
+  return waits_at_ ? Stay(waits_at_->head<2>(), waits_at_->z(), now) : SetPoint();
 }
 
 SetPoint GoGuidance::Stay(const Vector2d& place, double height_m, const Situation& now) {

@@ -16,7 +16,8 @@ namespace kestrel {
 
 // Flies a multicopter at the height of the search to an object, which may move, and down on it;
 // does a job there, climbs, and stands still. A descent that failed is tried again, and so is a
-// pick after which the object is still seen on the ground. A job that delivers takes the object to
+// pick after which the object is still seen on the ground. What a person has marked, and a place,
+// are objects here. A job that delivers takes the object to
 // a box, and goes on to the next one. The others of a team are kept away from. docs/go.md describes
 // it.
 class GoGuidance : public DescentGuidance {
@@ -41,6 +42,12 @@ class GoGuidance : public DescentGuidance {
   void ResumeAfterLink() override;
   void ResumeAfterPoses() override;
 
+  void Reset();
+
+  // A person's orders.
+  void TakeOrder(const GuidanceInput& input);
+  void Await(const char* reason);
+
   // Choice of the phase.
   void ChoosePhase(const GuidanceInput& input, const Situation& now);
   bool FindObject(const GuidanceInput& input);
@@ -59,10 +66,11 @@ class GoGuidance : public DescentGuidance {
   void TryAgain(const char* reason);
   void Finish();
   void Lose(Time now);
+  bool Rests(Time now) const;
   void Leave(bool is_taken, const char* reason);
   void Deliver(const GuidanceInput& input, const Situation& now);
   bool IsLow() const;  // in a phase near the object
-  bool MayGiveWay() const;
+  bool MustClimbOff(const GuidanceInput& input, const Situation& now) const;
   bool IsInFence(const Eigen::Vector2d& place) const;
   // Requests a motion of the gripper; true once the autopilot has accepted it.
   bool Operate(const GuidanceInput& input, GuidanceRequest motion);
@@ -71,6 +79,7 @@ class GoGuidance : public DescentGuidance {
   void KeepAway(const GuidanceInput& input, const Situation& now, SetPoint* command);
   SetPoint Command(const GuidanceInput& input, const Situation& now);
   SetPoint Pursue(const GuidanceInput& input, const Situation& now);
+  SetPoint Wait(const Situation& now);
   SetPoint Stay(const Eigen::Vector2d& place, double height_m, const Situation& now);
   SetPoint Carry(const GuidanceInput& input, const Situation& now);
   double ClimbRate(const Situation& now) const;
@@ -83,14 +92,17 @@ class GoGuidance : public DescentGuidance {
   ObjectEnd ended_;
   bool carries_ = false;  // an object, to the box
   bool is_near_box_ = false;
-  bool skips_ = false;                // leaves the object, once it has climbed
-  double yaw_ = 0;                    // of the nose, rad
-  int mark_ = 0;                      // number of the object; 0: none yet
-  double object_z_m_ = 0;             // its height in the world
-  int failures_ = 0;                  // descents and picks
-  Eigen::Vector2d gripped_at_{0, 0};  // the object, when the gripper closed; NaN: it moved
-  bool has_gripped_ = false;          // in this descent
-  bool is_open_ = false;              // the gripper, before a pick
+  bool skips_ = false;                       // leaves the object, once it has climbed
+  double yaw_ = 0;                           // of the nose, rad
+  int order_ = 0;                            // number of the newest one
+  bool is_confirmed_ = true;                 // no person is waited for
+  std::optional<Eigen::Vector3d> waits_at_;  // for a person, once it stands still; of the feet
+  int mark_ = 0;                             // number of the object; 0: none yet
+  double object_z_m_ = 0;                    // its height in the world
+  int failures_ = 0;                         // descents and picks
+  Eigen::Vector2d gripped_at_{0, 0};         // the object, when the gripper closed; NaN: it moved
+  bool has_gripped_ = false;                 // in this descent
+  bool is_open_ = false;                     // the gripper, before a pick
   bool is_done_ = false;
   double unseen_s_ = 0;              // while it looks whether the object is gone
   const char* fault_ = nullptr;      // why it gives up, once it has climbed

@@ -420,6 +420,81 @@ TEST(GoGuidanceTest, TravelsInItsLayer) {
   EXPECT_NEAR(flight.uav.position().z(), 10 + 3 + 0.35, 0.2);
 }
 
+// A place is a target that is always seen, and stands.
+TEST(GoGuidanceTest, DropsAbovePlaceNoLowerThanTheFloor) {
+  GoJob job = ParseGoJob("drop,2.7");
+  job.target = GoTarget::kPlace;
+  GoFlight flight(job);
+  double lowest_m = 10;
+  ASSERT_TRUE(flight.FlyUntil([&] {
+    lowest_m = std::min(lowest_m, flight.FromObject().z());
+    return flight.guidance.is_done();
+  })) << flight.output.reason;
+  EXPECT_GT(flight.released_at.z(), 3);
+  EXPECT_NEAR(lowest_m, 2.7, 0.2);
+  EXPECT_FALSE(flight.guidance.is_at_deck());
+}
+
+TEST(GoGuidanceTest, PlaceIsNothingToPickUpOrToComeDownOn) {
+  GoJob job = ParseGoJob("pick");
+  job.target = GoTarget::kPlace;
+  EXPECT_THAT([&] { GoGuidance({}, job); }, ThrowsMessage<InputError>(HasSubstr("pick: expected")));
+  job.action = GoAction::kDrop;
+  EXPECT_THAT([&] { GoGuidance({}, job); },
+              ThrowsMessage<InputError>(HasSubstr("expected at least 2.65")));
+}
+
+TEST(GoGuidanceTest, WhatIsMarkedNeedsConfirmation) {
+  GoJob job = ParseGoJob("hover,2.5,3");
+  job.target = GoTarget::kMarked;
+  GoFlight flight(job);
+  const Eigen::Vector3d began = flight.uav.position();
+  flight.FlyUntil([] { return false; }, 5);
+  EXPECT_EQ(flight.guidance.phase(), Phase::kLook);
+  EXPECT_LT((flight.uav.position() - began).norm(), 0.5);
+  const auto order = [&](int number, int mark) {
+    return [number, mark](GuidanceInput& input) { input.order = {number, mark}; };
+  };
+  flight.FlyUntil([] { return false; }, 1, order(1, 6));
+  EXPECT_THAT(flight.output.reason, HasSubstr("something else is marked"));
+  flight.FlyUntil([] { return false; }, 2, order(2, 7));
+  EXPECT_EQ(flight.guidance.phase(), Phase::kApproach);
+  flight.FlyUntil([] { return false; }, 2, order(3, 0));
+  EXPECT_THAT(flight.output.reason, HasSubstr("was stopped"));
+  ASSERT_TRUE(flight.FlyUntil([&] { return flight.guidance.is_done(); }, 60, order(4, 7)))
+      << flight.output.reason;
+  flight.mark = 8;
+  flight.FlyUntil([] { return false; }, 1, order(4, 7));
+  EXPECT_EQ(flight.guidance.phase(), Phase::kLook);
+  EXPECT_TRUE(
+      flight.FlyUntil([&] { return flight.guidance.phase() == Phase::kAct; }, 60, order(5, 8)));
+}
+
+TEST(GoGuidanceTest, LostMarkedThingIsNotSearchedFor) {
+  GoJob job = ParseGoJob("hover,2.5,3");
+  job.target = GoTarget::kMarked;
+  GoFlight flight(job);
+  const auto order = [](GuidanceInput& input) { input.order = {1, 7}; };
+  flight.FlyUntil([] { return false; }, 1);
+  flight.FlyUntil([] { return false; }, 2, order);
+  flight.is_gone = true;
+  flight.mark = 7;
+  flight.FlyUntil([] { return false; }, 2,
+                  [&](GuidanceInput& input) {
+                    order(input);
+                    input.mark = 7;
+                  });
+  EXPECT_EQ(flight.guidance.phase(), Phase::kLook);
+  EXPECT_THAT(flight.output.reason, HasSubstr("what is marked is lost"));
+}
+
+// It has driven on, beside what is seen from near by.
+TEST(GoGuidanceTest, LooksForObjectThatMovesFromHighUp) {
+  GoFlight flight("pick", {.path = "circle", .speed_mps = 1.4});
+  ASSERT_TRUE(flight.FlyUntilDone());
+  EXPECT_GT(flight.uav.position().z(), 9);
+}
+
 TEST(GoGuidanceTest, SearchBeyondTheLimitsIsRefused) {
   GuidanceOptions options;
   options.search_radius_m = 200;

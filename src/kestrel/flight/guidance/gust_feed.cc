@@ -47,6 +47,11 @@ void GustFeed::Observe(Time now, const Vector2d& velocity, const Vector2d& lean)
   if (size > kMostPush) push_ *= kMostPush / size;
 }
 
+void GustFeed::Forget() {
+  time_.reset();
+  path_ = {};
+}
+
 // It begins where the control's integral carries the push already.
 void GustFeed::Move(double ahead_s) {
   if (!time_) return;

@@ -32,6 +32,9 @@ class GustFeed {
   // time.
   void Observe(Time now, const Eigen::Vector2d& velocity, const Eigen::Vector2d& lean);
 
+  // The UAV rests on something, which takes the push: it begins anew with the next observation.
+  void Forget();
+
   // Moves the path on to the newest observation, for the push 'ahead_s' later.
   void Move(double ahead_s);
 
@@ -42,7 +45,7 @@ class GustFeed {
  private:
   struct Path {
     Time time;
-    Eigen::Vector2d integral;  // of the displacement, m s
+    Eigen::Vector2d integral{0, 0};  // of the displacement, m s
     Eigen::Vector2d displacement{0, 0};
     Eigen::Vector2d velocity{0, 0};
     Eigen::Vector2d acceleration{0, 0};

@@ -66,6 +66,20 @@ TEST(GustFeedTest, KeepsPlaceInGusts) {
   EXPECT_LT(DistanceInGusts(true), 0.4 * left_alone_m);
 }
 
+// On the ground the lean explains no motion, and looks like the push of a gust.
+TEST(GustFeedTest, GroundIsNoGust) {
+  GustFeed feed(kPathControl);
+  for (double time_s = 0; time_s < 3; time_s += kFeedStep_s) {
+    feed.Observe(TimeFromNanoseconds(0) + DurationFromSeconds(time_s), {0, 0},
+                 {0.1 * std::sin(3 * time_s), 0});
+    feed.Move(0.14);
+  }
+  ASSERT_GT(feed.velocity().norm(), 0.1);
+  feed.Forget();
+  feed.Move(0.14);
+  EXPECT_EQ(feed.velocity().norm() + feed.acceleration().norm(), 0);
+}
+
 // The control's integral carries it already.
 TEST(GustFeedTest, LeavesSteadyWindAlone) {
   GustFeed feed(kPathControl);

@@ -55,6 +55,7 @@ FlightProgram::FlightProgram(const FlightOptions& options, const FlightParts& pa
                               .without_position = parts.without_position,
                               .sends_pad_position = parts.sends_pad_position,
                               .box = parts.box,
+                              .place = parts.place,
                               .is_in_its_frame = !parts.source_has_poses},
                  parts.autopilot, parts.connection, report_);
   if (parts.pointed != nullptr) {

@@ -61,6 +61,7 @@ struct FlightParts {
   const CameraStream* stream = nullptr;  // in which they do so; null: the source's own
   GuidanceMaker guidance = {};  // flies by set-points when the pilot gives the mode; null: does not
   std::optional<GlobalPosition> box = {};            // where objects are delivered
+  std::optional<GlobalPosition> place = {};          // that the UAV goes to
   bool sends_pad_position = false;                   // see SessionOptions
   std::optional<RelativeJob> without_position = {};  // see SessionOptions
   bool source_has_poses = false;                     // the autopilot's poses are then not used

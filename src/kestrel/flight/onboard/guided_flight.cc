@@ -151,7 +151,8 @@ void GuidedFlight::CheckPermission(const GuidanceInput& input, Time now) {
                  ? WhyNotGuide(autopilot_, options_.guidance,
                                input.uav->world_from_body.translation, now, is_position_by_pad_)
                  : "no position is sent";
-  if (refusal_.empty()) refusal_ = WhyNotDeliver();
+  if (refusal_.empty()) refusal_ = WhyNotGoTo(box_, "box");
+  if (refusal_.empty()) refusal_ = WhyNotGoTo(place_, "place");
   may_begin_ = refusal_.empty();
   if (knows_parameters_ || !autopilot_.parameters().is_done()) return;
   knows_parameters_ = true;
@@ -188,7 +189,7 @@ GuidanceInput GuidedFlight::Input(Time now, const TrackSnapshot& track,
   input.gripper = {autopilot_.gripper_answers(), autopilot_.is_gripper_accepted()};
   input.others = others_;
   input.layer = team_.layer;
-  input.box = Box();
+  if (const auto box = InWorld(box_)) input.box = box->head<2>();
   input.can_hold = !is_position_by_pad_;
   input.is_armed = autopilot_.is_armed();
   input.is_landed = autopilot_.landed_state() == LandedState::kOnGround;
@@ -196,23 +197,40 @@ GuidanceInput GuidedFlight::Input(Time now, const TrackSnapshot& track,
   input.is_camera_up = ToSeconds(now - track.captured) < kMaxFrameAge_s;
   input.mode_age_s = ToSeconds(now - autopilot_.mode_reported());
   input.link_delay_s = ToSeconds(LinkDelay(options_, autopilot_));
+  ShowPlace(&input);
   return input;
 }
 
-// In the world, once that is known.
-std::optional<Eigen::Vector2d> GuidedFlight::Box() const {
-  if (!box_ || !autopilot_.origin()) return std::nullopt;
-  return LocalFromGlobal(kind_, *autopilot_.origin(), *box_).head<2>();
+// A place is always in sight, and stands.
+void GuidedFlight::ShowPlace(GuidanceInput* input) const {
+  if (!place_) return;
+  input->mark = 0;
+  input->target.reset();
+  const auto place = InWorld(place_), home = InWorld(autopilot_.home());
+  if (!place || !home) return;
+  TargetEstimate& target = input->target.emplace();
+  target.time = input->now;
+  target.motion.mean.head<3>() << place->head<2>(), home->z();
+  input->target_age_s = 0;
+  input->mark = 1;
 }
 
-std::string GuidedFlight::WhyNotDeliver() const {
-  const auto box = Box(), home = HomeOf(autopilot_);
-  if (!box || !home) return {};
-  const double distance_m = (*box - *home).norm();
+// Once the world is known.
+std::optional<Eigen::Vector3d> GuidedFlight::InWorld(
+    const std::optional<GlobalPosition>& position) const {
+  if (!position || !autopilot_.origin()) return std::nullopt;
+  return LocalFromGlobal(kind_, *autopilot_.origin(), *position);
+}
+
+std::string GuidedFlight::WhyNotGoTo(const std::optional<GlobalPosition>& place,
+                                     const char* name) const {
+  const auto to = InWorld(place), home = InWorld(autopilot_.home());
+  if (!to || !home) return {};
+  const double distance_m = (*to - *home).head<2>().norm();
   const double radius_m = options_.guidance.limits.geofence_radius_m;
   if (distance_m <= radius_m) return {};
-  return fmt::format("the box is {:.0f} m from home, limits.geofence_radius_m is {:g}", distance_m,
-                     radius_m);
+  return fmt::format("the {} is {:.0f} m from home, limits.geofence_radius_m is {:g}", name,
+                     distance_m, radius_m);
 }
 
 std::optional<TargetEstimate> GuidedFlight::Target(Time now, const TrackSnapshot& track) const {

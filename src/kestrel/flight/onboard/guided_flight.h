@@ -46,6 +46,8 @@ class GuidedFlight {
   void Take(TeamInFlight team) { team_ = std::move(team); }
   // Where objects are delivered.
   void set_box(const GlobalPosition& box) { box_ = box; }
+  // A place on the ground as high as home: guidance has it as its target.
+  void set_place(const GlobalPosition& place) { place_ = place; }
   // See Guidance.
   ObjectEnd ended() const { return guidance_->ended(); }
   bool is_at_work() const { return is_flying() && guidance_->is_at_work(); }
@@ -87,8 +89,10 @@ class GuidedFlight {
   void ReportOtherMode(bool is_mode);
   void CheckPermission(const GuidanceInput& input, Time now);
   GuidanceInput Input(Time now, const TrackSnapshot& track, const PoseHistory& poses) const;
-  std::optional<Eigen::Vector2d> Box() const;
-  std::string WhyNotDeliver() const;  // to the box, which is outside of the geofence
+  std::optional<Eigen::Vector3d> InWorld(const std::optional<GlobalPosition>& position) const;
+  void ShowPlace(GuidanceInput* input) const;
+  // Not to a place that is outside of the geofence; 'name': of it.
+  std::string WhyNotGoTo(const std::optional<GlobalPosition>& place, const char* name) const;
   std::optional<TargetEstimate> Target(Time now, const TrackSnapshot& track) const;
   void Request(Time now, GuidanceRequest request);
   bool RequestGripper(GuidanceRequest request);
@@ -112,7 +116,7 @@ class GuidedFlight {
   FollowOrder order_;  // the newest one
   TeamInFlight team_;
   std::vector<OtherUav> others_;  // now
-  std::optional<GlobalPosition> box_;
+  std::optional<GlobalPosition> box_, place_;
   AutopilotKind kind_ = AutopilotKind::kUnknown;
   SendSchedule schedule_;
 

@@ -114,6 +114,7 @@ class Flight : public LiveSession {
  private:
   FlightOptions& flight() { return options_.flight; }
   bool Points() const;
+  std::optional<ViewLimits> FixedView() const;
   GuidanceMaker Guide() const;
   void OpenTables();
   void OpenExposure();
@@ -158,7 +159,8 @@ Flight::Flight(const OpenedLiveSource& live, const Task& task, const SessionOpti
   if (!options_.output.empty()) OpenTables();
   const auto pad = vision().pad();
   if (pad && flight().control_exposure) OpenExposure();
-  if (has_autopilot && pad) StayWithinSight(pad->range_m);
+  if (has_autopilot && pad && options_.job.target == GoTarget::kObject)
+    StayWithinSight(pad->range_m);
   if (has_autopilot) OpenAutopilot();
   program_.emplace(flight(), ProgramParts(), [this](const std::string& text) { Notify(text); });
 }
@@ -189,22 +191,29 @@ bool Flight::Points() const {
          (vision().pad() || vision().marked());
 }
 
+// Nothing where a gimbal turns the camera.
+std::optional<ViewLimits> Flight::FixedView() const {
+  const CameraCalibration& camera = live_.calibration;
+  if (camera.gimbal || !camera.body_from_camera) return std::nullopt;
+  return ViewLimits(camera.intrinsics, *camera.body_from_camera);
+}
+
 // Returns the guidance of the task; null: nobody is guided.
 GuidanceMaker Flight::Guide() const {
   if (!options_.guides) return nullptr;
-  if (vision().seeks_object()) {
-    return [job = options_.job](const GuidanceOptions& options) {
+  const std::optional<ViewLimits> view = FixedView();
+  const GoJob& job = options_.job;
+  if (job.target == GoTarget::kMarked && view && !view->Sees(0, job.height_m)) {
+    throw InputError("--go marked: the camera, fixed as it is, does not look straight down");
+  }
+  if (vision().seeks_object() || job.target != GoTarget::kObject) {
+    return [job](const GuidanceOptions& options) {
       return std::make_unique<GoGuidance>(options, job);
     };
   }
   if (!vision().marked()) {
     return
         [](const GuidanceOptions& options) { return std::make_unique<LandingGuidance>(options); };
-  }
-  const CameraCalibration& camera = live_.calibration;
-  std::optional<ViewLimits> view;
-  if (!camera.gimbal && camera.body_from_camera) {
-    view.emplace(camera.intrinsics, *camera.body_from_camera);
   }
   return [view](const GuidanceOptions& options) {
     return std::make_unique<FollowGuidance>(options, view);
@@ -358,6 +367,7 @@ FlightParts Flight::ProgramParts() {
           .stream = options_.stream ? &*options_.stream : nullptr,
           .guidance = Guide(),
           .box = options_.box,
+          .place = options_.place,
           .sends_pad_position = options_.sends_pad_position,
           .without_position = options_.without_position,
           .source_has_poses = live_.has_poses,

@@ -48,9 +48,11 @@ struct SessionOptions {
   // Flies by set-points when the pilot gives the mode. A guard, a process of its own, then has the
   // line (docs/guard.md), unless flight.guard.enabled is false.
   bool guides = false;
-  // The job at the object of the task, where the UAV flies to one; needs 'guides'.
+  // The job at the object of the task, where the UAV flies to one, at what is marked or at a place;
+  // needs 'guides'.
   GoJob job = {};
-  std::optional<GlobalPosition> box = {};  // where a job that delivers takes the objects
+  std::optional<GlobalPosition> place = {};  // for a job at a place
+  std::optional<GlobalPosition> box = {};    // where a job that delivers takes the objects
   // Points the camera's gimbal at the target; 'guides' does so, too. Needs a calibration with a
   // gimbal.
   bool points = false;

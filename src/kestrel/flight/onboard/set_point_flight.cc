@@ -19,6 +19,7 @@ SetPointFlight::SetPointFlight(const FlightOptions& options, const TargetTracker
                   report);
   if (task.sends_pad_position) guided_->set_position_by_pad();
   if (task.box) guided_->set_box(*task.box);
+  if (task.place) guided_->set_place(*task.place);
 }
 
 void SetPointFlight::TakeAttitude(const PoseSample& attitude) {

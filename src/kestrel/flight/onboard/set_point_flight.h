@@ -25,6 +25,7 @@ struct SetPointTask {
   std::optional<RelativeJob> without_position = {};  // by the pad alone, or as a reserve
   bool sends_pad_position = false;                   // the autopilot's position is the pad's
   std::optional<GlobalPosition> box = {};            // where objects are delivered
+  std::optional<GlobalPosition> place = {};          // where a job goes that has no object
   bool is_in_its_frame = true;                       // see GuidedFlight
 };
 

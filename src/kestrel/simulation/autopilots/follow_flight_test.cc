@@ -67,5 +67,27 @@ TEST_P(FollowFlightTest, DoesNotMoveWithoutConfirmation) {
   EXPECT_THAT(flight.reported, Not(HasSubstr("approach")));
 }
 
+// Not before it is confirmed, and not after a stop.
+TEST_P(FollowFlightTest, HoversAboveWalkerThatIsMarked) {
+  GoJob job = ParseGoJob("hover,3,4");
+  job.target = GoTarget::kMarked;
+  FlightOptions options;
+  options.guidance.search_altitude_m = 8;
+  FollowedFlight flight(GetParam(), FollowingPilot(true), TestVehicle("standing", 0), options,
+                        std::nullopt, 1, job);
+  flight.Fly(8);
+  ASSERT_EQ(flight.phase(), GuidancePhase::kLook) << flight.reported;
+  EXPECT_THAT(flight.reported, Not(HasSubstr("approach")));
+  flight.Confirm();
+  flight.Fly(2);
+  EXPECT_EQ(flight.phase(), GuidancePhase::kApproach) << flight.reported;
+  flight.Stop();
+  flight.Fly(4);
+  EXPECT_EQ(flight.phase(), GuidancePhase::kLook);
+  flight.Confirm();
+  flight.Fly(60);
+  EXPECT_THAT(flight.reported, HasSubstr("done: has hovered above the goal"));
+}
+
 }  // namespace
 }  // namespace kestrel

@@ -64,6 +64,30 @@ TEST_P(GoFlightTest, GivesUpWithoutGripper) {
   EXPECT_THAT(flight.reported, HasSubstr("does not operate the gripper: gave up"));
 }
 
+// No object is seen there.
+TEST_P(GoFlightTest, DropsAtPlace) {
+  GoFlightSetup setup = SetupOf(GetParam(), "red");
+  setup.place = Eigen::Vector2d(9, -14);
+  setup.job = "drop,2.65";
+  SightedGoFlight flight(setup);
+  ASSERT_TRUE(flight.FlyUntilDone(120)) << flight.reported;
+  const auto& released_at = flight.model.result().released_at;
+  ASSERT_TRUE(released_at);
+  EXPECT_LT((released_at->head<2>() - *setup.place).norm(), 0.5);
+  EXPECT_NEAR(released_at->z(), 2.65, 0.2);
+  EXPECT_THAT(flight.reported, HasSubstr("done: the gripper is open"));
+}
+
+TEST_P(GoFlightTest, RefusesPlaceOutsideOfGeofence) {
+  GoFlightSetup setup = SetupOf(GetParam(), "red");
+  setup.place = Eigen::Vector2d(90, -90);
+  setup.job = "hover,3";
+  SightedGoFlight flight(setup);
+  flight.Fly(10);
+  EXPECT_EQ(flight.phase(), GuidancePhase::kIdle);
+  EXPECT_THAT(flight.reported, HasSubstr("the place is 127 m from home, limits.geofence_radius_m"));
+}
+
 TEST_P(GoFlightTest, PilotTakesTheUavBack) {
   GoFlightSetup setup = SetupOf(GetParam(), "red");
   setup.model.pilot.take_back_after_s = 12;

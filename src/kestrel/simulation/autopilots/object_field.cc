@@ -14,8 +14,10 @@ void ObjectField::Draw(const ObjectFieldOptions& options, Random* random, World*
   constexpr double kDeep_m = 1000;
   objects_ = AddHuntObjects(options.objects, 0.5 * Vector2d(options.length_m, options.width_m),
                             random, world);
-  for (const HuntObject& object : objects_) {
-    const std::atomic<bool>& is_taken = is_taken_.emplace_back(false);
+  taken_.emplace(options.shared_file, objects_.size());
+  for (std::size_t number = 0; number < objects_.size(); ++number) {
+    const HuntObject& object = objects_[number];
+    const std::atomic<bool>& is_taken = (*taken_)[number];
     const Motion there = world->bodies[world->surfaces[object.first_surface].body];
     const int body = static_cast<int>(world->bodies.size());
     world->bodies.push_back([&is_taken, there](double time_s) {
@@ -36,15 +38,15 @@ std::optional<ObjectField::Grab> ObjectField::Close(double time_s, const Vector3
   Vector3d way(0, 0, 0);
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     const Vector3d to = gripper - objects_[i].center(time_s);
-    if (is_taken_[i] || (nearest && to.norm() >= way.norm())) continue;
+    if (is_taken(i) || (nearest && to.norm() >= way.norm())) continue;
     nearest = i;
     way = to;
   }
   if (!nearest) return std::nullopt;
   const double half_m = objects_[*nearest].half_size.minCoeff();
   Grab grab{objects_[*nearest].id, way.head<2>().norm(), way.z()};
-  grab.is_taken = grab.offset_m < half_m - kEdge_m && std::abs(grab.height_m) < kReach_m;
-  if (grab.is_taken) is_taken_[*nearest] = true;
+  const bool is_within = grab.offset_m < half_m - kEdge_m && std::abs(grab.height_m) < kReach_m;
+  grab.is_taken = is_within && taken_->Take(*nearest);
   return grab;
 }
 

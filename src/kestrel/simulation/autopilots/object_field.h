@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <atomic>
-#include <deque>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "kestrel/core/base/limits.h"
 #include "kestrel/core/base/random.h"
+#include "kestrel/simulation/autopilots/taken_marks.h"
 #include "kestrel/simulation/scene/hunt_objects.h"
 #include "kestrel/simulation/scene/world.h"
 
@@ -19,11 +19,14 @@ namespace kestrel {
 struct ObjectFieldOptions {
   double length_m = 0;
   double width_m = 20;
+  std::string shared_file;
   HuntObjectsOptions objects;
 
   static void Visit(auto& self, auto&& visit) {
     visit("length_m", self.length_m, Range{0, 200}, "from east to west; 0: no field");
     visit("width_m", self.width_m, Range{2, 200}, "from north to south");
+    visit("shared_file", self.shared_file,
+          "file by which programs that share the field know what was taken; empty: none");
     visit.Group("objects", self.objects);
   }
 
@@ -34,7 +37,8 @@ struct ObjectFieldOptions {
 // they are drawn; stays where it is.
 class ObjectField {
  public:
-  // Adds the objects to the world, which this must outlive.
+  // Adds the objects to the world, which this must outlive. Throws InputError when the shared file
+  // cannot be used.
   void Draw(const ObjectFieldOptions& options, Random* random, World* world);
 
   // A gripper's try. Distances are those of the nearest object that is there.
@@ -51,11 +55,11 @@ class ObjectField {
 
   const std::vector<HuntObject>& objects() const { return objects_; }
   // Whether this one of them, by its place in the list, was taken.
-  bool is_taken(std::size_t index) const { return is_taken_[index]; }
+  bool is_taken(std::size_t index) const { return (*taken_)[index]; }
 
  private:
   std::vector<HuntObject> objects_;
-  std::deque<std::atomic<bool>> is_taken_;
+  std::optional<TakenMarks> taken_;
 };
 
 }  // namespace kestrel

@@ -13,6 +13,7 @@
 #include "kestrel/core/camera/camera_model.h"
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/flight/guidance/follow_guidance.h"
+#include "kestrel/flight/guidance/go_guidance.h"
 #include "kestrel/simulation/autopilots/test_late_images.h"
 #include "kestrel/simulation/autopilots/test_linked_flight.h"
 #include "kestrel/vision/pipeline/follow_pipeline.h"
@@ -36,12 +37,14 @@ inline CameraCalibration FollowCamera(const std::optional<double>& down_deg) {
 
 // A linked flight that follows the vehicle, which a person marks as soon as it is in view; a gimbal
 // looks down to it until then. In place of images it gets the vehicle's true place on the ground,
-// with the errors of a region's place: those of one image, and those that stay.
+// with the errors of a region's place: those of one image, and those that stay. With a job it flies
+// down on the vehicle.
 class FollowedFlight : public LinkedFlight {
  public:
   FollowedFlight(AutopilotFirmware firmware, const AutopilotModelOptions& options,
                  const VehicleWorldOptions& vehicle, const FlightOptions& flight,
-                 const std::optional<double>& down_deg, std::uint64_t seed)
+                 const std::optional<double>& down_deg, std::uint64_t seed,
+                 const std::optional<GoJob>& job = {})
       : LinkedFlight(firmware, options, vehicle, seed, FollowCamera(down_deg)),
         lens_(camera_.intrinsics),
         follow_(flight.guidance.follow),
@@ -49,9 +52,12 @@ class FollowedFlight : public LinkedFlight {
     std::optional<ViewLimits> view;
     if (down_deg) view.emplace(camera_.intrinsics, *camera_.body_from_camera);
     const TargetTrackerOptions tracker = FollowPipelineOptions().Tracker();
-    FlyBySetPoints(flight, tracker, {.guidance = [view](const GuidanceOptions& guidance) {
-                     return std::make_unique<FollowGuidance>(guidance, view);
-                   }});
+    FlyBySetPoints(
+        flight, tracker,
+        {.guidance = [view, job](const GuidanceOptions& guidance) -> std::unique_ptr<Guidance> {
+          if (job) return std::make_unique<GoGuidance>(guidance, *job);
+          return std::make_unique<FollowGuidance>(guidance, view);
+        }});
     if (!down_deg) Point(std::nullopt, tracker);
     for (double& error : stays_) error = random_.Normal();
     if (!down_deg) GiveControl(255, 190);
@@ -59,6 +65,7 @@ class FollowedFlight : public LinkedFlight {
 
   GuidancePhase phase() const { return flown_->phase(); }
   void Confirm() { flown_->by_position()->Take({++orders_, 1}); }
+  void Stop() { flown_->by_position()->Take({++orders_, 0}); }
   // Confirms as soon as guidance has the UAV; false when it has not followed after that time.
   bool FollowWithin(double longest_s) {
     for (double s = 0; s < longest_s; s += kLook_s) {

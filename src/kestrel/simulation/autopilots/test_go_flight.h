@@ -38,7 +38,8 @@ struct GoFlightSetup {
   std::vector<std::string> field = {};  // settings of the field
   std::string class_name = "red";
   std::string job = "pick";
-  std::optional<Eigen::Vector2d> box = {};  // m, world
+  std::optional<Eigen::Vector2d> place = {};  // to which it goes instead; m, world
+  std::optional<Eigen::Vector2d> box = {};    // m, world
   FlightOptions flight = {};
   std::uint64_t seed = 1;
   VehicleWorld* world = nullptr;  // with the field of several UAVs; null: one of its own
@@ -78,12 +79,14 @@ class GoFlight : private OwnField, public LinkedFlight {
                      setup.seed, HuntCalibration()) {
     GoJob job = ParseGoJob(setup.job);
     job.delivers = setup.box.has_value();
+    if (setup.place) job.target = GoTarget::kPlace;
     SetPointTask task{.guidance = [this, job](const GuidanceOptions& guidance) {
       auto made = std::make_unique<GoGuidance>(guidance, job);
       go_ = made.get();
       return made;
     }};
-    if (setup.box) task.box = BoxOf(setup);
+    if (setup.box) task.box = OnEarth(setup, *setup.box);
+    if (setup.place) task.place = OnEarth(setup, *setup.place);
     FlyBySetPoints(setup.flight, {}, task);
   }
 
@@ -96,14 +99,14 @@ class GoFlight : private OwnField, public LinkedFlight {
   }
 
  private:
-  static GlobalPosition BoxOf(const GoFlightSetup& setup) {
+  static GlobalPosition OnEarth(const GoFlightSetup& setup, const Eigen::Vector2d& place) {
     const GlobalOrigin& origin = setup.model.origin;
     const GlobalPosition at{static_cast<std::int32_t>(std::lround(1e7 * origin.latitude_deg)),
                             static_cast<std::int32_t>(std::lround(1e7 * origin.longitude_deg)),
                             origin.altitude_m};
     const AutopilotKind kind =
         setup.firmware == AutopilotFirmware::kPx4 ? AutopilotKind::kPx4 : AutopilotKind::kArduPilot;
-    return GlobalFromLocal(kind, at, {setup.box->x(), setup.box->y(), 0});
+    return GlobalFromLocal(kind, at, {place.x(), place.y(), 0});
   }
 
   const GoGuidance* go_ = nullptr;
