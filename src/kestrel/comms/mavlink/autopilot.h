@@ -145,6 +145,7 @@ class Autopilot {
   std::uint32_t custom_mode() const { return heartbeat_.custom_mode; }
   std::string mode_name() const { return ModeName(kind_, heartbeat_.custom_mode); }
   bool is_landing_mode() const { return IsLandingMode(kind_, heartbeat_.custom_mode); }
+  bool is_descent() const { return IsDescent(kind_, heartbeat_.custom_mode); }
   bool is_guided_mode() const { return IsGuidedMode(kind_, heartbeat_.custom_mode); }
   bool is_armed() const;
   // True when it reports an emergency and carries out its failsafe.

@@ -194,8 +194,12 @@ std::string ModeName(AutopilotKind kind, std::uint32_t custom_mode) {
 
 bool IsLandingMode(AutopilotKind kind, std::uint32_t custom_mode) {
   if (kind == AutopilotKind::kArduPilot) return custom_mode == kArduCopterLand;
-  return kind == AutopilotKind::kPx4 &&
-         (custom_mode == kPx4Land || custom_mode == kPx4Precland || custom_mode == kPx4Descend);
+  return kind == AutopilotKind::kPx4 && (custom_mode == kPx4Land || custom_mode == kPx4Precland);
+}
+
+bool IsDescent(AutopilotKind kind, std::uint32_t custom_mode) {
+  return custom_mode == CustomModeOf(kind, FlightMode::kLand) ||
+         (kind == AutopilotKind::kPx4 && custom_mode == kPx4Descend);
 }
 
 bool IsGuidedMode(AutopilotKind kind, std::uint32_t custom_mode) {

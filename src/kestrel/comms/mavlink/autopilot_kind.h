@@ -35,15 +35,18 @@ std::uint32_t CustomModeOf(AutopilotKind kind, FlightMode mode);
 constexpr std::uint32_t Px4CustomMode(std::uint32_t main, std::uint32_t sub) {
   return main << 16 | sub << 24;
 }
-// PX4's failsafe down to the ground without a position, LAND as well.
+// PX4 reports this mode when it descends without a position: in its failsafe, and when LAND is
+// given.
 constexpr std::uint32_t kPx4Descend = Px4CustomMode(4, 20);
 
 // Returns the usual name of a mode of HEARTBEAT.custom_mode ("LAND", "PRECLAND") of ArduCopter and
 // PX4; its number where it has no name here.
 std::string ModeName(AutopilotKind kind, std::uint32_t custom_mode);
 
-// True for modes in which the autopilot comes down by itself.
+// True for modes in which the autopilot descends onto a reported landing target.
 bool IsLandingMode(AutopilotKind kind, std::uint32_t custom_mode);
+// True for modes in which it descends where it is: LAND, and PX4's without a position.
+bool IsDescent(AutopilotKind kind, std::uint32_t custom_mode);
 
 // True for the mode in which it flies by external set-points.
 bool IsGuidedMode(AutopilotKind kind, std::uint32_t custom_mode);

@@ -64,7 +64,10 @@ class FlightModel {
   void Forgo() { newest_.reset(); }
 
   // Meets no gust until now, as one that rests on something: what it does not follow is none.
-  void Rest() { gusts_.Forget(); }
+  void Rest() {
+    gusts_.Forget();
+    fed_velocity_.setZero();
+  }
 
   // Time from sending a set-point to its effect, s.
   double delay_s() const { return delay_s_; }

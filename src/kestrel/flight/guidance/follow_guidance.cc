@@ -24,8 +24,7 @@ constexpr double kResume_s = 10;  // lost for longer, following needs a new conf
 // go on with; and the errors of the distance below which it is following, and beyond which not.
 constexpr double kKnown = 0.2, kStillKnown = 0.3;
 constexpr double kNear = 0.1, kFar = 0.2;
-constexpr double kHalted_mps = 0.5;  // a UAV that is slower stands still where it is
-constexpr double kLeastWay_m = 1;    // nearer to the target the nose stays as it is
+constexpr double kLeastWay_m = 1;  // nearer to the target the nose stays as it is
 
 Vector2d WayTo(const TargetEstimate& target, const UavState& uav) {
   return Vector2d(target.motion.position().head<2>()) - uav.world_from_body.translation.head<2>();

@@ -46,21 +46,27 @@ constexpr double kLongestSight_s = 3;
 constexpr double kSureSigma_m = 0.1;
 constexpr double kRise_mps = 1;      // while it does not see an object below
 constexpr double kLostSigmas = 2;    // of max_sigma_m: it climbs off
-constexpr double kHalted_mps = 0.5;  // a UAV that is slower stands still where it is
 constexpr double kStands_mps = 0.2;  // at most, of an object that stands
 constexpr double kLayer_m = 1.5;     // between the heights at which the UAVs of a team travel
 constexpr double kClimbOff_m = 6;    // near the ground, from a UAV at work that goes first
 constexpr double kClimbOff_s = 2;    // the same, by how they fly on: the climb takes that long
-constexpr double kSame_m = 0.5;     // an object that stands is no further from where it was gripped
-constexpr double kFarView_m = 0.5;  // below the height of travel: the widest view
-constexpr double kGone_s = 2;       // an object that is not seen for so long from above is gone
-constexpr double kUnseen_s = 5;     // the same, of one that may never have been seen by this UAV
+constexpr double kSame_m = 0.5;  // an object that stands is no further from where it was gripped
+constexpr double kStrays_mps = 0.3;   // one that moves, from where it would be by its velocity
+constexpr double kMostStray_m = 1.5;  // the same, at most: farther off it is another one
+constexpr double kFarView_m = 0.5;    // below the height of travel: it rises no further
+constexpr double kGone_s = 2;         // an object that is not seen for so long from above is gone
+constexpr double kUnseen_s = 5;       // the same, of one that may never have been seen by this UAV
 
 // True when a UAV that goes first is within the distance.
 bool MustGiveWay(const Vector2d& place, std::span<const OtherUav> others, double distance_m) {
   return std::ranges::any_of(others, [&](const OtherUav& other) {
     return other.goes_first && (other.position - place).norm() < distance_m;
   });
+}
+
+bool IsSeen(const GuidanceInput& input) {
+  return input.target && input.is_camera_up &&
+         input.target_age_s <= GuidanceOptions::kCommitSight_s;
 }
 
 // False when the object is out of sight for too long to go on near it.
@@ -144,7 +150,7 @@ void GoGuidance::TakeOrder(const GuidanceInput& input) {
     if (input.order.mark != input.mark) {
       return Await("refused: something else is marked now");
     }
-    if (!input.target) return Await("refused: what is marked is not seen");
+    if (!IsSeen(input)) return Await("refused: what is marked is not seen");
     Reset();
     is_confirmed_ = true;
     return StartSearch();
@@ -197,7 +203,7 @@ bool GoGuidance::IsInFence(const Vector2d& place) const {
 
 Guidance::Wish GoGuidance::Choose(const GuidanceInput& input) {
   // A gripper may rest on the object: the climb takes the UAV off again.
-  if (input.is_landed && !IsLow() && phase() != GuidancePhase::kGoAround) {
+  if (input.is_landed && is_confirmed_ && !IsLow() && phase() != GuidancePhase::kGoAround) {
     End("the UAV is on the ground");
     return {};
   }
@@ -216,7 +222,9 @@ Guidance::Wish GoGuidance::Choose(const GuidanceInput& input) {
   const bool is_another = input.mark != mark_ && is_elsewhere &&
                           phase() != GuidancePhase::kSearch &&
                           phase() != GuidancePhase::kApproach && !carries_;
-  if (input.target && (is_another || has_ended)) {
+  // The track of an object that was taken may go on with another one near by.
+  const bool is_foreign = phase() == GuidancePhase::kLook && has_gripped_ && !IsWhereGripped(input);
+  if (input.target && (is_another || has_ended || is_foreign)) {
     GuidanceInput without = input;
     without.target.reset();
     return Choose(without);
@@ -226,7 +234,8 @@ Guidance::Wish GoGuidance::Choose(const GuidanceInput& input) {
                        options().limits.ceiling_m - options().leg_m);
   ChoosePhase(input, now);
   Wish wish;
-  // Gusts are met where it matters. On its way the drag looks like one, and the ground holds it.
+  // Gusts are met where it matters. On its way the drag looks like one, and on the ground what
+  // holds its legs.
   if (!IsLow() || Rests(input.now)) flight_model().Rest();
   wish.follows_target = input.target.has_value() && !carries_ && job_.target != GoTarget::kPlace;
   if (input.gripper.number == answers_before_) wish.request = motion_;
@@ -257,7 +266,7 @@ void GoGuidance::KeepAway(const GuidanceInput& input, const Situation& now, SetP
 void GoGuidance::ChoosePhase(const GuidanceInput& input, const Situation& now) {
   if (is_done_) return;
   if (carries_) return Deliver(input, now);
-  if (input.target) KeepPlace(input, now);
+  if (input.target && !has_gripped_) KeepPlace(input, now);
   if (MustClimbOff(input, now)) {
     waits_since_.reset();
     return Enter(GuidancePhase::kGoAround, "gives way to another UAV of the team");
@@ -296,7 +305,7 @@ void GoGuidance::ChooseApproach(const GuidanceInput& input, const Situation& now
   const bool is_above = now.off_m < kConePart * Cone(now.height_m);
   Remember(is_above && input.is_camera_up && !now.is_in_sight, input.now, &waits_since_);
   if (!is_above) return;
-  if (MustGiveWay(now.feet.head<2>(), input.others, kGiveWay_m)) {
+  if (ComesNear(now, input.others, kGiveWay_m)) {
     set_reason("waits above the object: another UAV of the team is near");
   } else if (MayDescend(now)) {
     waits_since_.reset();
@@ -317,6 +326,9 @@ void GoGuidance::ChooseDescent(const GuidanceInput& input, const Situation& now)
   const bool is_near_ground = now.height_m < options().sight_height_m;
   if (input.target->position_sigma_m() > kLostSigmas * options().max_sigma_m) {
     return TryAgain("the object's place is not known well enough");
+  }
+  if (!now.is_in_sight && now.feet.z() > travel_m_ - kFarView_m) {
+    return Enter(GuidancePhase::kApproach, "not in sight: waits above it");
   }
   if (now.off_m > 2 * cone_m) {
     if (is_near_ground) return TryAgain("too far beside the goal");
@@ -365,8 +377,8 @@ void GoGuidance::ChooseCommit(const GuidanceInput& input, const Situation& now) 
 bool GoGuidance::HasReached(const GuidanceInput& input, const Situation& now) {
   const bool rests = now.velocity.z() - input.target->motion.velocity().z() > -kStandstill_mps;
   Remember(rests && now.height_m > job_.height_m + kReach_m, input.now, &rests_since_);
-  const bool is_down =
-      now.height_m <= job_.height_m + kReach_m || IsLongerThan(kRests_s, rests_since_, input.now);
+  const bool rests_on_it = is_at_deck() && IsLongerThan(kRests_s, rests_since_, input.now);
+  const bool is_down = now.height_m <= job_.height_m + kReach_m || rests_on_it;
   return is_down && (job_.is_exact() ? MayGrip(*input.target, now) : IsAbove(now));
 }
 
@@ -400,6 +412,7 @@ void GoGuidance::Grip(const GuidanceInput& input) {
   }
   if (!IsLongerThan(job_.seconds, gripped_, input.now)) return;
   has_gripped_ = true;
+  set_place(Look(input).feet.head<2>());
   Enter(GuidancePhase::kGoAround, "climbs with the gripper used");
 }
 
@@ -423,28 +436,27 @@ void GoGuidance::ChooseClimb(const GuidanceInput& input, const Situation& now) {
 }
 
 void GoGuidance::RememberGrip(const GuidanceInput& input) {
-  gripped_at_.setConstant(std::numeric_limits<double>::quiet_NaN());
-  if (!input.target || input.target->motion.velocity().norm() > kStands_mps) return;
-  gripped_at_ = input.target->motion.position().head<2>();
+  at_grip_.reset();
+  if (input.target) at_grip_ = Gripped{input.target->motion, input.now};
 }
 
-// The track of an object that was taken may go on with another one near by.
+// True when the target is the object that the gripper closed on, had it missed.
 bool GoGuidance::IsWhereGripped(const GuidanceInput& input) const {
-  if (!input.target) return false;
-  const double off_m = (input.target->motion.position().head<2>() - gripped_at_).norm();
-  return std::isnan(off_m) || off_m < kSame_m;
+  if (!input.target || !at_grip_) return input.target.has_value();
+  const bool moves = at_grip_->motion.velocity().norm() > kStands_mps;
+  const double since_s = moves ? ToSeconds(input.now - at_grip_->time) : 0;
+  const Vector3d there = at_grip_->motion.position() + since_s * at_grip_->motion.velocity();
+  const double stray_m = std::min(kSame_m + kStrays_mps * since_s, kMostStray_m);
+  return (input.target->motion.position() - there).head<2>().norm() < stray_m;
 }
 
 // Images without the object count only while they come, and show where it was.
 void GoGuidance::LookWhetherGone(const GuidanceInput& input, const Situation& now) {
   const double looked_s = ToSeconds(input.now - entered());
   const double seen_s = input.target_age_s + GuidanceInput::kMostVideoDelay_s;
-  if (seen_s < looked_s && IsWhereGripped(input)) return TryAgain("the object is still there");
+  if (input.target && seen_s < looked_s) return TryAgain("the object is still there");
   const bool is_above = (now.feet.head<2>() - place()).norm() < kBelow_m;
-  // One that moves has gone on, and may be beside the view from near by.
-  const bool has_moved = std::isnan(gripped_at_.x());
-  const bool is_wide = !has_moved || now.feet.z() > travel_m_ - kFarView_m;
-  if (input.is_camera_up && is_above && is_wide) unseen_s_ += SecondsSinceLast(input.now);
+  if (input.is_camera_up && is_above) unseen_s_ += SecondsSinceLast(input.now);
   if (unseen_s_ >= kGone_s) Finish();
 }
 
@@ -516,20 +528,25 @@ bool GoGuidance::is_at_deck() const {
          job_.height_m < options().commit_height_m;
 }
 
-// Once the gripper moves the UAV does not leave the object. Above objects that move two come to
-// each other faster than the climb lasts.
+// Once the gripper moves the UAV does not leave the object.
 bool GoGuidance::MustClimbOff(const GuidanceInput& input, const Situation& now) const {
   if (!IsLow() || (phase() == GuidancePhase::kAct && job_.grips())) return false;
-  return std::ranges::any_of(input.others, [&](const OtherUav& other) {
+  return ComesNear(now, input.others, kClimbOff_m);
+}
+
+// Above objects that move two UAVs come to each other faster than a climb lasts: true when one that
+// goes first is within the distance, or will be.
+bool GoGuidance::ComesNear(const Situation& now, std::span<const OtherUav> others,
+                           double distance_m) {
+  return std::ranges::any_of(others, [&](const OtherUav& other) {
     const Vector2d way = other.position - now.feet.head<2>();
     const Vector2d later = way + kClimbOff_s * (other.velocity - now.velocity.head<2>());
-    return other.goes_first && std::min(way.norm(), later.norm()) < kClimbOff_m;
+    return other.goes_first && std::min(way.norm(), later.norm()) < distance_m;
   });
 }
 
 bool GoGuidance::Rests(Time now) const {
-  const bool is_down = phase() == GuidancePhase::kCommit || phase() == GuidancePhase::kAct;
-  return is_down && !carries_ && IsLongerThan(kTouches_s, rests_since_, now);
+  return is_at_deck() && IsLongerThan(kTouches_s, rests_since_, now);
 }
 
 bool GoGuidance::IsLow() const {
@@ -557,7 +574,9 @@ SetPoint GoGuidance::Command(const GuidanceInput& input, const Situation& now) {
     command.velocity.z() = ClimbRate(now);
     return command;
   }
-  if (input.target && !is_done_) return Pursue(input, now);
+  // From the grip until it has looked it stays there: a track that goes on without the object leads
+  // it to others.
+  if (input.target && !is_done_ && !has_gripped_) return Pursue(input, now);
   return Stay(place(), travel_m_, now);
 }
 
@@ -567,7 +586,9 @@ SetPoint GoGuidance::Pursue(const GuidanceInput& input, const Situation& now) {
   double climb = ClimbRate(now);
   if (phase() == GuidancePhase::kDescend) {
     climb = std::max(climb, -stale().MaxSink(now.height_m, input.link_delay_s));
-    if (!now.is_in_sight) climb = std::max(climb, kRise_mps);
+    if (!now.is_known) climb = std::max(climb, 0.0);
+    const double rise = kHeightGain * (travel_m_ - now.feet.z());
+    if (!now.is_in_sight) climb = std::max(climb, std::clamp(rise, 0.0, kRise_mps));
   }
   command.velocity.z() = climb;
   return command;
@@ -575,7 +596,9 @@ SetPoint GoGuidance::Pursue(const GuidanceInput& input, const Situation& now) {
 
 SetPoint GoGuidance::Wait(const Situation& now) {
   if (!waits_at_ && now.velocity.norm() < kHalted_mps) waits_at_ = now.feet;
-  return waits_at_ ? Stay(waits_at_->head<2>(), waits_at_->z(), now) : SetPoint();
+  if (!waits_at_) return {};
+  const double lowest_m = options().limits.floor_m - options().leg_m;
+  return Stay(waits_at_->head<2>(), std::max(waits_at_->z(), lowest_m), now);
 }
 
 SetPoint GoGuidance::Stay(const Vector2d& place, double height_m, const Situation& now) {

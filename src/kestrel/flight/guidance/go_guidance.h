@@ -17,9 +17,8 @@ namespace kestrel {
 // Flies a multicopter at the height of the search to an object, which may move, and down on it;
 // does a job there, climbs, and stands still. A descent that failed is tried again, and so is a
 // pick after which the object is still seen on the ground. What a person has marked, and a place,
-// are objects here. A job that delivers takes the object to
-// a box, and goes on to the next one. The others of a team are kept away from. docs/go.md describes
-// it.
+// are objects here. A job that delivers takes the object to a box, and goes on to the next one. The
+// others of a team are kept away from. docs/go.md describes it.
 class GoGuidance : public DescentGuidance {
  public:
   static constexpr int kTries = 5;
@@ -36,6 +35,12 @@ class GoGuidance : public DescentGuidance {
   bool wants_object() const override { return !carries_ && !is_done_; }
 
  private:
+  // The object's motion when the gripper moved.
+  struct Gripped {
+    TurnState motion;
+    Time time;
+  };
+
   void Begin(const GuidanceInput& input) override;
   Wish Choose(const GuidanceInput& input) override;
   const char* WhyGiveUp(const GuidanceInput& input) override;
@@ -71,6 +76,7 @@ class GoGuidance : public DescentGuidance {
   void Deliver(const GuidanceInput& input, const Situation& now);
   bool IsLow() const;  // in a phase near the object
   bool MustClimbOff(const GuidanceInput& input, const Situation& now) const;
+  static bool ComesNear(const Situation& now, std::span<const OtherUav> others, double distance_m);
   bool IsInFence(const Eigen::Vector2d& place) const;
   // Requests a motion of the gripper; true once the autopilot has accepted it.
   bool Operate(const GuidanceInput& input, GuidanceRequest motion);
@@ -100,7 +106,7 @@ class GoGuidance : public DescentGuidance {
   int mark_ = 0;                             // number of the object; 0: none yet
   double object_z_m_ = 0;                    // its height in the world
   int failures_ = 0;                         // descents and picks
-  Eigen::Vector2d gripped_at_{0, 0};         // the object, when the gripper closed; NaN: it moved
+  std::optional<Gripped> at_grip_;           // nothing: it was not known where the object was
   bool has_gripped_ = false;                 // in this descent
   bool is_open_ = false;                     // the gripper, before a pick
   bool is_done_ = false;

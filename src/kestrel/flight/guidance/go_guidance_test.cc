@@ -465,7 +465,7 @@ TEST(GoGuidanceTest, WhatIsMarkedNeedsConfirmation) {
       << flight.output.reason;
   flight.mark = 8;
   flight.FlyUntil([] { return false; }, 1, order(4, 7));
-  EXPECT_EQ(flight.guidance.phase(), Phase::kLook);
+  EXPECT_THAT(flight.output.reason, HasSubstr("something else is marked"));
   EXPECT_TRUE(
       flight.FlyUntil([&] { return flight.guidance.phase() == Phase::kAct; }, 60, order(5, 8)));
 }
@@ -488,11 +488,44 @@ TEST(GoGuidanceTest, LostMarkedThingIsNotSearchedFor) {
   EXPECT_THAT(flight.output.reason, HasSubstr("what is marked is lost"));
 }
 
-// It has driven on, beside what is seen from near by.
-TEST(GoGuidanceTest, LooksForObjectThatMovesFromHighUp) {
+TEST(GoGuidanceTest, MarkedThingThatIsNotSeenIsNotConfirmed) {
+  GoJob job = ParseGoJob("hover,2.5,3");
+  job.target = GoTarget::kMarked;
+  GoFlight flight(job);
+  flight.FlyUntil([] { return false; }, 1);
+  flight.FlyUntil([] { return false; }, 1,
+                  [](GuidanceInput& input) {
+                    input.order = {1, 7};
+                    input.target_age_s = 2;
+                  });
+  EXPECT_THAT(flight.output.reason, HasSubstr("is not seen"));
+}
+
+TEST(GoGuidanceTest, OtherObjectBesideIsNotTheOneThatWasTaken) {
   GoFlight flight("pick", {.path = "circle", .speed_mps = 1.4});
-  ASSERT_TRUE(flight.FlyUntilDone());
-  EXPECT_GT(flight.uav.position().z(), 9);
+  const auto show_other = [&](GuidanceInput& input) {
+    if (flight.grabs == 0 || flight.guidance.phase() == Phase::kAct) return;
+    input.target = flight.object.Estimate(input.now, flight.time_s);
+    input.target->motion.mean.head<2>() += Eigen::Vector2d(3, 3);
+    input.target_age_s = 0.05;
+    input.mark = 7;
+  };
+  ASSERT_TRUE(flight.FlyUntil([&] { return flight.guidance.is_done(); }, 90, show_other))
+      << flight.output.reason;
+  EXPECT_EQ(flight.grabs, 1);
+}
+
+TEST(GoGuidanceTest, RisesNoHigherThanItsLayerWhileItSeesNothing) {
+  GoFlight flight("hover,2,3");
+  ASSERT_TRUE(flight.FlyUntilPhase(Phase::kDescend)) << flight.output.reason;
+  double highest_m = 0;
+  flight.FlyUntil(
+      [&] {
+        highest_m = std::max(highest_m, flight.uav.position().z());
+        return false;
+      },
+      20, [](GuidanceInput& input) { input.target_age_s = 60; });
+  EXPECT_LT(highest_m, GuidanceOptions().search_altitude_m + 1);
 }
 
 TEST(GoGuidanceTest, SearchBeyondTheLimitsIsRefused) {

@@ -135,7 +135,8 @@ class Guidance {
   const FlightModel& model() const { return model_; }
 
  protected:
-  static constexpr double kHeightGain = 1;  // climb rate per metre below the wanted height, 1/s
+  static constexpr double kHalted_mps = 0.5;  // a UAV that is slower stands still where it is
+  static constexpr double kHeightGain = 1;    // climb rate per metre below the wanted height, 1/s
 
   // 'place': where the vehicle should pass (m, world); nothing: where guidance begins. Throws
   // InputError when the options are not valid.

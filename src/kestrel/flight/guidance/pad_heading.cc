@@ -22,7 +22,9 @@ void PadHeading::Add(Time time, double heading, double sigma, int symmetry) {
   const double expected = seen_ ? VarianceAt(time) : 0;
   const double error = std::remainder(heading - heading_, period);
   const bool is_contradiction = seen_ && error * error > kOtherPad * (expected + noise);
-  contradictions_ = is_contradiction ? contradictions_ + 1 : 0;
+  // A frame that shows less of the heading does not refute one that contradicts it.
+  if (is_contradiction) ++contradictions_;
+  if (!is_contradiction && period >= period_) contradictions_ = 0;
   const bool is_new = !seen_ || period > period_ || contradictions_ > kMostContradictions;
   if (is_contradiction && !is_new) return;
   const double gain = is_new ? 1 : expected / (expected + noise);

@@ -42,6 +42,15 @@ TEST(PadHeadingTest, FrameThatShowsMoreDecidesAndOneThatShowsLessDoesNot) {
   EXPECT_NEAR(std::remainder(estimate->motion.yaw() - Radians(290), kFullTurn), 0, 1e-9);
 }
 
+TEST(PadHeadingTest, OneWrongFrameIsOutvotedAmongFramesThatShowLess) {
+  PadHeading heading;
+  heading.Add(Second(10), Radians(110), kSigma, 1);
+  for (int i = 1; i < 40; ++i) {
+    heading.Add(Second(10 + 0.1 * i), Radians(20), kSigma, i % 2 == 0 ? 1 : 4);
+  }
+  EXPECT_NEAR(heading.At(Second(14))->motion.yaw(), Radians(20), Radians(1));
+}
+
 TEST(PadHeadingTest, PadWithoutHeadingHasNone) {
   PadHeading heading;
   heading.Add(Second(10), 0.3, kSigma, 0);

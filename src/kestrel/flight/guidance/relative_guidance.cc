@@ -192,14 +192,16 @@ void RelativeGuidance::Wait(const RelativeInput& input) {
 // To give up for a heading would be a landing beside the pad.
 void RelativeGuidance::WatchHeading(const RelativeInput& input) {
   heading_.Update(input.now, input.nose, input.pad_heading, input.link_delay_s);
-  const bool waits = phase_ == GuidancePhase::kFollow || phase_ == GuidancePhase::kDescend;
+  const bool waits =
+      phase_ == GuidancePhase::kFollow || (phase_ == GuidancePhase::kDescend && HasToTurn());
   if (heading_.IsOverdue(input.now, waits && job_.lands)) ignores_heading_ = true;
 }
 
 // In the descent the pad may show that its heading is another one.
 bool RelativeGuidance::HasToTurn() const {
   constexpr double kFar = Radians(10);
-  return !ignores_heading_ && std::abs(heading_.error().value_or(0)) > kFar;
+  return !ignores_heading_ && !heading_.is_reached() &&
+         std::abs(heading_.error().value_or(0)) > kFar;
 }
 
 // The time that it may fly without the pad follows from how well velocity and bias are known.

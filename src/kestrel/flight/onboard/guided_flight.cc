@@ -32,7 +32,7 @@ const FlightOptions& CheckedRate(const FlightOptions& options) {
   return options;
 }
 
-// A late link tells where the UAV was. In curves the velocity has changed by metres per second
+// A late link reports where the UAV was. In curves the velocity has changed by metres per second
 // since.
 UavState StateOf(const PredictedPose& pose, const Eigen::Vector3d& acceleration) {
   UavState uav{pose.world_from_body, pose.motion.velocity_in_world, pose.uncertainty.position_m};
@@ -108,7 +108,7 @@ void GuidedFlight::KnowAutopilot(Time now) {
 void GuidedFlight::WatchMode(const GuidanceInput& input, Time now) {
   const bool is_mode = autopilot_.is_here() ? autopilot_.is_guided_mode() : was_mode_;
   if (is_mode && !was_mode_) is_given_ = true;
-  const bool is_landing = autopilot_.is_landing_mode();
+  const bool is_landing = autopilot_.is_descent();
   if (!is_mode && is_begun_ && phase() == GuidancePhase::kLanded && !input.uav && !is_landing) {
     left_on_deck_ = now;
     Notify(mavlink::kSeverityWarning,
@@ -121,7 +121,8 @@ void GuidedFlight::WatchMode(const GuidanceInput& input, Time now) {
   was_armed_ = input.is_armed;
   if (!is_begun_ && now >= permission_due_) CheckPermission(input, now);
   const bool is_flying = input.is_armed && IsInFlight(autopilot_.landed_state());
-  if (warning_.IsDue(is_flying, is_begun_ || may_begin_ || is_landing, now)) {
+  const bool is_own_landing = is_landing && phase() == GuidancePhase::kLanded;
+  if (warning_.IsDue(is_flying, is_begun_ || may_begin_ || is_own_landing, now)) {
     Notify(mavlink::kSeverityWarning, "guidance would be refused now: " + refusal_);
   }
   if (unknown_.IsDue(is_given_ && input.is_armed,

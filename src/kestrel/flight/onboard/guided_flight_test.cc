@@ -233,7 +233,7 @@ TEST_F(GuidedFlightTest, SendsNothingDuringTakeOff) {
   EXPECT_GT(SetPointsDuring(1), 30) << reported_;
 }
 
-TEST_F(GuidedFlightTest, SaysThatItWaitsWhereNobodyKnowsWhetherItFlies) {
+TEST_F(GuidedFlightTest, WaitForLandedStateIsReported) {
   Start(mavlink::kAutopilotArduPilot);
   landed_ = 0;
   Pass(2);

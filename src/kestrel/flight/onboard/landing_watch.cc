@@ -119,9 +119,10 @@ FlightEnd LandingWatch::JudgePlace() const {
   if (!place_ && !seen_) {
     return {FlightOutcome::kDownSomewhere,
             {},
-            sight_ ? fmt::format("no position, and the pattern was last seen {:.1f} m away",
-                                 sight_->feet.head<2>().norm())
-                   : "the pattern was never seen"};
+            sight_ && !has_body_
+                ? fmt::format("no position, and the pattern was last seen {:.1f} m away",
+                              sight_->feet.head<2>().norm())
+                : "the pattern was never seen"};
   }
   if (!place_) {
     return {FlightOutcome::kDownSomewhere,

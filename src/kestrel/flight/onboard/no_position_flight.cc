@@ -106,7 +106,7 @@ void NoPositionFlight::CheckReserve(Time now) {
 // The flight by position goes on where the pilot leaves the mode, or begins the next flight.
 void NoPositionFlight::EndReserve(bool is_mode, bool is_armed) {
   if (is_mode || !autopilot_.is_guided_mode()) is_handing_over_ = false;
-  const bool is_left = !is_mode && !is_handing_over_ && !autopilot_.is_landing_mode();
+  const bool is_left = !is_mode && !is_handing_over_ && !autopilot_.is_descent();
   if (is_left || (is_armed && !was_armed_)) took_over_.reset();
 }
 
@@ -186,15 +186,15 @@ void NoPositionFlight::WatchMode(Time now, bool is_seen) {
   if (!autopilot_.is_here()) return;
   if (is_mode && !was_mode_) is_given_ = true;
   if (!is_mode) is_given_ = is_begun_ = false;
+  if (is_mode) has_requested_land_ = false;
   was_mode_ = is_mode;
   if (!is_begun_ && now >= permission_due_) {
     permission_due_ = now + kCheckPeriod;
     refusal_ = WhyNot(now);
   }
   const bool is_flying = is_armed && IsInFlight(autopilot_.landed_state());
-  // An autopilot that comes down by itself may do so for this guidance.
-  const bool may_begin = is_begun_ || refusal_.empty() || autopilot_.is_landing_mode();
-  if (warning_.IsDue(is_flying, may_begin, now)) {
+  const bool is_own_landing = has_requested_land_ && autopilot_.is_descent();
+  if (warning_.IsDue(is_flying, is_begun_ || refusal_.empty() || is_own_landing, now)) {
     Notify(mavlink::kSeverityWarning, "guidance would be refused now: " + refusal_);
   }
   if (unknown_.IsDue(is_given_ && is_armed, autopilot_.landed_state() != LandedState::kUnknown,
@@ -276,8 +276,8 @@ bool NoPositionFlight::Send(const RelativeSetPoint& set_point, Time now) {
 void NoPositionFlight::Request(GuidanceRequest request, Time now) {
   if (request == GuidanceRequest::kNone || now < request_due_) return;
   request_due_ = now + kRepeatPeriod;
-  autopilot_.RequestMode(request == GuidanceRequest::kAltitude ? FlightMode::kAltitude
-                                                               : FlightMode::kLand);
+  has_requested_land_ = request != GuidanceRequest::kAltitude;
+  autopilot_.RequestMode(has_requested_land_ ? FlightMode::kLand : FlightMode::kAltitude);
 }
 
 void NoPositionFlight::ReportPhase(const RelativeOutput& output) {

@@ -94,6 +94,7 @@ class NoPositionFlight {
   PositionLoss loss_;
   std::optional<Time> took_over_;
   bool is_handing_over_ = false;
+  bool has_requested_land_ = false;  // since the mode was given
 
   Time attitude_time_{};
   double heading_ = 0;  // by the autopilot, rad from east to north

@@ -10,7 +10,7 @@ namespace kestrel {
 void UpdateState(const Autopilot& autopilot, Time now, AutopilotState* state) {
   state->is_here = autopilot.is_here();
   state->is_armed = autopilot.is_armed();
-  state->is_landing = state->is_armed && autopilot.is_landing_mode();
+  state->is_landing = state->is_armed && (autopilot.is_landing_mode() || autopilot.is_descent());
   if (state->is_here) {
     state->mode = autopilot.mode_name();
     state->waits.clear();

@@ -157,16 +157,15 @@ TEST_P(NoPositionFlightTest, ClimbsAndLandsWhenPadIsLostForGood) {
 }
 
 // PX4 reports a failsafe then: no reason to give another mode.
-TEST_P(NoPositionFlightTest, GivesNoAdviceWhileItHasUavLand) {
-  PointedFlight flight = NoPositionFlightOf(Hover(6, 0));
+TEST_P(NoPositionFlightTest, LandThatKestrelRequestsGetsNoAdvice) {
+  PointedFlight flight = NoPositionFlightOf(Hover(3, 0));
   Settle(&flight);
-  flight.SendFromGround(ModeOf(FlightMode::kLand));
-  flight.Fly(6);
-  ASSERT_TRUE(flight.model.is_armed());
+  flight.is_blind = true;
+  EXPECT_TRUE(flight.Land(60)) << flight.reported;
   EXPECT_THAT(flight.reported, Not(HasSubstr("guidance would be refused"))) << flight.reported;
 }
 
-TEST_P(NoPositionFlightTest, SaysThatItWaitsWhereNobodyKnowsWhetherItFlies) {
+TEST_P(NoPositionFlightTest, WaitForLandedStateIsReported) {
   PointedFlight flight = NoPositionFlightOf(Hover(3, 0));
   flight.hides_landed_state = true;
   flight.Fly(kNoPositionStart_s + 6);

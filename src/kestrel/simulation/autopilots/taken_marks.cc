@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <fmt/format.h>
@@ -26,8 +27,19 @@ int Open(const std::string& file, std::size_t bytes) {
   if (file.empty()) return -1;
   const int descriptor = open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600);
   if (descriptor < 0) ThrowUnusable(file);
-  if (ftruncate(descriptor, static_cast<off_t>(bytes)) == 0) return descriptor;
+  const auto size = static_cast<off_t>(bytes);
+  struct stat found;
+  const bool is_known = fstat(descriptor, &found) == 0;
+  if (is_known && found.st_size != 0 && found.st_size != size) {
+    close(descriptor);
+    throw InputError(fmt::format(
+        "field.shared_file {}: has {} bytes, expected a new file or one of this field, of {}", file,
+        found.st_size, size));
+  }
+  if (is_known && ftruncate(descriptor, size) == 0) return descriptor;
+  const int error = errno;
   close(descriptor);
+  errno = error;
   ThrowUnusable(file);
 }
 

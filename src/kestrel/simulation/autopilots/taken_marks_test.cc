@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/simulation/autopilots/taken_marks.h"
 
+#include <filesystem>
+#include <fstream>
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include "kestrel/core/base/error.h"
@@ -18,6 +22,14 @@ TEST(TakenMarksTest, ObjectIsTakenOnceByAllThatShareTheFile) {
   EXPECT_TRUE(other[1]);
   EXPECT_FALSE(other[0]);
   EXPECT_FALSE(alone[1]);
+}
+
+TEST(TakenMarksTest, FileOfSomethingElseIsRefusedAndKept) {
+  const TestFolder folder;
+  const std::string file = folder / "flight.csv";
+  std::ofstream(file) << "time,x,y\n";
+  EXPECT_THROW(TakenMarks(file, 3), InputError);
+  EXPECT_EQ(std::filesystem::file_size(file), 9);
 }
 
 TEST(TakenMarksTest, FileThatCannotBeUsedIsRefused) {

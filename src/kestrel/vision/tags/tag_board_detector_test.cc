@@ -333,7 +333,6 @@ TEST_F(TagBoardDetectorTest, FindsTagWithoutHintUnderShadowEdge) {
   EXPECT_GE(found, kFrames - 2);
 }
 
-// In the logarithms a light cell that blurs into the margin cuts the frame.
 TEST_F(TagBoardDetectorTest, DotInMiddleOfEachCellHidesNoBit) {
   Use(BoardOfTag("aruco_4x4_50", 7, 0.6));
   const PrintedTag printed = board_.Printed().front();
@@ -356,6 +355,7 @@ TEST_F(TagBoardDetectorTest, DotInMiddleOfEachCellHidesNoBit) {
   }
 }
 
+// In the logarithms a light cell that blurs into the margin cuts the frame.
 TEST_F(TagBoardDetectorTest, FindsTagWithLightCellsBlurredIntoMargin) {
   Use({{OneTag("tag36h11", 7, 0.5)}});
   Random random(31);
