@@ -256,7 +256,7 @@ void GoGuidance::KeepAway(const GuidanceInput& input, const Situation& now, SetP
   command->velocity.head<2>() = own;
   for (const OtherUav& other : input.others) {
     if (is_at_work() && !other.goes_first) continue;
-    KeepApart(now.feet.head<2>(), going_to_, {&other, 1}, command);
+    KeepApart({now.feet.head<2>(), now.velocity.head<2>()}, going_to_, {&other, 1}, command);
   }
   // Beside another UAV gusts are not met: their path would go on towards it.
   if (command->velocity.head<2>() != own) return flight_model().Rest();

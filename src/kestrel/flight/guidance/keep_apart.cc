@@ -16,13 +16,15 @@ double DistanceTo(const OtherUav& other) { return other.goes_first ? kGiveWay_m 
 
 // The approach of a UAV to another one, by its velocity.
 struct Nearing {
-  Nearing(const Vector2d& position, const Vector2d& velocity, const OtherUav& other) {
-    const Vector2d way = other.position - position;
+  Nearing(const OwnMotion& own, const Vector2d& commanded, const OtherUav& other) {
+    const Vector2d way = other.position - own.position;
     const double distance_m = std::max(way.norm(), 1e-3);
     to = way / distance_m;
     free_m = distance_m - DistanceTo(other);
     const double most_mps = kGain * free_m + std::min(other.velocity.dot(to), 0.0);
-    excess_mps = std::max(velocity.dot(to) - most_mps, 0.0);
+    // A UAV lags behind its commands: what it flies too fast now is commanded the other way.
+    const double lag_mps = std::max(own.velocity.dot(to) - most_mps, 0.0);
+    excess_mps = std::max(commanded.dot(to) + lag_mps - most_mps, 0.0);
   }
 
   Vector2d to;        // unit vector to the other one
@@ -32,12 +34,12 @@ struct Nearing {
 
 }  // namespace
 
-void KeepApart(const Vector2d& position, const Vector2d& destination,
-               std::span<const OtherUav> others, SetPoint* command) {
+void KeepApart(const OwnMotion& own, const Vector2d& destination, std::span<const OtherUav> others,
+               SetPoint* command) {
   const double wanted_mps = command->velocity.head<2>().norm();
   Vector2d velocity = command->velocity.head<2>();
   for (const OtherUav& other : others) {
-    const Nearing nearing(position, velocity, other);
+    const Nearing nearing(own, velocity, other);
     velocity -= nearing.excess_mps * nearing.to;
     const bool is_at_destination = (destination - other.position).norm() < DistanceTo(other);
     if (is_at_destination || nearing.free_m > kAround_m) continue;
@@ -47,7 +49,7 @@ void KeepApart(const Vector2d& position, const Vector2d& destination,
   }
   // The way around one may be near another one.
   for (const OtherUav& other : others) {
-    const Nearing nearing(position, velocity, other);
+    const Nearing nearing(own, velocity, other);
     velocity -= nearing.excess_mps * nearing.to;
   }
   if (velocity == Vector2d(command->velocity.head<2>())) return;

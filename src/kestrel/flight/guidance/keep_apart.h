@@ -15,11 +15,17 @@ namespace kestrel {
 inline constexpr double kApart_m = 5;
 inline constexpr double kGiveWay_m = 6.5;
 
-// Limits the horizontal velocity of a set-point for a UAV at 'position' (m, world) on its way to
-// 'destination': it comes to others no faster than it can stop before the distance, goes around
-// those that are in its way, waits for those that are at its destination, and moves off from those
-// that come to it. No allocation.
-void KeepApart(const Eigen::Vector2d& position, const Eigen::Vector2d& destination,
+// The UAV itself, horizontally.
+struct OwnMotion {
+  Eigen::Vector2d position;  // m, world
+  Eigen::Vector2d velocity;  // m/s, as it flies
+};
+
+// Limits the horizontal velocity of a set-point for a UAV on its way to 'destination' (m, world):
+// it comes to others no faster than it can stop before the distance, goes around those that are in
+// its way, waits for those that are at its destination, and moves off from those that come to it.
+// No allocation.
+void KeepApart(const OwnMotion& own, const Eigen::Vector2d& destination,
                std::span<const OtherUav> others, SetPoint* command);
 
 }  // namespace kestrel

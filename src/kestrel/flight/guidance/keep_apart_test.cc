@@ -11,17 +11,20 @@ namespace {
 
 using Eigen::Vector2d;
 
-// Flies to a place at 4 m/s among others; returns the least distance from the first of them.
+// Flies to a place among others, with a velocity that lags behind the commands; returns the least
+// distance from the first of them.
 double FlyTo(const Vector2d& place, std::vector<OtherUav> others, Vector2d* position,
-             double seconds) {
-  constexpr double kStep_s = 0.05, kSpeed_mps = 4;
+             double seconds, double speed_mps = 4, double lag_s = 0.2) {
+  constexpr double kStep_s = 0.05;
+  Vector2d velocity(0, 0);
   double nearest_m = 1e9;
   for (double t = 0; t < seconds; t += kStep_s) {
     SetPoint command;
     const Vector2d way = place - *position;
-    command.velocity.head<2>() = way * std::min(1.0, kSpeed_mps / std::max(way.norm(), 1e-9));
-    KeepApart(*position, place, others, &command);
-    *position += kStep_s * command.velocity.head<2>();
+    command.velocity.head<2>() = way * std::min(1.0, speed_mps / std::max(way.norm(), 1e-9));
+    KeepApart({*position, velocity}, place, others, &command);
+    velocity += kStep_s / lag_s * (command.velocity.head<2>() - velocity);
+    *position += kStep_s * velocity;
     for (OtherUav& other : others) other.position += kStep_s * other.velocity;
     nearest_m = std::min(nearest_m, (others[0].position - *position).norm());
   }
@@ -40,6 +43,12 @@ TEST(KeepApartTest, WaitsForUavAtItsDestination) {
   EXPECT_LT((position - Vector2d(-6.5, 0)).norm(), 0.5);
 }
 
+TEST(KeepApartTest, BrakesInTimeAlthoughItLags) {
+  Vector2d position(-40, 0);
+  const OtherUav at_work{.position = {0, 0}, .goes_first = true};
+  EXPECT_GT(FlyTo({0, 0}, {at_work}, &position, 30, 9, 1.2), 5);
+}
+
 TEST(KeepApartTest, MovesOffFromUavThatComes) {
   Vector2d position(0, 0);
   const OtherUav coming{.position = {20, 0}, .velocity = {-3, 0}, .goes_first = true};
@@ -51,7 +60,7 @@ TEST(KeepApartTest, LeavesCommandAloneFarFromOthers) {
   command.velocity = {3, 1, -1};
   command.acceleration = {0.5, 0, 0};
   const std::vector<OtherUav> others = {{.position = {40, 0}}, {.position = {-8, 0}}};
-  KeepApart({0, 0}, {10, 0}, others, &command);
+  KeepApart({{0, 0}, {3, 1}}, {10, 0}, others, &command);
   EXPECT_EQ(command.velocity, Eigen::Vector3d(3, 1, -1));
   EXPECT_EQ(command.acceleration, Eigen::Vector3d(0.5, 0, 0));
 }
