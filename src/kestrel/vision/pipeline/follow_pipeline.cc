@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kestrel/vision/pipeline/follow_pipeline.h"
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -20,8 +19,8 @@ constexpr Duration kPoseGap = std::chrono::milliseconds(500);
 // Errors of the place of a box, as shares of its size: from image to image, and those that stay.
 constexpr double kBoxNoise = 0.03, kBoxDrift = 0.05;
 // The same of the foot of the thing, which depends on its shape: seen level, it may be there or
-// more than half way up to its middle.
-constexpr double kFootShare = 0.25;
+// half way up to its middle.
+constexpr double kFootShare = 0.15;
 // Beyond it (and above the horizon) the errors of a place are not linear any more.
 constexpr double kMostOfDepression = 0.3;
 // A prediction that is less certain, in sizes of the region, is worth less than the image before.
@@ -33,17 +32,12 @@ Eigen::Vector2d CenterOf(const cv::Rect2d& box) {
 
 double SizeOf(const cv::Rect2d& box) { return std::sqrt(box.width * box.height); }
 
-// Returns where the thing in a box stands on the ground. Seen from above by the depression d, the
-// box of one with height h and depth l is h cos(d) + l sin(d) high, and its foot is h cos(d) / 2
-// below its middle. It is taken for as deep as wide, but its foot for no lower than that of a ball:
-// cos(d) of the half box. 'down_px': direction of the world's down in the image, of length 1.
-Eigen::Vector2d FootOf(const cv::Rect2d& box, const Eigen::Vector2d& down_px, double sine,
-                       double cosine) {
-  const Eigen::Vector2d size(box.width, box.height);
-  const double high = size.cwiseProduct(down_px).norm();
-  const double wide = size.cwiseProduct(down_px.reverse()).norm();
-  const double upright = std::clamp(high - sine * wide, 0.0, cosine * high);
-  return CenterOf(box) + 0.5 * upright * down_px;
+// Returns where the thing in a box stands on the ground. A sphere of radius r on the ground is seen
+// from above by the depression d: its foot is r cos(d) below its middle, across the line of sight.
+// 'down_px': direction of the world's down in the image, of length 1.
+Eigen::Vector2d FootOf(const cv::Rect2d& box, const Eigen::Vector2d& down_px, double cosine) {
+  const Eigen::Vector2d half(0.5 * box.width, 0.5 * box.height);
+  return CenterOf(box) + cosine * half.cwiseProduct(down_px).norm() * down_px;
 }
 
 }  // namespace
@@ -211,7 +205,7 @@ std::optional<Eigen::Vector3d> FollowPipeline::Impl::FootRay(
   const double cosine = ray.cross(down).norm();
   Eigen::Vector2d foot = center;
   constexpr double kLeastCosine = 1e-3;  // straight below there is no direction down
-  if (cosine > kLeastCosine) foot = FootOf(box, down_px.normalized(), ray.dot(down), cosine);
+  if (cosine > kLeastCosine) foot = FootOf(box, down_px.normalized(), cosine);
   foot_px_ = foot - center;
   if (camera_.Unproject(foot, &ray) == ProjectionStatus::kOutsideModel) return std::nullopt;
   return world_from_camera.rotation * ray;
