@@ -369,6 +369,7 @@ void GoGuidance::ChooseCommit(const GuidanceInput& input, const Situation& now) 
   if (now.off_m > kCommitCones * Cone(now.height_m)) return TryAgain("beside the goal");
   if (HasReached(input, now)) {
     gripped_.reset();
+    at_grip_.reset();
     return Enter(GuidancePhase::kAct, job_.grips() ? "uses the gripper" : "hovers above the goal");
   }
   if (ToSeconds(input.now - entered()) > kAimWait_s) TryAgain("does not come to the goal");
@@ -436,7 +437,6 @@ void GoGuidance::ChooseClimb(const GuidanceInput& input, const Situation& now) {
 }
 
 void GoGuidance::RememberGrip(const GuidanceInput& input) {
-  at_grip_.reset();
   if (input.target) at_grip_ = Gripped{input.target->motion, input.now};
 }
 
