@@ -189,8 +189,7 @@ std::optional<RelativeJob> FlyArguments::WithoutPosition() const {
                      .is_reserve = !no_position};
 }
 
-// A text with a comma is a place. There the UAV stays at the lowest height of limits.floor_m or
-// above.
+// A text with a comma is a place. At a place the UAV flies no lower than limits.floor_m.
 void FlyArguments::ReadGo(const FlyOptions& options) {
   job = ParseGoJob(then);
   const bool is_place = go.find(',') != std::string::npos;
@@ -201,8 +200,9 @@ void FlyArguments::ReadGo(const FlyOptions& options) {
     job.target = GoTarget::kPlace;
     const double least_m = options.guidance.limits.floor_m - options.guidance.leg_m;
     if (then.find(',') == std::string::npos) job.height_m = std::max(job.height_m, least_m);
-    if (!team.team.empty())
+    if (!team.team.empty()) {
       throw InputError("--go LAT,LON: expected no --team, which goes to objects");
+    }
   } else if (is_marked) {
     job.target = GoTarget::kMarked;
   } else if (!go.empty() && task.name != "hunt") {

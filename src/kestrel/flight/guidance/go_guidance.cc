@@ -39,7 +39,7 @@ constexpr double kLastGain = 2;        // 1/s: it brakes before the ground, and 
 // A UAV that sinks more slowly for so long on command to descend rests on something.
 constexpr double kStandstill_mps = 0.05;
 constexpr double kRests_s = 1;
-constexpr double kTouches_s = 0.5;  // after which the ground holds it
+constexpr double kTouches_s = 0.5;  // after which the ground takes the load
 constexpr double kBelow_m = 1;  // from the UAV to the object, while it looks whether that is gone
 // Near an object whose place is known so well the UAV flies on for this long without a sight.
 constexpr double kLongestSight_s = 3;
@@ -234,8 +234,8 @@ Guidance::Wish GoGuidance::Choose(const GuidanceInput& input) {
                        options().limits.ceiling_m - options().leg_m);
   ChoosePhase(input, now);
   Wish wish;
-  // Gusts are met where it matters. On its way the drag looks like one, and on the ground what
-  // holds its legs.
+  // Gusts are met at the object only: on the way drag looks like one, and on the ground the load on
+  // the legs does.
   if (!IsLow() || Rests(input.now)) flight_model().Rest();
   wish.follows_target = input.target.has_value() && !carries_ && job_.target != GoTarget::kPlace;
   if (input.gripper.number == answers_before_) wish.request = motion_;

@@ -444,7 +444,7 @@ TEST(GoGuidanceTest, PlaceIsNothingToPickUpOrToComeDownOn) {
               ThrowsMessage<InputError>(HasSubstr("expected at least 2.65")));
 }
 
-TEST(GoGuidanceTest, WhatIsMarkedNeedsConfirmation) {
+TEST(GoGuidanceTest, MarkedThingNeedsConfirmation) {
   GoJob job = ParseGoJob("hover,2.5,3");
   job.target = GoTarget::kMarked;
   GoFlight flight(job);

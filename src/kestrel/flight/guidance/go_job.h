@@ -14,7 +14,7 @@ enum class GoAction {
   kPick,   // closes the gripper, and looks whether the object is gone
 };
 
-// What the UAV goes to.
+// Goal of a job.
 enum class GoTarget {
   kObject,  // of the map
   kMarked,  // what a person has marked, once the flight to it is confirmed

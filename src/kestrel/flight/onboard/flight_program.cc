@@ -50,14 +50,14 @@ FlightProgram::FlightProgram(const FlightOptions& options, const FlightParts& pa
     sender_.emplace(options, tracker_, parts.profile, pad_->size_m, pad_->range_m,
                     parts.guidance != nullptr, parts.autopilot, parts.connection, report_);
   }
-  flown_.emplace(options, tracker_,
-                 SetPointTask{.guidance = parts.guidance,
-                              .without_position = parts.without_position,
-                              .sends_pad_position = parts.sends_pad_position,
-                              .box = parts.box,
-                              .place = parts.place,
-                              .is_in_its_frame = !parts.source_has_poses},
-                 parts.autopilot, parts.connection, report_);
+  set_point_flight_.emplace(options, tracker_,
+                            SetPointTask{.guidance = parts.guidance,
+                                         .without_position = parts.without_position,
+                                         .sends_pad_position = parts.sends_pad_position,
+                                         .box = parts.box,
+                                         .place = parts.place,
+                                         .is_in_its_frame = !parts.source_has_poses},
+                            parts.autopilot, parts.connection, report_);
   if (parts.pointed != nullptr) {
     gimbal_.emplace(options, *parts.pointed, pad_, tracker_, parts.autopilot, parts.connection,
                     report_);
@@ -358,7 +358,7 @@ void FlightProgram::Communicate() {
     if (gimbal_) Point(now);
     if (camera_) camera_->Tick(now, track_.Get(), poses_);
     WatchFlight(now);
-    if (guard_ && !guard_->Watch(now, flown_->TaskOfGuard(now))) {
+    if (guard_ && !guard_->Watch(now, set_point_flight_->TaskOfGuard(now))) {
       End({FlightOutcome::kNotLanded, {}, guard_->reason()});
     }
   }
@@ -379,11 +379,11 @@ void FlightProgram::ResumePointing() {
 
 void FlightProgram::SendTarget(Time now) {
   const TrackSnapshot& track = track_.Get();
-  if (const NoPositionFlight* const flight = flown_->by_pad()) {
+  if (const NoPositionFlight* const flight = set_point_flight_->by_pad()) {
     phase_ = flight->target_phase();
     height_m_ = flight->height_m();
   } else if (sender_) {
-    sender_->set_may_stand(!flown_->is_flying());
+    sender_->set_may_stand(!set_point_flight_->is_flying());
     if (sender_->Send(now, track, poses_)) latency_.step(kMessage).Add(Now() - track.captured);
     phase_ = sender_->phase();
     height_m_ = sender_->height_m();
@@ -393,19 +393,21 @@ void FlightProgram::SendTarget(Time now) {
 }
 
 void FlightProgram::Fly(Time now, const TrackSnapshot& track) {
-  if (GuidedFlight* const guided = flown_->by_position()) {
+  if (GuidedFlight* const guided = set_point_flight_->by_position()) {
     guided->Take(order_);
     guided->set_video_delay(VideoDelay());
     const std::lock_guard lock(team_mutex_);
     if (auto team = std::exchange(team_, std::nullopt)) guided->Take(*std::move(team));
     to_objects_ = kestrel::ToObjects(*guided, poses_, now, to_objects_);
   }
-  if (flown_->Fly(now, track, poses_)) latency_.step(kSetPoint).Add(Now() - track.captured);
-  if (const GuidedFlight* const guided = flown_->by_position()) ended_mark_ = guided->ended().mark;
-  guidance_phase_ = flown_->phase();
-  set_points_ = flown_->set_points();
+  if (set_point_flight_->Fly(now, track, poses_))
+    latency_.step(kSetPoint).Add(Now() - track.captured);
+  if (const GuidedFlight* const guided = set_point_flight_->by_position())
+    ended_mark_ = guided->ended().mark;
+  guidance_phase_ = set_point_flight_->phase();
+  set_points_ = set_point_flight_->set_points();
   // Without a position there are none.
-  const bool awaits_poses = parts_.source_has_poses || !flown_->is_without_position();
+  const bool awaits_poses = parts_.source_has_poses || !set_point_flight_->is_without_position();
   if (awaits_poses != std::exchange(awaits_poses_, awaits_poses)) events_.AwaitPoses(awaits_poses);
 }
 
@@ -418,20 +420,22 @@ Duration FlightProgram::VideoDelay() const {
 }
 
 void FlightProgram::TakeAutopilotPose(const PoseSample& pose) {
-  if (!flown_->TakePose(pose, Now()) || parts_.source_has_poses) return;
+  if (!set_point_flight_->TakePose(pose, Now()) || parts_.source_has_poses) return;
   poses_.Add(pose);
   TakePose(pose);
 }
 
 void FlightProgram::TakeAutopilotAttitude(const PoseSample& attitude) {
-  flown_->TakeAttitude(attitude);
+  set_point_flight_->TakeAttitude(attitude);
 }
 
 void FlightProgram::TakeAutopilotAcceleration(Time time, const Eigen::Vector3d& acceleration) {
-  flown_->TakeAcceleration(time, acceleration);
+  set_point_flight_->TakeAcceleration(time, acceleration);
 }
 
-void FlightProgram::TakeAutopilotClimb(double climb_mps) { flown_->TakeClimb(climb_mps); }
+void FlightProgram::TakeAutopilotClimb(double climb_mps) {
+  set_point_flight_->TakeClimb(climb_mps);
+}
 
 void FlightProgram::TakeAutopilotGimbal(const GimbalSample& report) {
   if (gimbal_) gimbal_->TakeReport(report);
@@ -475,7 +479,7 @@ void FlightProgram::ShowAutopilot(Time now) {
   const std::lock_guard lock(autopilot_mutex_);
   AutopilotState& state = autopilot_state_;
   UpdateState(autopilot, now, &state);
-  const GuidedFlight* const guided = flown_->by_position();
+  const GuidedFlight* const guided = set_point_flight_->by_position();
   if (guided == nullptr) return;
   const FollowingDemand& demand = guided->demand();
   LimitsInUse& limits = state.limits.emplace();
@@ -512,10 +516,10 @@ LandingWatchInput FlightProgram::LandingInput(Time now) {
     const TurnState target = Propagate(track.target->motion, ahead_s, noise_);
     input.pattern = {target.position(), target.covariance.topLeftCorner<3, 3>()};
   }
-  input.has_contact = input.has_contact || flown_->phase() == GuidancePhase::kLanded;
-  if (flown_->is_flying()) gave_up_.clear();
-  input.heading_error = flown_->heading_error();
-  if (const std::string reason = flown_->gave_up(); !reason.empty()) gave_up_ = reason;
+  input.has_contact = input.has_contact || set_point_flight_->phase() == GuidancePhase::kLanded;
+  if (set_point_flight_->is_flying()) gave_up_.clear();
+  input.heading_error = set_point_flight_->heading_error();
+  if (const std::string reason = set_point_flight_->gave_up(); !reason.empty()) gave_up_ = reason;
   input.gave_up = gave_up_;
   return input;
 }
@@ -546,7 +550,7 @@ FlightReport FlightProgram::Report() const {
     const std::lock_guard lock(autopilot_mutex_);
     autopilot = autopilot_state_;
   }
-  if (is_flown()) autopilot.guidance = guidance_phase_.load();
+  if (flies_by_set_points()) autopilot.guidance = guidance_phase_.load();
   autopilot.target = phase_;
   autopilot.link = parts_.connection->counters();
   return report;
@@ -568,7 +572,8 @@ std::string FlightProgram::State() const {
   }
   state += fmt::format("; target {}", ToString(phase_.load()));
   if (phase_ == TargetPhase::kFound) state += fmt::format(", {:.1f} m below", height_m_.load());
-  if (is_flown()) return state + fmt::format("; guidance: {}", ToString(guidance_phase_.load()));
+  if (flies_by_set_points())
+    return state + fmt::format("; guidance: {}", ToString(guidance_phase_.load()));
   return state + fmt::format("; {} messages sent", messages_.load());
 }
 

@@ -147,7 +147,7 @@ class FlightProgram {
   void Point(Time now);
   void SendTarget(Time now);
   void Fly(Time now, const TrackSnapshot& track);
-  bool is_flown() const { return parts_.guidance || parts_.without_position; }
+  bool flies_by_set_points() const { return parts_.guidance || parts_.without_position; }
   void WatchFlight(Time now);
   LandingWatchInput LandingInput(Time now);
   void ShowAutopilot(Time now);
@@ -181,7 +181,7 @@ class FlightProgram {
   std::optional<PadInSight> pad_;
   TargetTrackerOptions tracker_;
   std::optional<TargetSender> sender_;  // nothing: there is nothing to land on
-  std::optional<SetPointFlight> flown_;
+  std::optional<SetPointFlight> set_point_flight_;
   bool awaits_poses_ = true;  // for the frames
   std::optional<PointedGimbal> gimbal_;
   std::atomic<bool> resumes_pointing_{false};  // set by any thread

@@ -159,8 +159,9 @@ Flight::Flight(const OpenedLiveSource& live, const Task& task, const SessionOpti
   if (!options_.output.empty()) OpenTables();
   const auto pad = vision().pad();
   if (pad && flight().control_exposure) OpenExposure();
-  if (has_autopilot && pad && options_.job.target == GoTarget::kObject)
+  if (has_autopilot && pad && options_.job.target == GoTarget::kObject) {
     StayWithinSight(pad->range_m);
+  }
   if (has_autopilot) OpenAutopilot();
   program_.emplace(flight(), ProgramParts(), [this](const std::string& text) { Notify(text); });
 }

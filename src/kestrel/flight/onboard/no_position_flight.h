@@ -56,7 +56,7 @@ class NoPositionFlight {
     return phase() == GuidancePhase::kLanded || phase() == GuidancePhase::kCommit;
   }
   bool is_flying() const { return guidance_->is_active() && !is_at_deck(); }
-  // How it stands with the pad, for people.
+  // State of the pad, for the status line.
   TargetPhase target_phase() const { return target_phase_; }
   double height_m() const { return height_m_; }   // of the body above the pad, where it is found
   int set_points() const { return set_points_; }  // sent

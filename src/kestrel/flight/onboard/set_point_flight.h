@@ -19,7 +19,7 @@
 
 namespace kestrel {
 
-// How a UAV is flown by set-points.
+// Kinds of flight by set-points, and what they need.
 struct SetPointTask {
   GuidanceMaker guidance = {};                       // by the autopilot's position; null: not
   std::optional<RelativeJob> without_position = {};  // by the pad alone, or as a reserve

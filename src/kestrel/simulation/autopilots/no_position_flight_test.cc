@@ -113,7 +113,7 @@ TEST_P(NoPositionFlightTest, FollowsPadThatAcceleratesForSeconds) {
   EXPECT_TRUE(IsIn(flight, FlightMode::kGuidedByLean)) << flight.reported;
 }
 
-TEST_P(NoPositionFlightTest, WrongHoverThrustNeitherSinksNorRises) {
+TEST_P(NoPositionFlightTest, WrongHoverThrustKeepsHeight) {
   for (const double error : {-0.2, 0.2}) {
     NoPositionSetup setup = Hover(3, 0);
     setup.hover_thrust_error = error;
