@@ -254,10 +254,8 @@ void GoGuidance::KeepAway(const GuidanceInput& input, const Situation& now, SetP
   const Vector2d fed = flight_model().fed_velocity();
   const Vector2d own = command->velocity.head<2>() - fed;
   command->velocity.head<2>() = own;
-  for (const OtherUav& other : input.others) {
-    if (is_at_work() && !other.goes_first) continue;
-    KeepApart({now.feet.head<2>(), now.velocity.head<2>()}, going_to_, {&other, 1}, command);
-  }
+  KeepApart({now.feet.head<2>(), now.velocity.head<2>(), is_at_work()}, going_to_, input.others,
+            command);
   // Beside another UAV gusts are not met: their path would go on towards it.
   if (command->velocity.head<2>() != own) return flight_model().Rest();
   command->velocity.head<2>() += fed;

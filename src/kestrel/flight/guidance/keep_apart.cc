@@ -2,6 +2,7 @@
 #include "kestrel/flight/guidance/keep_apart.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace kestrel {
 namespace {
@@ -9,10 +10,24 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kGain = 0.5;  // 1/s, speed towards another UAV per metre beyond the distance
+// Braking of an autopilot with its usual limits (m/s^2), and how late it begins: the radio, the
+// link and the control.
+constexpr double kBraking = 1.5;
+constexpr double kReaction_s = 1;
+constexpr int kRounds = 3;
 // Further away from the distance nobody is gone around yet.
 constexpr double kAround_m = 6;
 
 double DistanceTo(const OtherUav& other) { return other.goes_first ? kGiveWay_m : kApart_m; }
+
+// Largest speed at which two may come to each other that are so far from the distance; less than 0
+// within it.
+double SafeSpeed(double free_m) {
+  const double reaction_mps = kBraking * kReaction_s;
+  const double braked_mps =
+      std::sqrt(reaction_mps * reaction_mps + 2 * kBraking * std::max(free_m, 0.0)) - reaction_mps;
+  return free_m > 0 ? std::min(kGain * free_m, braked_mps) : kGain * free_m;
+}
 
 // The approach of a UAV to another one, by its velocity.
 struct Nearing {
@@ -21,7 +36,7 @@ struct Nearing {
     const double distance_m = std::max(way.norm(), 1e-3);
     to = way / distance_m;
     free_m = distance_m - DistanceTo(other);
-    const double most_mps = kGain * free_m + std::min(other.velocity.dot(to), 0.0);
+    const double most_mps = SafeSpeed(free_m) + std::min(other.velocity.dot(to), 0.0);
     // A UAV lags behind its commands: what it flies too fast now is commanded the other way.
     const double lag_mps = std::max(own.velocity.dot(to) - most_mps, 0.0);
     excess_mps = std::max(commanded.dot(to) + lag_mps - most_mps, 0.0);
@@ -32,6 +47,10 @@ struct Nearing {
   double excess_mps;  // speed beyond the largest that is safe
 };
 
+bool KeepsFrom(const OtherUav& other, const OwnMotion& own) {
+  return other.goes_first || !own.is_at_work;
+}
+
 }  // namespace
 
 void KeepApart(const OwnMotion& own, const Vector2d& destination, std::span<const OtherUav> others,
@@ -39,6 +58,7 @@ void KeepApart(const OwnMotion& own, const Vector2d& destination, std::span<cons
   const double wanted_mps = command->velocity.head<2>().norm();
   Vector2d velocity = command->velocity.head<2>();
   for (const OtherUav& other : others) {
+    if (!KeepsFrom(other, own)) continue;
     const Nearing nearing(own, velocity, other);
     velocity -= nearing.excess_mps * nearing.to;
     const bool is_at_destination = (destination - other.position).norm() < DistanceTo(other);
@@ -47,10 +67,13 @@ void KeepApart(const OwnMotion& own, const Vector2d& destination, std::span<cons
     velocity +=
         std::min(nearing.excess_mps, wanted_mps) * Vector2d(nearing.to.y(), -nearing.to.x());
   }
-  // The way around one may be near another one.
-  for (const OtherUav& other : others) {
-    const Nearing nearing(own, velocity, other);
-    velocity -= nearing.excess_mps * nearing.to;
+  // The way around one, or away from it, may lead to another one.
+  for (int round = 0; round < kRounds; ++round) {
+    for (const OtherUav& other : others) {
+      if (!KeepsFrom(other, own)) continue;
+      const Nearing nearing(own, velocity, other);
+      velocity -= nearing.excess_mps * nearing.to;
+    }
   }
   if (velocity == Vector2d(command->velocity.head<2>())) return;
   command->velocity.head<2>() = velocity;

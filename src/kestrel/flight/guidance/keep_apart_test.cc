@@ -11,11 +11,11 @@ namespace {
 
 using Eigen::Vector2d;
 
-// Flies to a place among others, with a velocity that lags behind the commands; returns the least
-// distance from the first of them.
+// Flies to a place among others, with a velocity that lags behind the commands and changes by 2
+// m/s^2 at most; returns the least distance from any of them.
 double FlyTo(const Vector2d& place, std::vector<OtherUav> others, Vector2d* position,
              double seconds, double speed_mps = 4, double lag_s = 0.2) {
-  constexpr double kStep_s = 0.05;
+  constexpr double kStep_s = 0.05, kBraking = 2;
   Vector2d velocity(0, 0);
   double nearest_m = 1e9;
   for (double t = 0; t < seconds; t += kStep_s) {
@@ -23,10 +23,13 @@ double FlyTo(const Vector2d& place, std::vector<OtherUav> others, Vector2d* posi
     const Vector2d way = place - *position;
     command.velocity.head<2>() = way * std::min(1.0, speed_mps / std::max(way.norm(), 1e-9));
     KeepApart({*position, velocity}, place, others, &command);
-    velocity += kStep_s / lag_s * (command.velocity.head<2>() - velocity);
+    const Vector2d change = (command.velocity.head<2>() - velocity) / lag_s;
+    velocity += kStep_s * std::min(1.0, kBraking / std::max(change.norm(), 1e-9)) * change;
     *position += kStep_s * velocity;
-    for (OtherUav& other : others) other.position += kStep_s * other.velocity;
-    nearest_m = std::min(nearest_m, (others[0].position - *position).norm());
+    for (OtherUav& other : others) {
+      other.position += kStep_s * other.velocity;
+      nearest_m = std::min(nearest_m, (other.position - *position).norm());
+    }
   }
   return nearest_m;
 }
@@ -53,6 +56,29 @@ TEST(KeepApartTest, MovesOffFromUavThatComes) {
   Vector2d position(0, 0);
   const OtherUav coming{.position = {20, 0}, .velocity = {-3, 0}, .goes_first = true};
   EXPECT_GT(FlyTo({0, 0}, {coming}, &position, 12), 5);
+}
+
+TEST(KeepApartTest, BrakesInTimeBeforeUavThatComesWithItsObject) {
+  Vector2d position(-40, 0);
+  const OtherUav coming{.position = {0, 0}, .velocity = {-1.4, 0}, .goes_first = true};
+  EXPECT_GT(FlyTo({20, 0}, {coming}, &position, 10, 9, 1), kGiveWay_m);
+}
+
+TEST(KeepApartTest, DoesNotMoveOffFromOneToAnother) {
+  Vector2d position(0, 0);
+  const OtherUav in_its_way{.position = {-3, 6.5}, .velocity = {0.3, -0.6}, .goes_first = true};
+  const OtherUav beside{.position = {7.5, 2.5}, .velocity = {-0.5, 0}, .goes_first = true};
+  EXPECT_GT(FlyTo({-12, 12}, {beside, in_its_way}, &position, 5), 5);
+}
+
+TEST(KeepApartTest, AtWorkKeepsOnlyFromThoseThatGoFirst) {
+  SetPoint command;
+  command.velocity = {3, 0, 0};
+  const std::vector<OtherUav> others = {{.position = {6, 0}}};
+  KeepApart({{0, 0}, {3, 0}, true}, {3, 0}, others, &command);
+  EXPECT_EQ(command.velocity, Eigen::Vector3d(3, 0, 0));
+  KeepApart({{0, 0}, {3, 0}}, {3, 0}, others, &command);
+  EXPECT_LT(command.velocity.x(), 1);
 }
 
 TEST(KeepApartTest, LeavesCommandAloneFarFromOthers) {
