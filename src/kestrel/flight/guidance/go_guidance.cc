@@ -579,8 +579,8 @@ SetPoint GoGuidance::Command(const GuidanceInput& input, const Situation& now) {
 }
 
 SetPoint GoGuidance::Pursue(const GuidanceInput& input, const Situation& now) {
-  SetPoint command =
-      pursuit().Above(*input.target, {now.feet.head<2>(), now.velocity.head<2>()}, &flight_model());
+  SetPoint command = pursuit().Above(
+      *input.target, {now.feet.head<2>(), now.velocity.head<2>(), now.height_m}, &flight_model());
   double climb = ClimbRate(now);
   if (phase() == GuidancePhase::kDescend) {
     climb = std::max(climb, -stale().MaxSink(now.height_m, input.link_delay_s));

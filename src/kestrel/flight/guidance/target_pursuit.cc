@@ -23,8 +23,10 @@ constexpr double kBrakingShare = 0.6;
 constexpr double kJerkReach_m = 2.5;
 constexpr double kBrakingOnset_s = 0.4;
 constexpr double kMaxLag_mps = 1;
-// Memory of velocity and acceleration of a target without springs.
+// Memory of velocity and acceleration of a target without springs, at least, and per metre of
+// height: from higher up its place is less exact, and a UAV that shakes sees it less exactly still.
 constexpr double kAgileMemory_s = 0.25;
+constexpr double kAgileMemory_s_per_m = 0.15;
 constexpr double kIntegrateWithin_m = 0.5;
 constexpr double kMaxIntegral_mps = 0.8;
 
@@ -82,7 +84,7 @@ SetPoint TargetPursuit::Follow(const TargetEstimate& target, const StandOff* pla
                                const Motion& uav, FlightModel* model) {
   const TurnState& motion = target.motion;
   const double delay_s = model->delay_s();
-  const Vector3d velocity = Smoothed(target);
+  const Vector3d velocity = Smoothed(target, uav.height_m);
   const Vector3d later = Turned(motion, velocity, delay_s) + delay_s * smoothed_->change;
   const Vector3d change = AccelerationAhead(motion, delay_s) + smoothed_->change;
   PlaneMotion now{motion.position().head<2>(), velocity.head<2>()};
@@ -127,7 +129,7 @@ void TargetPursuit::Close(const Vector2d& offset, const Vector2d& slip, const Ve
 }
 
 // A low pass that turns with the target, so that it does not lag in curves.
-Vector3d TargetPursuit::Smoothed(const TargetEstimate& target) {
+Vector3d TargetPursuit::Smoothed(const TargetEstimate& target, double height_m) {
   const Vector3d velocity = target.motion.velocity();
   if (!smoothed_) smoothed_ = {target.time, velocity, Vector3d::Zero()};
   auto& [time, in_world, change] = *smoothed_;
@@ -138,7 +140,8 @@ Vector3d TargetPursuit::Smoothed(const TargetEstimate& target) {
   if (!options_.target_is_agile) {
     in_world += (1 - std::exp(-seconds / GuidanceOptions::kSmoothing_s)) * error;
   } else if (seconds > 0) {
-    const double kept = std::exp(-seconds / kAgileMemory_s);
+    const double memory_s = std::max(kAgileMemory_s, kAgileMemory_s_per_m * height_m);
+    const double kept = std::exp(-seconds / memory_s);
     in_world += (1 - kept * kept) * error;
     change += (1 - kept) * (1 - kept) / seconds * error;
   }

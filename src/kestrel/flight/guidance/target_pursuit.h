@@ -38,6 +38,7 @@ class TargetPursuit {
   struct Motion {
     Eigen::Vector2d position;
     Eigen::Vector2d velocity;
+    double height_m = 0;  // above the target
   };
   // Velocity and acceleration have no vertical parts.
   SetPoint To(const Eigen::Vector2d& place, const Motion& uav, FlightModel* model,
@@ -60,7 +61,7 @@ class TargetPursuit {
   SetPoint Follow(const TargetEstimate& target, const StandOff* place, const Motion& uav,
                   FlightModel* model);
   double Gain(const FlightModel& model) const;
-  Eigen::Vector3d Smoothed(const TargetEstimate& target);
+  Eigen::Vector3d Smoothed(const TargetEstimate& target, double height_m);
   void Integrate(const TargetEstimate& target, const Eigen::Vector2d& offset);
   void Close(const Eigen::Vector2d& offset, const Eigen::Vector2d& slip,
              const Eigen::Vector2d& velocity, double gain, SetPoint* command) const;

@@ -214,12 +214,22 @@ class SightedGoFlight : public GoFlight {
     return image;
   }
 
-  // Errors across the line of sight and along it, in the autopilot's world.
+  // In the autopilot's world, by its poses.
+  std::optional<RigidTransform> WorldFromCameraAt(Time time) const {
+    const auto pose = poses_.Predict(time, std::chrono::milliseconds(100), {});
+    if (!pose) return std::nullopt;
+    return pose->world_from_body * *camera_.body_from_camera;
+  }
+
+  // Errors across the line of sight and along it, and those that HuntPipeline expects of the poses.
   void Process(const Image& image) {
     constexpr double kAcross_px = 0.3, kAlong = 0.01, kLeast_m = 0.002, kPose_m = 0.02;
-    const auto pose = poses_.Predict(image.captured, std::chrono::milliseconds(100), {});
-    if (!pose) return;
-    const RigidTransform world_from_camera = pose->world_from_body * *camera_.body_from_camera;
+    constexpr double kSwing = 0.0035, kLate_s = 0.01;
+    constexpr Duration kStep = std::chrono::milliseconds(100);
+    const auto camera = WorldFromCameraAt(image.captured);
+    const auto before = WorldFromCameraAt(image.captured - kStep);
+    if (!camera || !before) return;
+    const RigidTransform& world_from_camera = *camera;
     std::vector<ObjectMeasurement> measurements;
     std::vector<ObjectSighting> sightings;
     for (const Sight& sight : image.sights) {
@@ -230,10 +240,14 @@ class SightedGoFlight : public GoFlight {
       ObjectMeasurement seen;
       seen.position = world_from_camera * (sight.in_camera + sigmas.cwiseProduct(noise));
       const Eigen::Matrix3d rotation = world_from_camera.rotation.toRotationMatrix();
+      const double pose_m = std::hypot(kPose_m, kSwing * depth_m);
       seen.covariance = rotation * sigmas.cwiseAbs2().asDiagonal() * rotation.transpose() +
-                        kPose_m * kPose_m * Eigen::Matrix3d::Identity();
+                        pose_m * pose_m * Eigen::Matrix3d::Identity();
       seen.color_probabilities[objects_.classes[sight.class_index].color] = 0.95;
-      sightings.push_back({image.captured, sight.class_index, seen.position, seen.covariance});
+      const Eigen::Vector3d late_m =
+          kLate_s / ToSeconds(kStep) * (seen.position - *before * sight.in_camera);
+      sightings.push_back({image.captured, sight.class_index, seen.position,
+                           seen.covariance + late_m * late_m.transpose()});
       if (sight.is_whole) measurements.push_back(seen);
     }
     View view;

@@ -265,14 +265,18 @@ void HuntPipeline::Impl::UpdateMap() {
       ObjectView(detector_, observation_.report, *observation_.world_from_camera, saw_all_));
 }
 
-// One that the image border cuts off counts, too: from near by none is whole.
+// One that the image border cuts off counts, too: from near by none is whole. While the UAV turns
+// a pose of a moment ago or later puts it elsewhere.
 void HuntPipeline::Impl::UpdateSought() {
+  constexpr double kLate_s = 0.01;
   sightings_.clear();
   for (std::size_t i = 0; i < observation_.in_world.size(); ++i) {
     if (!observation_.in_world[i]) continue;
     const ObjectDetection& detection = observation_.report.detections[i];
+    const Eigen::Vector3d late_m = kLate_s * ClockShift(detection);
     sightings_.push_back({TimeOfRow(detection.center_px.y()), detection.class_index,
-                          observation_.in_world[i]->position, CovarianceOf(i)});
+                          observation_.in_world[i]->position,
+                          CovarianceOf(i) + late_m * late_m.transpose()});
   }
   sought_->Update(observation_.time, sightings_, map_);
 }
