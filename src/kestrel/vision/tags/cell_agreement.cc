@@ -5,12 +5,17 @@
 #include <array>
 #include <cmath>
 
+#include "kestrel/core/base/robust_statistics.h"
+
 namespace kestrel {
 namespace {
 
+constexpr std::size_t kMostCells = 1296;   // a fractal marker has 32 bits a side
 constexpr int kNeighbors = 2;              // cells around a cell that it is held against
 constexpr double kLeastCellContrast = 5;   // gray values, between white and black cells
 constexpr double kLeastDimContrast = 0.4;  // as logarithms: a shaded white cell to black ones
+constexpr double kClear = 0.5;             // agreement that is beyond doubt
+constexpr double kSameShade = 0.2;         // as logarithms: between two white cells in a shadow
 
 // Sums over the cells of one colour.
 struct ColorSum {
@@ -25,12 +30,31 @@ double PlaceBetween(double value, double black, double white, bool is_white) {
   return std::clamp(is_white ? place : -place, -1.0, 1.0);
 }
 
+// Returns the logarithm of the white square's gray value in a shadow over a tag; NaN where none
+// falls on it.
+double ShadedWhite(const TagGrid& grid, const std::vector<bool>& is_data,
+                   std::span<const float> gray, std::span<const float> log) {
+  constexpr double kShade = 0.7;  // as logarithms: half of the light
+  std::array<float, kMostCells> white;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < gray.size(); ++i) {
+    if (is_data[i] || grid.cells[i] != TagCell::kWhite || gray[i] < 0) continue;
+    white[count++] = log[i];
+  }
+  if (count == 0) return NAN;
+  const std::span<float> seen(white.data(), count);
+  const double most_shaded = MedianInPlace(seen) - kShade;
+  const auto sunny = std::ranges::partition(seen, [&](float value) { return value < most_shaded; });
+  const std::span<float> shaded = seen.first(seen.size() - sunny.size());
+  return shaded.empty() ? NAN : MedianInPlace(shaded);
+}
+
 // Returns the place of a cell's gray value between those of the cells around it of the other colour
 // (-1) and of its own colour (1); 0 where there are none, or where a shadow hides its colour. Lens
 // and pixels mix gray values, a shadow multiplies them: of the places by gray values and by their
-// logarithms the better one counts.
+// logarithms the better one counts. 'shaded_white': as ShadedWhite.
 double CellAgreement(const TagGrid& grid, std::span<const float> gray, std::span<const float> log,
-                     int column, int row, DimSample dim) {
+                     double shaded_white, int column, int row, DimSample dim) {
   ColorSum sums[2];  // black and white cells
   for (int y = std::max(0, row - kNeighbors); y <= std::min(grid.width - 1, row + kNeighbors);
        ++y) {
@@ -55,16 +79,15 @@ double CellAgreement(const TagGrid& grid, std::span<const float> gray, std::span
   if (!(log_contrast > 0)) return by_gray;
   const double place = std::max(
       by_gray, PlaceBetween(log[i], black.log / black.count, white.log / white.count, is_white));
-  const bool is_dim = dim == DimSample::kUnknown && is_white &&
-                      log[i] - black.log / black.count > kLeastDimContrast;
-  return is_dim ? std::max(0.0, place) : place;
+  const bool is_dim = is_white && log[i] - black.log / black.count > kLeastDimContrast;
+  if (is_dim && std::abs(log[i] - shaded_white) < kSameShade) return std::max(kClear, place);
+  return is_dim && dim == DimSample::kUnknown ? std::max(0.0, place) : place;
 }
 
 // A clear match tells 'information'; a clear mismatch weighs more, as print and light are seldom
 // that wrong.
 double CellEvidence(double agreement, double information) {
   constexpr double kMismatch = 3;
-  constexpr double kClear = 0.5;
   const double clearness = std::min(1.0, std::abs(agreement) / kClear);
   return clearness * (agreement > 0 ? information : -kMismatch);
 }
@@ -116,14 +139,14 @@ double CellInformation(const TagGrid& grid, const std::vector<bool>& is_data) {
 
 TagAgreement CompareCells(const TagGrid& grid, const std::vector<bool>& is_data, double cell_px,
                           std::span<const float> gray, DimSample dim) {
-  constexpr double kBorderWeight = 0.1;     // for a mismatch: what surrounds a tag may be anything
-  constexpr double kCorrelationPx = 1.5;    // nearer samples are alike by lens and pixels
-  constexpr std::size_t kMostCells = 1296;  // a fractal marker has 32 bits a side
-  constexpr float kFloor = 4;               // gray values: what darkness and noise leave
+  constexpr double kBorderWeight = 0.1;   // for a mismatch: what surrounds a tag may be anything
+  constexpr double kCorrelationPx = 1.5;  // nearer samples are alike by lens and pixels
+  constexpr float kFloor = 4;             // gray values: what darkness and noise leave
   std::array<float, kMostCells> log;
   for (std::size_t i = 0; i < std::min(gray.size(), kMostCells); ++i) {
     log[i] = std::log(std::max(0.0f, gray[i]) + kFloor);
   }
+  const double shaded_white = ShadedWhite(grid, is_data, gray, log);
   const double apart = std::min(1.0, cell_px / kCorrelationPx);
   const double information = apart * apart * CellInformation(grid, is_data);
   TagAgreement agreement;
@@ -131,7 +154,7 @@ TagAgreement CompareCells(const TagGrid& grid, const std::vector<bool>& is_data,
     for (int column = 0; column < grid.width; ++column) {
       const int i = row * grid.width + column;
       if (grid.cells[i] == TagCell::kNone || gray[i] < 0) continue;
-      const double here = CellAgreement(grid, gray, log, column, row, dim);
+      const double here = CellAgreement(grid, gray, log, shaded_white, column, row, dim);
       if (!is_data[i]) {  // alike in all tags and in windows: a match tells nothing
         agreement.evidence += kBorderWeight * CellEvidence(here, 0);
         continue;
