@@ -25,7 +25,9 @@
 namespace kestrel {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 // An autopilot that forwards what a ground station sends, and the ground station.
 class Ground {
@@ -104,6 +106,8 @@ TEST(GroundStationSession, MarksAndIsInformed) {
   EXPECT_GE(ground.heartbeats, 1);
   EXPECT_THAT(witness->seen().events,
               HasSubstr("follows what system 255 component 190 has marked: 28 x 24 px"));
+  EXPECT_THAT(session->State(), AllOf(HasSubstr("messages sent"), Not(HasSubstr("; target"))))
+      << "that is a pad's";
 }
 
 // There is nothing to mark.

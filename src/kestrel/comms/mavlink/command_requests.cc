@@ -71,14 +71,16 @@ std::optional<mavlink::CommandLong> CommandRequests::Next(Time now, std::optiona
   constexpr Duration kPatience = std::chrono::milliseconds(300);
   constexpr Duration kProgressPatience = std::chrono::seconds(5);
   for (auto& request : requests_) {
-    if (!request || now < request->due) continue;
+    if (!request) continue;
+    const Duration patience = request->is_in_progress ? kProgressPatience : kPatience;
+    if (request->sent > 0 && now < request->sent_at + patience) continue;
     if (request->sent == kMostSent) {
       *ended = Ending{request->command, std::nullopt};
       request.reset();
       continue;
     }
     request->command.confirmation = static_cast<std::uint8_t>(request->sent++);
-    request->due = now + (request->is_in_progress ? kProgressPatience : kPatience);
+    request->sent_at = now;
     return request->command;
   }
   return std::nullopt;

@@ -50,7 +50,7 @@ class CommandRequests {
     mavlink::CommandLong command;
     int sent = 0;
     bool is_in_progress = false;
-    Time due{};
+    Time sent_at{};
   };
   static constexpr std::size_t kMost = 4;
 

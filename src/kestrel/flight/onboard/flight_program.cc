@@ -570,7 +570,7 @@ std::string FlightProgram::State() const {
     const std::lock_guard lock(autopilot_mutex_);
     if (!autopilot_state_.waits.empty()) return state + "; " + autopilot_state_.waits;
   }
-  state += fmt::format("; target {}", ToString(phase_.load()));
+  if (pad_) state += fmt::format("; target {}", ToString(phase_.load()));
   if (phase_ == TargetPhase::kFound) state += fmt::format(", {:.1f} m below", height_m_.load());
   if (flies_by_set_points())
     return state + fmt::format("; guidance: {}", ToString(guidance_phase_.load()));
