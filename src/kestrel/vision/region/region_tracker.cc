@@ -13,6 +13,7 @@
 #include "kestrel/vision/region/appearance_features.h"
 #include "kestrel/vision/region/appearance_filter.h"
 #include "kestrel/vision/region/background_motion.h"
+#include "kestrel/vision/region/region_colors.h"
 #include "kestrel/vision/region/window_sampler.h"
 
 namespace kestrel {
@@ -110,6 +111,7 @@ struct RegionTracker::Impl {
     Eigen::Vector2d center_px = Eigen::Vector2d::Zero();
     double scale = 1;
     FilterPeak peak;
+    std::optional<RegionColors::Box> by_colors = std::nullopt;  // px
   };
 
   void Mark(const cv::Mat& image, Time now, const cv::Rect2d& box);
@@ -124,6 +126,20 @@ struct RegionTracker::Impl {
   // Moves the box, and learns what it shows unless that is ambiguous. Returns how much it looks
   // like what was marked.
   double Accept(const cv::Mat& image, const Look& look);
+  // Returns the region's box, as it is seen at scale 1, in the window.
+  RegionColors::Box BoxInWindow(const Eigen::Vector2d& center_px) const {
+    constexpr double kMiddle = 0.5 * (kCells * kCellPx - 1);
+    return {(center_px - window_center) / PixelsPerSample() + Eigen::Vector2d(kMiddle, kMiddle),
+            size / PixelsPerSample()};
+  }
+  double PixelsPerSample() const { return window_px / (kCells * kCellPx); }
+  // Returns the marked box in sizes of the one by its colours; nothing where these do not show it.
+  std::optional<RegionColors::Box> CompareWithColors();
+  // Returns the box (px) that the region's colours show near a place in the window, which is seen
+  // at scale 1; nothing where they show none.
+  std::optional<RegionColors::Box> FitColors(const Eigen::Vector2d& near_px);
+  // Where the look is weak, the region is where its colours are near the expected place.
+  void TakeByColors(const cv::Mat& image, const Eigen::Vector2d& expected, Look* look);
   // True when the box has stopped with the background, which the region had not done.
   bool HasDrifted(const Eigen::Vector2d& shift, double seconds, double agreement);
   // Looks for a region that is not seen, around the expected place.
@@ -152,6 +168,9 @@ struct RegionTracker::Impl {
   GridSpectrum sample{kCells, kChannels};
   FilterWorkspace workspace{kCells, kChannels};
   AppearanceFilter filter{kCells, kChannels}, slow{kCells, kChannels};
+  RegionColors colors{kCells * kCellPx};
+  // The marked box in sizes of the one by colours; nothing: these do not show the region.
+  std::optional<RegionColors::Box> marked;
   BackgroundMotion background;
   std::array<float, kCells> taper;
 
@@ -159,9 +178,10 @@ struct RegionTracker::Impl {
   cv::Size image_size;
   Time time, seen;
   RegionState state = RegionState::kLost;
-  Eigen::Vector2d center, size;  // the region's, px
-  double window_px = 0;          // side
-  Eigen::Vector2d velocity;      // against the background, px/s
+  Eigen::Vector2d center, size;   // the region's, px
+  double window_px = 0;           // side
+  Eigen::Vector2d window_center;  // of what was seen last, px
+  Eigen::Vector2d velocity;       // against the background, px/s
   double usual_speed = 0, still_s = 0;
   UsualResponse usual, slow_usual;
   int learnt = 0;       // images
@@ -171,6 +191,7 @@ struct RegionTracker::Impl {
 
 void RegionTracker::Impl::See(const cv::Mat& image, const Eigen::Vector2d& at, double scale) {
   const double side = scale * window_px;
+  window_center = at;
   sampler.Sample(image, at, {side, side}, &window);
   features.Compute(window, &grid);
   for (int y = 0; y < kCells; ++y) {
@@ -217,6 +238,8 @@ void RegionTracker::Impl::Mark(const cv::Mat& image, Time now, const cv::Rect2d&
   See(image, center, 1);
   filter.Learn(sample, kTemporal, &workspace);
   slow.Learn(sample, kSlowTemporal, &workspace);
+  colors.Mark(window, BoxInWindow(center));
+  marked = CompareWithColors();
   usual.Start(filter.Find(sample, &workspace));
   slow_usual.Start(slow.Find(sample, &workspace));
   background.Update(image);
@@ -233,6 +256,11 @@ RegionTracker::Impl::Look RegionTracker::Impl::Follow(const cv::Mat& image,
   Look look = LookAt(image, filter, expected, 1);
   // Near the border of a window a response is weak.
   if (look.peak.displacement.norm() > kFar) look = LookAt(image, filter, look.center_px, 1);
+  if (look.peak.value < kLeastToLearn * usual.value) {
+    TakeByColors(image, expected, &look);
+  } else {
+    look.by_colors = FitColors(look.center_px);
+  }
   const double larger = LookAt(image, filter, look.center_px, kScaleStep).peak.value;
   const double smaller = LookAt(image, filter, look.center_px, 1 / kScaleStep).peak.value;
   // The vertex of the parabola through the three responses.
@@ -244,26 +272,69 @@ RegionTracker::Impl::Look RegionTracker::Impl::Follow(const cv::Mat& image,
 }
 
 double RegionTracker::Impl::Accept(const cv::Mat& image, const Look& look) {
+  constexpr double kColorGain = 0.2;  // what turns gets another form, but slowly
   center = look.center_px;
+  if (look.by_colors) {
+    center += kColorGain * (look.by_colors->middle - center);
+    size += kColorGain * (look.by_colors->size - size);
+  }
   const double least = kLeastSide_px / size.minCoeff();
   const double most = std::min(image_size.width / size.x(), image_size.height / size.y());
   const double scale = std::clamp(look.scale, std::min(least, 1.0), std::max(most, 1.0));
   size *= scale;
   window_px *= scale;
   See(image, center, 1);
-  const FilterPeak slow_peak = slow.Find(sample, &workspace);
   const double share = look.peak.value / usual.value;
+  const FilterPeak slow_peak = slow.Find(sample, &workspace);
   const double slow_share = slow_peak.value / slow_usual.value;
   const double agreement = 0.5 * (share + slow_share);
-  if (share > kLeastToLearn) {
+  if (share > kLeastToLearn || look.by_colors) {
     usual.Add(look.peak);
     filter.Learn(sample, kTemporal, &workspace);
   }
   if (agreement > kLeastToLearn) {
     slow_usual.Add(slow_peak);
-    if (++learnt % kSlowPeriod == 0) slow.Learn(sample, kSlowTemporal, &workspace);
+    if (++learnt % kSlowPeriod == 0) {
+      slow.Learn(sample, kSlowTemporal, &workspace);
+      colors.LearnAround(window, BoxInWindow(center));
+    }
   }
   return agreement;
+}
+
+std::optional<RegionColors::Box> RegionTracker::Impl::CompareWithColors() {
+  constexpr double kLeast = 0.7, kMost = 1.4, kAside = 0.2;
+  const RegionColors::Box box = BoxInWindow(center);
+  const auto fit = colors.Fit(window, box);
+  if (!fit) return std::nullopt;
+  const RegionColors::Box part{(box.middle - fit->middle).cwiseQuotient(fit->size),
+                               box.size.cwiseQuotient(fit->size)};
+  const bool is_alike = part.size.minCoeff() > kLeast && part.size.maxCoeff() < kMost &&
+                        part.middle.cwiseAbs().maxCoeff() < kAside;
+  if (!is_alike) return std::nullopt;
+  return part;
+}
+
+std::optional<RegionColors::Box> RegionTracker::Impl::FitColors(const Eigen::Vector2d& near_px) {
+  if (!marked) return std::nullopt;
+  const RegionColors::Box near = BoxInWindow(near_px);
+  const auto fit = colors.Fit(window, near);
+  if (!fit) return std::nullopt;
+  const Eigen::Vector2d middle = fit->middle + marked->middle.cwiseProduct(fit->size);
+  return RegionColors::Box{near_px + PixelsPerSample() * (middle - near.middle),
+                           PixelsPerSample() * marked->size.cwiseProduct(fit->size)};
+}
+
+void RegionTracker::Impl::TakeByColors(const cv::Mat& image, const Eigen::Vector2d& expected,
+                                       Look* look) {
+  constexpr double kSame = 0.25;  // sizes of the region
+  See(image, expected, 1);
+  look->by_colors = FitColors(expected);
+  if (!look->by_colors) return;
+  const Eigen::Vector2d aside = look->by_colors->middle - look->center_px;
+  if (aside.norm() < kSame * std::sqrt(size.prod())) return;
+  look->center_px = look->by_colors->middle;
+  look->peak.value = std::max(look->peak.value, 1.01 * kLeastToSee * usual.value);
 }
 
 bool RegionTracker::Impl::HasDrifted(const Eigen::Vector2d& moved, double seconds,

@@ -79,6 +79,42 @@ TEST_P(RegionTrackerSeeds, StaysOnATargetThatTurns) {
   }
 }
 
+// A car whose side turns to the camera.
+TEST_P(RegionTrackerSeeds, BoxTakesFormOfTargetThatTurns) {
+  cv::Mat look = RegionTexture({32, 76}, static_cast<std::uint64_t>(GetParam()), 12);
+  look += cv::Scalar(-60, 90, 10);
+  scene.target.look = look;
+  Mark();
+  RegionReport report;
+  for (int i = 0; i < 60; ++i) {
+    scene.target.turn_deg += 30 * kPeriod_s;
+    scene.target.center_px += Eigen::Vector2d(2, 1);
+    report = Next();
+    ASSERT_EQ(report.state, RegionState::kFollowing) << i;
+  }
+  const Eigen::Vector2d at = scene.InImage();
+  EXPECT_GT(Overlap(report.box_px, {at.x() - 38, at.y() - 16, 76, 32}),
+            0.4);  // 0.27 as it was marked
+}
+
+// The ground in the box is not learnt as part of the region.
+TEST_P(RegionTrackerSeeds, BoxStaysOnTargetInACornerOfIt) {
+  scene.target.look = RegionTexture({40, 52}, static_cast<std::uint64_t>(GetParam()), 12);
+  scene.target.look += cv::Scalar(90, -60, 10);
+  const cv::Mat image = scene.Take();
+  const Eigen::Vector2d at = scene.InImage();
+  const auto wide = [](const Eigen::Vector2d& middle) {
+    return cv::Rect2d(middle.x() - 24, middle.y() - 30, 48, 60);
+  };
+  tracker.Mark(image, scene.time, wide(at));
+  RegionReport report;
+  for (int i = 0; i < 100; ++i) {
+    scene.target.center_px += Eigen::Vector2d(2, 1);
+    report = Next();
+  }
+  EXPECT_GT(Overlap(report.box_px, wide(scene.InImage())), 0.7);
+}
+
 TEST_P(RegionTrackerSeeds, IsLostWithinHalfASecondAndFoundAgainWithinOne) {
   Mark();
   for (int i = 0; i < 20; ++i) Next();
