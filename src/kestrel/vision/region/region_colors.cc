@@ -12,10 +12,10 @@ constexpr int kColors = kLevels * kLevels * kLevels;
 constexpr float kRate = 0.05f;       // of the colours around it, by one image
 constexpr double kGap = 1.3;         // sizes of the box, from where on a pixel is around it
 constexpr double kInner = 0.6;       // of the box: there the region is for sure
-constexpr double kNearest = 0.4;     // sizes of the box, from its middle to where the region may end
+constexpr double kNearest = 0.4;     // half sizes of the box, from its middle to the region's end
 constexpr double kFarthest = 2;      // the same, at most
 constexpr float kLeastClear = 0.3f;  // probability within the box, less that around it
-constexpr float kEdge = 0.4f;        // of the way from the probability around the box to that within
+constexpr float kEdge = 0.4f;  // of the way from the probability around the box to that within
 
 int LevelOf(float value) {
   return std::clamp(static_cast<int>(value) * kLevels / 256, 0, kLevels - 1);
@@ -96,13 +96,15 @@ void RegionColors::Project(const SampledWindow& window, int axis, Band across) {
   for (int i = 0; i < side_; ++i) {
     float sum = 0;
     for (int k = across.first; k <= across.last; ++k) {
-      sum += probability_[ColorAt(window, std::size_t(i) * along_step + std::size_t(k) * across_step)];
+      sum +=
+          probability_[ColorAt(window, std::size_t(i) * along_step + std::size_t(k) * across_step)];
     }
     profile_[i] = sum / static_cast<float>(across.last - across.first + 1);
   }
 }
 
-std::optional<RegionColors::Extent> RegionColors::ExtentAlong(int axis, const SampledWindow& window, const Box& box) {
+std::optional<RegionColors::Extent> RegionColors::ExtentAlong(int axis, const SampledWindow& window,
+                                                              const Box& box) {
   const int other = 1 - axis;
   const double half = 0.5 * box.size[axis];
   const double reach = 0.5 * kInner * box.size[other];

@@ -94,11 +94,11 @@ TEST_P(RegionTrackerSeeds, BoxTakesFormOfTargetThatTurns) {
   }
   const Eigen::Vector2d at = scene.InImage();
   EXPECT_GT(Overlap(report.box_px, {at.x() - 38, at.y() - 16, 76, 32}),
-            0.4);  // 0.27 as it was marked
+            0.35);  // its form as marked has 0.27
 }
 
 // The ground in the box is not learnt as part of the region.
-TEST_P(RegionTrackerSeeds, BoxStaysOnTargetInACornerOfIt) {
+TEST_P(RegionTrackerSeeds, BoxKeepsItsMarginAroundTarget) {
   scene.target.look = RegionTexture({40, 52}, static_cast<std::uint64_t>(GetParam()), 12);
   scene.target.look += cv::Scalar(90, -60, 10);
   const cv::Mat image = scene.Take();

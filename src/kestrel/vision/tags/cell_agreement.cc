@@ -34,7 +34,8 @@ double PlaceBetween(double value, double black, double white, bool is_white) {
 // falls on it.
 double ShadedWhite(const TagGrid& grid, const std::vector<bool>& is_data,
                    std::span<const float> gray, std::span<const float> log) {
-  constexpr double kShade = 0.7;  // as logarithms: half of the light
+  constexpr double kShade = 0.7;           // as logarithms: half of the light
+  constexpr std::size_t kLeastShaded = 2;  // one may be dirty
   std::array<float, kMostCells> white;
   std::size_t count = 0;
   for (std::size_t i = 0; i < gray.size(); ++i) {
@@ -46,7 +47,7 @@ double ShadedWhite(const TagGrid& grid, const std::vector<bool>& is_data,
   const double most_shaded = MedianInPlace(seen) - kShade;
   const auto sunny = std::ranges::partition(seen, [&](float value) { return value < most_shaded; });
   const std::span<float> shaded = seen.first(seen.size() - sunny.size());
-  return shaded.empty() ? NAN : MedianInPlace(shaded);
+  return shaded.size() < kLeastShaded ? NAN : MedianInPlace(shaded);
 }
 
 // Returns the place of a cell's gray value between those of the cells around it of the other colour
