@@ -217,6 +217,28 @@ TEST_F(TagBoardDetectorTest, FindsNestedBoardFromFarToNearWithoutJump) {
   }
 }
 
+// The place is found to a part of a cell of the large tag, which is many cells of the small ones.
+TEST_F(TagBoardDetectorTest, FollowsNestedBoardToCellsOfSmallTags) {
+  BoardTag over = OneTag("tag36h11", 2, 0.08);
+  over.board_from_tag.translation = {0.25, 0.25, 0};
+  over.over = true;
+  Use({{OneTag("tagCustom48h12", 0, 1), OneTag("tag36h11", 1, 0.25), over}});
+  Random random(23);
+  for (const double height : {0.6, 0.8, 1.1}) {
+    const RigidTransform pose = RandomBoardBelow(height, 0.2, 0.1, &random);
+    const cv::Mat image = Image(pose, random.Bits());
+    for (int i = 0; i < 100; ++i) {
+      TargetHint hint = Expected(pose, 0.02, &random);
+      hint.rotation_in_camera = pose.rotation;
+      const TargetReport report = Detect(image, hint);
+      ASSERT_TRUE(report.detection) << height << " " << i << " " << report.reason;
+      EXPECT_EQ(report.detection->method, DetectionMethod::kFollowed);
+      EXPECT_EQ(report.detection->parts.all().size(), board_.tags.size());
+      EXPECT_LT(ErrorOf(*report.detection, pose).place, 0.001) << height << " " << i;
+    }
+  }
+}
+
 TEST_F(TagBoardDetectorTest, FollowsQuarterOfTag) {
   Use({{OneTag("tag36h11", 7, 0.5)}});
   Random random(8);

@@ -71,7 +71,7 @@ void TagSearch::Follow(const RigidTransform& expected) {
   const std::optional<RigidTransform> shifted =
       MostLike(expected, tag->cell_centers, kStepCells * tag->StrokePx(models_.camera, expected),
                [tag](std::span<const float> gray) { return LikenessOf(gray, tag->grid()); });
-  if (shifted) Take(*shifted, kExpectedOdds, DetectionMethod::kFollowed);
+  if (shifted) Take(*shifted, *tag, kExpectedOdds, DetectionMethod::kFollowed);
 }
 
 void TagSearch::Begin(const cv::Rect& part) { tags_.finder.Begin(image_, part, &quads_); }
@@ -110,15 +110,16 @@ void TagSearch::Try(const TagQuad& quad) {
       MatchTag(image_, models_.camera, tags_.board, quad, &buffers_.samples);
   if (!match) return;
   log_.Reach(LandingStage::kCross, "the edges of the cells are not where they should be");
-  // A pose by one tag of several is not good enough to find the edges of the others.
-  std::optional<AlignedPad> by_tag;
-  if (tags_.board.tags.size() > 1) by_tag = Align(match->camera_from_board, match->tag);
-  Take(by_tag ? by_tag->camera_from_pad : match->camera_from_board,
-       SearchOdds(tags_.board.tags.size(), tried_), DetectionMethod::kTags);
+  Take(match->camera_from_board, *match->tag, SearchOdds(tags_.board.tags.size(), tried_),
+       DetectionMethod::kTags);
 }
 
-void TagSearch::Take(const RigidTransform& pose, double prior, DetectionMethod method) {
-  const std::optional<AlignedPad> aligned = Align(pose);
+void TagSearch::Take(const RigidTransform& pose, const TagModel& tag, double prior,
+                     DetectionMethod method) {
+  // The pose is not good enough to find the edges of the other tags.
+  std::optional<AlignedPad> by_tag;
+  if (tags_.board.tags.size() > 1) by_tag = Align(pose, &tag);
+  const std::optional<AlignedPad> aligned = Align(by_tag ? by_tag->camera_from_pad : pose);
   if (!aligned) return;
   log_.Reach(LandingStage::kMatch, "the cells do not look like the tag");
   const BoardReading reading =

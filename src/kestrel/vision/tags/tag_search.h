@@ -39,9 +39,10 @@ class TagSearch final : public PadSearch {
 
   const TagModel* LeadingTag(const RigidTransform& pose);
   void Try(const TagQuad& quad);
-  // Aligns all tags, and reports the pose if it is likelier than what was found before.
-  // 'prior': logarithm of the odds against a board at any of the places that were tried.
-  void Take(const RigidTransform& pose, double prior, DetectionMethod method);
+  // Aligns 'tag', by which the pose was found, then all tags, and reports the pose if it is
+  // likelier than what was found before. 'prior': logarithm of the odds against a board at any of
+  // the places that were tried.
+  void Take(const RigidTransform& pose, const TagModel& tag, double prior, DetectionMethod method);
   // 'aligned': a copy, as its mirror pose may replace it.
   void Report(AlignedPad aligned, const SeenParts& parts, double quality, DetectionMethod method);
 
