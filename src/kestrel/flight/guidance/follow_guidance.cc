@@ -30,6 +30,10 @@ Vector2d WayTo(const TargetEstimate& target, const UavState& uav) {
   return Vector2d(target.motion.position().head<2>()) - uav.world_from_body.translation.head<2>();
 }
 
+Time SeenAt(const GuidanceInput& input) {
+  return input.now - DurationFromSeconds(input.target_age_s);
+}
+
 // Returns the options with a braking for which a fixed camera, at its place beside the target, does
 // not lose it.
 GuidanceOptions WithinView(GuidanceOptions options, const std::optional<ViewLimits>& view) {
@@ -99,6 +103,11 @@ void FollowGuidance::ChoosePhase(const GuidanceInput& input) {
     if (IsFollowing()) Stop(trouble);
     return;
   }
+  if (HasJumped(input)) {
+    mark_ = 0;
+    return Stop("was seen again where it cannot be: needs a new confirmation");
+  }
+  followed_ = {*input.target, SeenAt(input)};
   if (!IsFollowing()) {
     stand_off_.Start(input.target->motion.position().head<2>(),
                      input.uav->world_from_body.translation.head<2>());
@@ -125,12 +134,26 @@ const char* FollowGuidance::WhyNotFollow(const GuidanceInput& input) {
   return nullptr;
 }
 
+// True when the target is farther from where it was than it can have gone since it was seen there:
+// what is followed now is something else. The tracker looks as far, by the same speed.
+bool FollowGuidance::HasJumped(const GuidanceInput& input) const {
+  if (!followed_) return false;
+  constexpr double kSigmas = 2, kWalk_mps = 1;
+  const TurnState& before = followed_->target.motion;
+  const double speed = std::max(kWalk_mps, before.velocity().head<2>().norm());
+  const double gone_m = speed * ToSeconds(SeenAt(input) - followed_->seen);
+  const double sigma_m = std::sqrt(before.covariance.topLeftCorner<2, 2>().trace());
+  const Vector3d jump = input.target->motion.position() - before.position();
+  return jump.head<2>().norm() > kSigmas * std::hypot(sigma_m, gone_m);
+}
+
 // An order that comes while the target cannot be followed is void, and so is one for another mark.
 void FollowGuidance::TakeOrder(const GuidanceInput& input, const char* trouble) {
   if (input.order.number != order_) {
     order_ = input.order.number;
     mark_ = 0;
     lost_.reset();
+    followed_.reset();
     if (input.order.mark == 0) {
       Stop("was stopped: needs a new confirmation");
     } else if (input.order.mark != input.mark) {

@@ -25,6 +25,11 @@ class FollowGuidance : public Guidance {
   FollowGuidance(const GuidanceOptions& options, const std::optional<ViewLimits>& view);
 
  private:
+  struct Followed {
+    TargetEstimate target;
+    Time seen;  // when it was seen last
+  };
+
   void Begin(const GuidanceInput& input) override;
   Wish Choose(const GuidanceInput& input) override;
   const char* WhyGiveUp(const GuidanceInput& /*input*/) override { return nullptr; }
@@ -32,6 +37,7 @@ class FollowGuidance : public Guidance {
 
   void ChoosePhase(const GuidanceInput& input);
   const char* WhyNotFollow(const GuidanceInput& input);
+  bool HasJumped(const GuidanceInput& input) const;
   void TakeOrder(const GuidanceInput& input, const char* trouble);
   void Stop(const char* reason);
   bool IsFollowing() const;
@@ -47,6 +53,7 @@ class FollowGuidance : public Guidance {
   int order_ = 0;                        // number of the newest order that was looked at
   int mark_ = 0;                         // the mark that the UAV may fly to; 0: none
   std::optional<Time> lost_;             // since when that is lost
+  std::optional<Followed> followed_;     // the newest place of it
   std::optional<Eigen::Vector3d> stay_;  // where it stands still; nothing: it still brakes
   double yaw_ = 0;                       // where the nose is to point, rad
   double yaw_rate_ = 0;                  // rad/s

@@ -276,6 +276,27 @@ TEST(FollowGuidanceTest, LongLossNeedsNewConfirmation) {
   EXPECT_EQ(flight.output.phase, Phase::kFollow);
 }
 
+// Whatever the tracker finds 7 m farther on after 1.4 s is not the person who has stood there.
+TEST(FollowGuidanceTest, ThatFoundTooFarAwayNeedsNewConfirmation) {
+  FollowFlight flight;
+  const auto find_again = [&](double distance_m) {
+    flight.Fly(1.4, Lose);
+    flight.Fly(3, [&](GuidanceInput& input) { input.target->motion.mean.x() += distance_m; });
+  };
+  flight.Follow();
+  find_again(2);
+  EXPECT_EQ(flight.output.phase, Phase::kFollow);
+  flight.Follow();
+  const Vector3d before = flight.uav.position();
+  find_again(7);
+  EXPECT_EQ(flight.output.phase, Phase::kLook);
+  EXPECT_THAT(flight.output.reason, HasSubstr("where it cannot be"));
+  EXPECT_LT((flight.uav.position() - before).norm(), 0.5);
+  flight.Confirm();
+  flight.Fly(1);
+  EXPECT_NE(flight.output.phase, Phase::kLook);
+}
+
 TEST(FollowGuidanceTest, NewMarkNeedsConfirmation) {
   FollowFlight flight;
   flight.Follow();

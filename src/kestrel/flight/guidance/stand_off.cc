@@ -14,9 +14,11 @@ using Eigen::Vector2d;
 // Nearer to the target, or slower, a direction is not known.
 constexpr double kLeastDistance_m = 1;
 constexpr double kMoving_mps = 0.7;
-// Way around the target: time constant, and largest speed beside the target's own.
-constexpr double kAround_s = 2;
+// Way around the target: time constant, and largest speed and acceleration beside the target's own.
+// The direction of somebody who walks is uncertain by 20 degrees: what follows it at once sways.
+constexpr double kAround_s = 3;
 constexpr double kAround_mps = 3;
+constexpr double kAround_mps2 = 1;
 
 Vector2d Along(double direction) { return {std::cos(direction), std::sin(direction)}; }
 Vector2d Across(const Vector2d& along) { return {-along.y(), along.x()}; }
@@ -48,7 +50,9 @@ void StandOff::Update(const PlaneMotion& target, const Vector2d& uav, double sec
 void StandOff::TurnTo(double direction, double seconds) {
   const double off = std::remainder(direction - direction_, 2 * kPi);
   const double most = kAround_mps / distance_m_;
-  rate_ = std::clamp(off / kAround_s, -most, most);
+  const double change = kAround_mps2 / distance_m_ * seconds;
+  const double wanted = std::clamp(off / kAround_s, -most, most);
+  rate_ = std::clamp(wanted, rate_ - change, rate_ + change);
   direction_ += rate_ * seconds;
 }
 

@@ -386,7 +386,7 @@ void RegionTracker::Impl::Search(const cv::Mat& image, const Eigen::Vector2d& ex
   // A second look, from the place itself: a window's middle is seen best.
   best = LookAt(image, slow, best.center_px, 1);
   const bool was_hit = is_hit;
-  is_hit = (best.center_px - expected).norm() < reach_px &&
+  is_hit = IsInImage(best.center_px) && (best.center_px - expected).norm() < reach_px &&
            best.peak.value > kLeastToFind * slow_usual.value &&
            best.peak.sharpness > kLeastSharpness * slow_usual.sharpness;
   if (!is_hit) return;
@@ -420,8 +420,10 @@ RegionReport RegionTracker::Impl::Track(const cv::Mat& image, Time now,
     const Eigen::Vector2d before = center + shift;
     const Look look = Follow(image, expected);
     const double share = look.peak.value / usual.value;
-    // A region that jumps away from its path in the world is something else.
-    const bool is_there = !hint || (look.center_px - hint->center_px).norm() < ReachOf(*hint);
+    // A region that jumps away from its path in the world is something else. Beyond its borders an
+    // image shows nothing.
+    const bool is_there = IsInImage(look.center_px) &&
+                          (!hint || (look.center_px - hint->center_px).norm() < ReachOf(*hint));
     if (share > kLeastToSee && is_there) {
       const double agreement = Accept(image, look);
       if (agreement > kLeastToSee && !HasDrifted(center - before, seconds, agreement)) {

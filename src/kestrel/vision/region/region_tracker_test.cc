@@ -134,6 +134,18 @@ TEST_P(RegionTrackerSeeds, IsLostWithinHalfASecondAndFoundAgainWithinOne) {
   EXPECT_GT(Overlap(report.box_px, scene.Box()), 0.5);
 }
 
+// The camera turns away within a second: what the border repeats is not followed.
+TEST_P(RegionTrackerSeeds, IsLostBeyondTheImage) {
+  Mark();
+  for (int i = 0; i < 40; ++i) {
+    scene.camera_px.y() -= 15;
+    const RegionReport report = Next();
+    if (report.state != RegionState::kFollowing) continue;
+    const cv::Rect2d& box = report.box_px;
+    EXPECT_LT(box.y + 0.5 * box.height, kRegionImageHeight + 1) << i;
+  }
+}
+
 TEST_P(RegionTrackerSeeds, NeverFollowsAnotherThingInItsPlace) {
   Mark();
   for (int i = 0; i < 20; ++i) Next();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ranges>
 
 #include <Eigen/Cholesky>
 
@@ -23,7 +24,7 @@ constexpr double kStartSpeedSigma_mps = 6;
 constexpr double kGate = 16.3;
 // Number of measurements in a row outside of the gate, each within reach of the one before at
 // max_speed_mps, after which the track is considered wrong and a new one begins.
-constexpr int kRestartCount = 5;
+constexpr std::size_t kRestartCount = 5;
 constexpr int kConfirmCount = 5;  // measurements that confirm a track
 // Time without a measurement after which a track is predicted, and standard deviation of the
 // position at which it is lost.
@@ -109,12 +110,14 @@ TurnNoise TargetTrackerOptions::Noise() const {
 TargetTracker::TargetTracker(const TargetTrackerOptions& options)
     : options_(Checked(options)), noise_(options.Noise()) {
   entries_.reserve(options_.history + 1);
+  outliers_.reserve(kRestartCount);
 }
 
 MeasurementFate TargetTracker::Add(const TargetMeasurement& measurement) {
   if (!IsValid(measurement)) return MeasurementFate::kInvalid;
   if (entries_.empty() ||
       ToSeconds(measurement.time - entries_.back().measurement.time) > options_.lost_after_s) {
+    outliers_.clear();
     return Start(measurement);
   }
   const std::size_t index = CountUntil(measurement.time);
@@ -123,7 +126,9 @@ MeasurementFate TargetTracker::Add(const TargetMeasurement& measurement) {
   const double distance =
       SquaredDistance(predicted, measurement.position_in_world, measurement.covariance);
   if (!(distance <= kGate)) return Reject(measurement, MeasurementFate::kFarFromTrack);
+  outliers_.clear();
   Insert(index, measurement);
+  accepted_ = std::min(accepted_ + 1, kConfirmCount);
   return FilterFrom(index) ? MeasurementFate::kAccepted : Start(measurement);
 }
 
@@ -137,8 +142,18 @@ MeasurementFate TargetTracker::Start(const TargetMeasurement& measurement) {
   entries_.push_back({measurement, state});
   UpdateYaw(&entries_.back());
   accepted_ = 1;
-  outlier_.reset();
-  outliers_ = 0;
+  return MeasurementFate::kStarted;
+}
+
+// The new track has the velocity of all outliers. From the newest one alone that would be any, and
+// a next place that is only a little off would throw the track far ahead.
+MeasurementFate TargetTracker::Restart() {
+  Start(outliers_.front());
+  for (const TargetMeasurement& outlier : outliers_ | std::views::drop(1)) {
+    if (const std::size_t index = CountUntil(outlier.time); index > 0) Insert(index, outlier);
+  }
+  if (!FilterFrom(1)) Start(outliers_.back());
+  outliers_.clear();
   return MeasurementFate::kStarted;
 }
 
@@ -151,16 +166,13 @@ MeasurementFate TargetTracker::Reject(const TargetMeasurement& measurement, Meas
     return (b.position_in_world - a.position_in_world).norm() <=
            options_.max_speed_mps * seconds + kSigmas * noise_m;
   };
-  outliers_ = outlier_ && agree(*outlier_, measurement) ? outliers_ + 1 : 1;
-  outlier_ = measurement;
-  return outliers_ >= kRestartCount ? Start(measurement) : fate;
+  if (!outliers_.empty() && !agree(outliers_.back(), measurement)) outliers_.clear();
+  outliers_.push_back(measurement);
+  return outliers_.size() >= kRestartCount ? Restart() : fate;
 }
 
 void TargetTracker::Insert(std::size_t index, const TargetMeasurement& measurement) {
   entries_.insert(entries_.begin() + static_cast<std::ptrdiff_t>(index), {measurement, {}, 0});
-  accepted_ = std::min(accepted_ + 1, kConfirmCount);
-  outlier_.reset();
-  outliers_ = 0;
 }
 
 // Filters the entries from 'index' on, each from the one before. False when a result is not finite.

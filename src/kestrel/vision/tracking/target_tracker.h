@@ -126,6 +126,7 @@ class TargetTracker {
   };
 
   MeasurementFate Start(const TargetMeasurement& measurement);
+  MeasurementFate Restart();
   MeasurementFate Reject(const TargetMeasurement& measurement, MeasurementFate fate);
   void Insert(std::size_t index, const TargetMeasurement& measurement);
   bool FilterFrom(std::size_t index);
@@ -135,10 +136,9 @@ class TargetTracker {
 
   TargetTrackerOptions options_;
   TurnNoise noise_;
-  std::vector<Entry> entries_;                // in order of time; at most the reserved capacity
-  int accepted_ = 0;                          // measurements of this track, up to confirm_count
-  std::optional<TargetMeasurement> outlier_;  // the newest rejected measurement
-  int outliers_ = 0;                          // number of rejected measurements in a row that agree
+  std::vector<Entry> entries_;               // in order of time; at most the reserved capacity
+  int accepted_ = 0;                         // measurements of this track, up to confirm_count
+  std::vector<TargetMeasurement> outliers_;  // rejected in a row, each agrees with the one before
 };
 
 }  // namespace kestrel

@@ -323,6 +323,29 @@ TEST(TargetTracker, RestartsAtNewPlaceOfTarget) {
                                      kStarted, kAccepted, kAccepted, kAccepted));
 }
 
+// A box is dragged off a person by somebody who crosses, long enough for a new track, and is on the
+// person again in the next image.
+TEST(TargetTracker, NewTrackIsNotThrownAheadByItsNextPlace) {
+  constexpr double kRate_hz = 15, kCrossing_s = 3;
+  const auto walk = [](double t) { return Eigen::Vector3d(-0.7 * t, 0, 0); };
+  TargetTracker tracker({.acceleration_noise = 0.3, .sway_sigma_m = 0, .max_speed_mps = 30});
+  Sensor sensor(walk, 0.1);
+  int dragged = 0;
+  for (double t = 0; t < 6; t += 1 / kRate_hz) {
+    TargetMeasurement measurement = sensor.Measure(t);
+    const bool is_dragged = t > kCrossing_s && dragged < 5;
+    if (is_dragged) measurement.position_in_world += Eigen::Vector3d(0.8, -0.3, 0);
+    const MeasurementFate fate = tracker.Add(measurement);
+    if (is_dragged && ++dragged == 5) {
+      EXPECT_EQ(fate, MeasurementFate::kStarted);
+    }
+    const auto soon = tracker.Predict(At(t + 0.3));
+    if (t < 1) continue;
+    ASSERT_TRUE(soon) << t;
+    EXPECT_LT((soon->motion.position() - walk(t + 0.3)).norm(), 1.5) << t;
+  }
+}
+
 TEST(TargetTracker, ClockJumpAheadDoesNotStopTracking) {
   TargetTracker tracker({});
   Sensor sensor(Standing);
