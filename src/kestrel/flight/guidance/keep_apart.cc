@@ -14,8 +14,7 @@ constexpr double kGain = 0.5;  // 1/s, speed towards another UAV per metre beyon
 // link and the control.
 constexpr double kBraking = 1.5;
 constexpr double kReaction_s = 1;
-constexpr int kRounds = 12;
-constexpr double kPart = 0.5;  // part of an excess that a round takes away
+constexpr int kRounds = 3;
 // Further away from the distance nobody is gone around yet.
 constexpr double kAround_m = 6;
 
@@ -56,26 +55,25 @@ bool KeepsFrom(const OtherUav& other, const OwnMotion& own) {
 
 void KeepApart(const OwnMotion& own, const Vector2d& destination, std::span<const OtherUav> others,
                SetPoint* command) {
-  const Vector2d wanted = command->velocity.head<2>();
-  Vector2d velocity = wanted;
+  const double wanted_mps = command->velocity.head<2>().norm();
+  Vector2d velocity = command->velocity.head<2>();
   for (const OtherUav& other : others) {
     if (!KeepsFrom(other, own)) continue;
-    const Nearing nearing(own, wanted, other);
+    const Nearing nearing(own, velocity, other);
+    velocity -= nearing.excess_mps * nearing.to;
     const bool is_at_destination = (destination - other.position).norm() < DistanceTo(other);
     if (is_at_destination || nearing.free_m > kAround_m) continue;
     // To the right, as all do, so that two that meet do not go to the same side.
     velocity +=
-        std::min(nearing.excess_mps, wanted.norm()) * Vector2d(nearing.to.y(), -nearing.to.x());
+        std::min(nearing.excess_mps, wanted_mps) * Vector2d(nearing.to.y(), -nearing.to.x());
   }
-  // The way around one, or away from it, may lead to another one: small steps find what is between.
+  // The way around one, or away from it, may lead to another one.
   for (int round = 0; round < kRounds; ++round) {
-    Vector2d change(0, 0);
     for (const OtherUav& other : others) {
       if (!KeepsFrom(other, own)) continue;
       const Nearing nearing(own, velocity, other);
-      change -= kPart * nearing.excess_mps * nearing.to;
+      velocity -= nearing.excess_mps * nearing.to;
     }
-    velocity += change;
   }
   if (velocity == Vector2d(command->velocity.head<2>())) return;
   command->velocity.head<2>() = velocity;

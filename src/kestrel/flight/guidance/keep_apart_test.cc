@@ -71,16 +71,6 @@ TEST(KeepApartTest, DoesNotMoveOffFromOneToAnother) {
   EXPECT_GT(FlyTo({-12, 12}, {beside, in_its_way}, &position, 5), 5);
 }
 
-TEST(KeepApartTest, OrderOfOthersDoesNotMatter) {
-  const OtherUav stands{.position = {6, 0}, .goes_first = true};
-  const OtherUav coming{.position = {-6, 0}, .velocity = {2, 0}, .goes_first = true};
-  SetPoint one, other;
-  KeepApart({{0, 0}, {0, 0}}, {0, 30}, std::vector{stands, coming}, &one);
-  KeepApart({{0, 0}, {0, 0}}, {0, 30}, std::vector{coming, stands}, &other);
-  EXPECT_NEAR((one.velocity - other.velocity).norm(), 0, 1e-9);
-  EXPECT_NEAR(one.velocity.x(), 2, 0.1);  // as much too fast for the one as for the other
-}
-
 TEST(KeepApartTest, AtWorkKeepsOnlyFromThoseThatGoFirst) {
   SetPoint command;
   command.velocity = {3, 0, 0};

@@ -21,7 +21,7 @@ namespace {
 
 // Chosen on sequences of UAV123 and DTB70 that docs/follow.md does not list, and on copies of them
 // that were reduced to objects of 5 to 20 px; the least window, and when a region is lost, also on
-// those listed.
+// those listed. Those of the colours: on rendered cars.
 constexpr int kCells = 32, kCellPx = 4;
 constexpr int kChannels = AppearanceFeatures::kChannels;
 constexpr double kPadding = 5;          // side of the window by that of a square like the region
