@@ -274,7 +274,11 @@ RegionTracker::Impl::Look RegionTracker::Impl::Follow(const cv::Mat& image,
 double RegionTracker::Impl::Accept(const cv::Mat& image, const Look& look) {
   constexpr double kColorGain = 0.2;  // what turns gets another form, but slowly
   center = look.center_px;
-  if (look.by_colors) center += kColorGain * (look.by_colors->middle - center);
+  if (look.by_colors) {
+    center += kColorGain * (look.by_colors->middle - center);
+    size += kColorGain * (look.by_colors->size - size);
+    size = size.cwiseMax(kLeastSide_px);
+  }
   const double least = kLeastSide_px / size.minCoeff();
   const double most = std::min(image_size.width / size.x(), image_size.height / size.y());
   const double scale = std::clamp(look.scale, std::min(least, 1.0), std::max(most, 1.0));
@@ -285,12 +289,7 @@ double RegionTracker::Impl::Accept(const cv::Mat& image, const Look& look) {
   const FilterPeak slow_peak = slow.Find(sample, &workspace);
   const double slow_share = slow_peak.value / slow_usual.value;
   const double agreement = 0.5 * (share + slow_share);
-  const bool shows_colors = look.by_colors && agreement > kLeastToSee;
-  if (shows_colors) {
-    size += kColorGain * (look.by_colors->size - size);
-    size = size.cwiseMax(kLeastSide_px);
-  }
-  if (share > kLeastToLearn || shows_colors) {
+  if (share > kLeastToLearn || look.by_colors) {
     usual.Add(look.peak);
     filter.Learn(sample, kTemporal, &workspace);
   }
@@ -318,16 +317,13 @@ std::optional<RegionColors::Box> RegionTracker::Impl::CompareWithColors() {
 }
 
 std::optional<RegionColors::Box> RegionTracker::Impl::FitColors(const Eigen::Vector2d& near_px) {
-  constexpr double kMostGrowth = 1.8;  // of a side from an image to the next: it is something else
   if (!marked) return std::nullopt;
   const RegionColors::Box near = BoxInWindow(near_px);
   const auto fit = colors.Fit(window, near);
   if (!fit) return std::nullopt;
   const Eigen::Vector2d middle = fit->middle + marked->middle.cwiseProduct(fit->size);
-  const Eigen::Vector2d by_colors = PixelsPerSample() * marked->size.cwiseProduct(fit->size);
-  const Eigen::Vector2d growth = by_colors.cwiseQuotient(size);
-  if (growth.minCoeff() < 1 / kMostGrowth || growth.maxCoeff() > kMostGrowth) return std::nullopt;
-  return RegionColors::Box{near_px + PixelsPerSample() * (middle - near.middle), by_colors};
+  return RegionColors::Box{near_px + PixelsPerSample() * (middle - near.middle),
+                           PixelsPerSample() * marked->size.cwiseProduct(fit->size)};
 }
 
 void RegionTracker::Impl::TakeByColors(const cv::Mat& image, const Eigen::Vector2d& expected,
@@ -339,9 +335,8 @@ void RegionTracker::Impl::TakeByColors(const cv::Mat& image, const Eigen::Vector
   if (!look->by_colors) return;
   const Eigen::Vector2d aside = look->by_colors->middle - look->center_px;
   if (aside.norm() < kSame * std::sqrt(size.prod())) return;
-  const auto by_colors = look->by_colors;
-  *look = LookAt(image, filter, by_colors->middle, 1);
-  look->by_colors = by_colors;
+  look->center_px = look->by_colors->middle;
+  look->peak.value = std::max(look->peak.value, 1.01 * kLeastToSee * usual.value);
 }
 
 bool RegionTracker::Impl::HasDrifted(const Eigen::Vector2d& moved, double seconds,
