@@ -45,8 +45,9 @@ double ShadedWhite(const TagGrid& grid, const std::vector<bool>& is_data,
   if (count == 0) return NAN;
   const std::span<float> seen(white.data(), count);
   const double most_shaded = MedianInPlace(seen) - kShade;
-  const auto sunny = std::ranges::partition(seen, [&](float value) { return value < most_shaded; });
-  const std::span<float> shaded = seen.first(seen.size() - sunny.size());
+  const auto sunny =
+      std::partition(seen.begin(), seen.end(), [&](float value) { return value < most_shaded; });
+  const auto shaded = seen.first(static_cast<std::size_t>(sunny - seen.begin()));
   return shaded.size() < kLeastShaded ? NAN : MedianInPlace(shaded);
 }
 

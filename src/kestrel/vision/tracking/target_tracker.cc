@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <ranges>
+#include <span>
 
 #include <Eigen/Cholesky>
 
@@ -149,7 +149,7 @@ MeasurementFate TargetTracker::Start(const TargetMeasurement& measurement) {
 // a next place that is only a little off would throw the track far ahead.
 MeasurementFate TargetTracker::Restart() {
   Start(outliers_.front());
-  for (const TargetMeasurement& outlier : outliers_ | std::views::drop(1)) {
+  for (const TargetMeasurement& outlier : std::span(outliers_).subspan(1)) {
     if (const std::size_t index = CountUntil(outlier.time); index > 0) Insert(index, outlier);
   }
   if (!FilterFrom(1)) Start(outliers_.back());
