@@ -138,7 +138,8 @@ struct RegionTracker::Impl {
   // Returns the box (px) that the region's colours show near a place in the window, which is seen
   // at scale 1; nothing where they show none.
   std::optional<RegionColors::Box> FitColors(const Eigen::Vector2d& near_px);
-  // Where the look is weak, the region is where its colours are near the expected place.
+  // The colours near the expected place replace a weak look elsewhere. The response counts as just
+  // strong enough: it is low while the form changes.
   void TakeByColors(const cv::Mat& image, const Eigen::Vector2d& expected, Look* look);
   // True when the box has stopped with the background, which the region had not done.
   bool HasDrifted(const Eigen::Vector2d& shift, double seconds, double agreement);

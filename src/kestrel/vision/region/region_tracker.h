@@ -35,10 +35,12 @@ struct RegionReport {
 // Follows a region of an image that a person has marked, by its appearance: whatever it shows.
 //
 // A correlation filter (see AppearanceFilter) on gradients, gray and colour finds it around the
-// place that is expected, at three scales. It learns what it finds unless that is ambiguous. A
-// second filter, which learns slowly from the marked image on, decides whether it still is the
-// marked thing, and finds it again when it was lost. A hint takes the UAV's own motion out of the
-// expected place; without one, the shift of the background is estimated from the images.
+// place that is expected, at three scales. It learns what it finds unless that is ambiguous. Where
+// the colours of the region differ from those around it they show its form (see RegionColors), and
+// vouch for what the filter hardly knows. A second filter, which learns slowly from the marked
+// image on, decides whether it still is the marked thing, and finds it again when it was lost. A
+// hint takes the UAV's own motion out of the expected place; without one, the shift of the
+// background is estimated from the images.
 class RegionTracker {
  public:
   RegionTracker();

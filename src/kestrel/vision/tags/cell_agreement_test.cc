@@ -88,7 +88,7 @@ TEST_F(CellAgreementTest, OtherIdsAreNotTakenUnderBarOfShadow) {
   }
 }
 
-// Where nearly all cells around it are in the shadow, a black cell in the sun may pass for white.
+// A black cell in the sun may pass for white where nearly all cells around it are in the shadow.
 TEST_F(CellAgreementTest, BlackCellPrintedForWhiteIsHardlyEverFoundUnderBarOfShadow) {
   int tried = 0, taken = 0;
   for (const std::size_t cell : DataCells(TagCell::kWhite)) {
@@ -110,7 +110,7 @@ TEST_F(CellAgreementTest, BlankSquareIsNotTakenUnderBarOfShadow) {
   }
 }
 
-// Where no shadow falls on the white square, a gray cell is another print.
+// A gray cell is another print where no shadow falls on the white square.
 TEST_F(CellAgreementTest, GrayCellInEvenLightIsWrong) {
   std::vector<float> gray;
   for (const TagCell cell : tag_.grid().cells) {

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/region/region_colors.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "kestrel/core/base/random.h"
+
+namespace kestrel {
+namespace {
+
+constexpr int kSide = 128;
+
+// Ground, and a rectangle on it, with noise.
+SampledWindow Draw(int planes, const RegionColors::Box& thing, float contrast) {
+  Random random(1);
+  SampledWindow window(kSide, planes);
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      const bool is_thing = std::abs(x - thing.middle.x()) < 0.5 * thing.size.x() &&
+                            std::abs(y - thing.middle.y()) < 0.5 * thing.size.y();
+      for (int plane = 0; plane < planes; ++plane) {
+        const double value = 90 + (is_thing ? contrast : 0) + 5 * random.Normal();
+        window.values[plane][y * kSide + x] = static_cast<float>(value);
+      }
+    }
+  }
+  return window;
+}
+
+class RegionColorsPlanes : public testing::TestWithParam<int> {
+ protected:
+  RegionColors colors{kSide};
+};
+INSTANTIATE_TEST_SUITE_P(Planes, RegionColorsPlanes, testing::Values(1, 3));
+
+TEST_P(RegionColorsPlanes, FitReturnsFormThatHasChanged) {
+  const RegionColors::Box marked{{64, 64}, {24, 30}}, turned{{66, 63}, {38, 22}};
+  colors.Mark(Draw(GetParam(), marked, 70), marked);
+  const auto fit = colors.Fit(Draw(GetParam(), turned, 70), marked);
+  ASSERT_TRUE(fit);
+  EXPECT_LT((fit->middle - turned.middle).norm(), 1);
+  EXPECT_LT((fit->size - turned.size).norm(), 2);
+}
+
+TEST_P(RegionColorsPlanes, FitReturnsNothingWhereColorsAreThoseAround) {
+  const RegionColors::Box marked{{64, 64}, {24, 30}};
+  const SampledWindow window = Draw(GetParam(), marked, 0);
+  colors.Mark(window, marked);
+  EXPECT_FALSE(colors.Fit(window, marked));
+}
+
+// A neighbour of the same colour that reaches beyond the window's part in which the region may end.
+TEST_P(RegionColorsPlanes, FitReturnsNothingWhereColorsDoNotEnd) {
+  const RegionColors::Box marked{{64, 64}, {24, 30}};
+  colors.Mark(Draw(GetParam(), marked, 70), marked);
+  EXPECT_FALSE(colors.Fit(Draw(GetParam(), {{64, 64}, {100, 30}}, 70), marked));
+}
+
+}  // namespace
+}  // namespace kestrel
