@@ -98,9 +98,9 @@ struct RegionTracker::Impl {
       sharpness = kShare * peak.sharpness;
     }
     void Add(const FilterPeak& peak) {
-      constexpr double kRate = 0.05;
-      value += kRate * (peak.value - value);
-      sharpness += kRate * (peak.sharpness - sharpness);
+      constexpr double kShareOfOne = 0.05;
+      value += kShareOfOne * (peak.value - value);
+      sharpness += kShareOfOne * (peak.sharpness - sharpness);
     }
 
     double value = 0, sharpness = 0;
