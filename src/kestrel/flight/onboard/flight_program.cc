@@ -14,6 +14,7 @@
 #include "kestrel/comms/mavlink/silence.h"
 #include "kestrel/core/base/error.h"
 #include "kestrel/core/base/options.h"
+#include "kestrel/flight/onboard/guidance_permission.h"
 #include "kestrel/flight/onboard/team_in_flight.h"
 #include "kestrel/flight/session/autopilot_report.h"
 
@@ -248,6 +249,7 @@ void FlightProgram::See() {
     if (camera_) camera_->ApplyMarks(Now(), parts_.vision);
     AssignObject();
     parts_.vision->Leave(ended_mark_);
+    parts_.vision->SetTakeOffGround(take_off_ground_m_);
     const TrackSnapshot snapshot = See(frame);
     latency_.step(kDetection).Add(snapshot.detect_time);
     frames_ = snapshot.frames;
@@ -449,6 +451,10 @@ void FlightProgram::WatchFlight(Time now) {
   if (parts_.autopilot->is_here()) {
     was_heard_ = true;
     heard_ = now;
+    if (!parts_.source_has_poses) {
+      const auto ground_m = TakeOffGround(*parts_.autopilot, options_.guidance.leg_m);
+      take_off_ground_m_ = ground_m.value_or(0);
+    }
     landing_.Observe(LandingInput(now));
     if (landing_.end()) EndByLanding(*landing_.end());
     return;

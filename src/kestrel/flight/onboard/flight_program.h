@@ -210,6 +210,7 @@ class FlightProgram {
   std::atomic<int> repeated_frames_{0}, frames_{0}, detections_{0}, messages_{0};
   std::atomic<TargetPhase> phase_{TargetPhase::kSearching};
   std::atomic<int> ended_mark_{0};  // see Guidance::ended
+  std::atomic<double> take_off_ground_m_{0};
   std::atomic<GuidancePhase> guidance_phase_{GuidancePhase::kIdle};
   std::atomic<int> set_points_{0};
   std::atomic<int> orders_{0};

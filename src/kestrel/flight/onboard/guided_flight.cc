@@ -207,11 +207,12 @@ void GuidedFlight::ShowPlace(GuidanceInput* input) const {
   if (!place_) return;
   input->mark = 0;
   input->target.reset();
-  const auto place = InWorld(place_), home = InWorld(autopilot_.home());
-  if (!place || !home) return;
+  const auto place = InWorld(place_);
+  const auto ground_m = TakeOffGround(autopilot_, options_.guidance.leg_m);
+  if (!place || !ground_m) return;
   TargetEstimate& target = input->target.emplace();
   target.time = input->now;
-  target.motion.mean.head<3>() << place->head<2>(), home->z();
+  target.motion.mean.head<3>() << place->head<2>(), *ground_m;
   input->target_age_s = 0;
   input->mark = 1;
 }

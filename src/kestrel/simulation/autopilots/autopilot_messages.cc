@@ -191,9 +191,10 @@ mavlink::GpsGlobalOrigin GlobalOriginOf(const GlobalOrigin& origin, std::int64_t
           .time_usec = static_cast<std::uint64_t>(boot_us)};
 }
 
-// Home is at the local frame's origin.
-mavlink::HomePosition HomePositionOf(const GlobalOrigin& origin, std::int64_t boot_us) {
-  const GeoPoint at = GeoPointAt(Vector3d::Zero(), origin);
+// Home is where the body stands at the local frame's origin.
+mavlink::HomePosition HomePositionOf(const GlobalOrigin& origin, double leg_m,
+                                     std::int64_t boot_us) {
+  const GeoPoint at = GeoPointAt({0, 0, leg_m}, origin);
   mavlink::HomePosition message;
   message.latitude = at.latitude;
   message.longitude = at.longitude;

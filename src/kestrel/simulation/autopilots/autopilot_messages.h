@@ -64,7 +64,8 @@ mavlink::GlobalPositionInt GlobalPositionOf(const PoseSample& pose, const Global
 mavlink::RawImu RawImuOf(const Eigen::Vector3d& acceleration, std::int64_t boot_us);
 mavlink::HighresImu HighresImuOf(const Eigen::Vector3d& acceleration, std::int64_t boot_us);
 mavlink::SimState SimStateOf(const PoseSample& pose, const GlobalOrigin& origin);
-mavlink::HomePosition HomePositionOf(const GlobalOrigin& origin, std::int64_t boot_us);
+mavlink::HomePosition HomePositionOf(const GlobalOrigin& origin, double leg_m,
+                                     std::int64_t boot_us);
 mavlink::GpsGlobalOrigin GlobalOriginOf(const GlobalOrigin& origin, std::int64_t boot_us);
 
 // State of battery and sensors, with a low battery or a good one.

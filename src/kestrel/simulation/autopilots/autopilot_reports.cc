@@ -208,7 +208,7 @@ bool AutopilotModel::SendPlace(std::uint32_t id, Time now) {
       return has_origin_;
     case mavlink::HomePosition::kId:
       if (!options_.estimate.has_home || !has_origin_) return false;
-      send_(HomePositionOf(options_.origin, own_us));
+      send_(HomePositionOf(options_.origin, options_.uav.leg_m, own_us));
       return true;
     case mavlink::SimState::kId:
       send_(SimStateOf(uav_.pose(), options_.origin));

@@ -9,6 +9,7 @@
 #include "kestrel/core/geometry/angles.h"
 #include "kestrel/vision/pipeline/camera_poses.h"
 #include "kestrel/vision/pipeline/measurement_noise.h"
+#include "kestrel/vision/pipeline/standing_thing.h"
 #include "kestrel/vision/pipeline/world_location.h"
 
 namespace kestrel {
@@ -17,10 +18,10 @@ namespace {
 constexpr Duration kPoseGap = std::chrono::milliseconds(500);
 
 // Errors of the place of a box, as shares of its size: from image to image, and those that stay.
-constexpr double kBoxNoise = 0.03, kBoxDrift = 0.05;
-// The same of the foot of the thing, which depends on its shape: seen level, it may be there or
-// half way up to its middle.
-constexpr double kFootShare = 0.15;
+constexpr double kBoxNoise = 0.03, kBoxDrift = 0.1;
+constexpr double kHintNoise = 0.05;  // the same of the place where it is expected, at least
+// A thing is taken for as far as it would be seen from this height, this much below the horizon.
+constexpr double kLeastHeight_m = 0.5, kLeastDepression = 0.02;
 // Beyond it (and above the horizon) the errors of a place are not linear any more.
 constexpr double kMostOfDepression = 0.3;
 // A prediction that is less certain, in sizes of the region, is worth less than the image before.
@@ -32,12 +33,22 @@ Eigen::Vector2d CenterOf(const cv::Rect2d& box) {
 
 double SizeOf(const cv::Rect2d& box) { return std::sqrt(box.width * box.height); }
 
-// Returns where the thing in a box stands on the ground. A sphere of radius r on the ground is seen
-// from above by the depression d: its foot is r cos(d) below its middle, across the line of sight.
-// 'down_px': direction of the world's down in the image, of length 1.
-Eigen::Vector2d FootOf(const cv::Rect2d& box, const Eigen::Vector2d& down_px, double cosine) {
-  const Eigen::Vector2d half(0.5 * box.width, 0.5 * box.height);
-  return CenterOf(box) + cosine * half.cwiseProduct(down_px).norm() * down_px;
+// The place in the image of the foot of a thing, from the middle of its box.
+struct FootInImage {
+  Eigen::Vector2d from_middle_px;
+  double sigma_px;  // along that, by the shape of the thing, which is not known
+};
+
+// 'down': the world's down in the image, of any length.
+FootInImage FootOf(const cv::Rect2d& box, const Eigen::Vector2d& down, double depression_rad,
+                   double m_per_px) {
+  constexpr double kLeastLength = 1e-6;
+  if (down.norm() < kLeastLength) return {Eigen::Vector2d::Zero(), 0};  // straight below
+  const Eigen::Vector2d along = down.normalized(), across(-along.y(), along.x());
+  const Eigen::Vector2d size_m = m_per_px * Eigen::Vector2d(box.width, box.height);
+  const FootBelow foot = EstimateFoot(size_m.cwiseProduct(across).norm(),
+                                      size_m.cwiseProduct(along).norm(), depression_rad);
+  return {foot.mean_m / m_per_px * along, foot.sigma_m / m_per_px};
 }
 
 }  // namespace
@@ -72,6 +83,7 @@ class FollowPipeline::Impl {
   PoseStatus AddPose(const PoseSample& sample) { return poses_.Add(sample); }
   PoseStatus AddGimbal(const GimbalSample& sample) { return poses_.Add(sample); }
   void ChangeOptions(const FollowPipelineOptions& options) { options_ = Checked(options); }
+  void SetGroundZero(double height_m) { ground_zero_m_ = height_m; }
 
   FollowObservation Mark(const cv::Mat& image, Time time, const cv::Rect2d& box) {
     const auto start = std::chrono::steady_clock::now();
@@ -107,16 +119,22 @@ class FollowPipeline::Impl {
   std::optional<TargetEstimate> Expected(Time time) const;
   std::optional<RegionHint> HintFor(const FollowObservation& seen) const;
   void Locate(FollowObservation* seen);
-  std::optional<Eigen::Vector3d> FootRay(const RigidTransform& world_from_camera,
-                                         const cv::Rect2d& box);
+  double ground_m() const { return ground_zero_m_ + options_.ground_height_m; }
+  struct FootSight {
+    Eigen::Vector3d in_world;  // direction, of length 1
+    double shape_rad;          // standard deviation by the shape of the thing, which is not known
+  };
+  std::optional<FootSight> SightOfFoot(const RigidTransform& world_from_camera,
+                                       const cv::Rect2d& box);
   double AnglePerPixel(const Eigen::Vector2d& pixel) const;
-  void Place(double angle_per_px, double size_px, FollowObservation* seen);
+  void Place(double size_rad, double shape_rad, FollowObservation* seen);
 
   FollowPipelineOptions options_;
   CameraModel camera_;
   CameraPoses poses_;
   RegionTracker region_;
   bool is_marked_ = false;
+  double ground_zero_m_ = 0;
   PoseUncertainty pose_uncertainty_;  // for the present frame, where it has a pose
   TargetTracker tracker_;
   std::optional<TargetEstimate> last_;  // the newest one, also when the track is lost
@@ -165,7 +183,7 @@ std::optional<RegionHint> FollowPipeline::Impl::HintFor(const FollowObservation&
       by_point * camera_from_world.rotation.toRotationMatrix();
   RegionHint hint{foot - foot_px_, by_world * target->motion.covariance.topLeftCorner<3, 3>() *
                                        by_world.transpose()};
-  hint.covariance_px2.diagonal().array() += kBoxDrift * kBoxDrift * size_px_ * size_px_;
+  hint.covariance_px2.diagonal().array() += kHintNoise * kHintNoise * size_px_ * size_px_;
   const bool is_seen = tracker_.StateAt(seen.time) == TrackState::kTracking;
   const double sigma_px = std::sqrt(0.5 * hint.covariance_px2.trace());
   if (is_seen && sigma_px > kMostOfSize * size_px_) return std::nullopt;
@@ -175,10 +193,10 @@ std::optional<RegionHint> FollowPipeline::Impl::HintFor(const FollowObservation&
 void FollowPipeline::Impl::Locate(FollowObservation* seen) {
   const RegionReport& region = *seen->region;
   if (region.state == RegionState::kFollowing && seen->world_from_camera) {
-    seen->bearing = FootRay(*seen->world_from_camera, region.box_px);
-    if (seen->bearing) {
+    if (const auto foot = SightOfFoot(*seen->world_from_camera, region.box_px)) {
+      seen->bearing = foot->in_world;
       size_px_ = SizeOf(region.box_px);
-      Place(AnglePerPixel(CenterOf(region.box_px)), size_px_, seen);
+      Place(AnglePerPixel(CenterOf(region.box_px)) * size_px_, foot->shape_rad, seen);
     }
   }
   seen->track_state = tracker_.StateAt(seen->time);
@@ -188,27 +206,28 @@ void FollowPipeline::Impl::Locate(FollowObservation* seen) {
   last_time_ = seen->time;
 }
 
-// Returns the direction in the world to where the thing in a box stands.
-std::optional<Eigen::Vector3d> FollowPipeline::Impl::FootRay(
+// Returns the line of sight to where the thing in a box stands.
+std::optional<FollowPipeline::Impl::FootSight> FollowPipeline::Impl::SightOfFoot(
     const RigidTransform& world_from_camera, const cv::Rect2d& box) {
+  const Eigen::Vector2d middle = CenterOf(box);
   Eigen::Vector3d ray;
-  if (camera_.Unproject(CenterOf(box), &ray) == ProjectionStatus::kOutsideModel) {
-    return std::nullopt;
-  }
+  if (camera_.Unproject(middle, &ray) == ProjectionStatus::kOutsideModel) return std::nullopt;
   Eigen::Vector2d center;
   Eigen::Matrix<double, 2, 3> by_point;
   if (camera_.Project(ray, &center, &by_point) == ProjectionStatus::kOutsideModel) {
     return std::nullopt;
   }
   const Eigen::Vector3d down = world_from_camera.rotation.conjugate() * -Eigen::Vector3d::UnitZ();
-  const Eigen::Vector2d down_px = by_point * down;
-  const double cosine = ray.cross(down).norm();
-  Eigen::Vector2d foot = center;
-  constexpr double kLeastCosine = 1e-3;  // straight below there is no direction down
-  if (cosine > kLeastCosine) foot = FootOf(box, down_px.normalized(), cosine);
-  foot_px_ = foot - center;
-  if (camera_.Unproject(foot, &ray) == ProjectionStatus::kOutsideModel) return std::nullopt;
-  return world_from_camera.rotation * ray;
+  const double level = ray.cross(down).norm(), angle_per_px = AnglePerPixel(middle);
+  const double depression = std::max(std::atan2(ray.dot(down), level), kLeastDepression);
+  const double above_m = world_from_camera.translation.z() - ground_m();
+  const double range_m = std::max(above_m, kLeastHeight_m) / std::sin(depression);
+  const FootInImage foot = FootOf(box, by_point * down, depression, range_m * angle_per_px);
+  foot_px_ = foot.from_middle_px;
+  if (camera_.Unproject(center + foot_px_, &ray) == ProjectionStatus::kOutsideModel) {
+    return std::nullopt;
+  }
+  return FootSight{world_from_camera.rotation * ray, foot.sigma_px * angle_per_px};
 }
 
 double FollowPipeline::Impl::AnglePerPixel(const Eigen::Vector2d& pixel) const {
@@ -221,16 +240,14 @@ double FollowPipeline::Impl::AnglePerPixel(const Eigen::Vector2d& pixel) const {
   return ray.cross(beside).norm();
 }
 
-void FollowPipeline::Impl::Place(double angle_per_px, double size_px, FollowObservation* seen) {
+void FollowPipeline::Impl::Place(double size_rad, double shape_rad, FollowObservation* seen) {
   const RigidTransform& world_from_camera = *seen->world_from_camera;
   const auto ground = LocateByAltitude(world_from_camera.rotation.conjugate() * *seen->bearing,
-                                       world_from_camera, options_.ground_height_m);
+                                       world_from_camera, ground_m());
   if (!ground) return;
   const Eigen::Vector3d sight = *ground - world_from_camera.translation;
   const MeasurementNoise noise = WithPose({}, pose_uncertainty_);
-  const double size_rad = angle_per_px * size_px;
-  const double level = seen->bearing->head<2>().norm();
-  const double stays_rad = std::hypot(kBoxDrift, kFootShare * level) * size_rad;
+  const double stays_rad = std::hypot(kBoxDrift * size_rad, shape_rad);
   constexpr double kUnevenness_m = 0.05;
   const SightErrors own{std::hypot(Radians(noise.attitude_sigma_deg), kBoxNoise * size_rad),
                         noise.pose_sigma_m, kUnevenness_m};
@@ -260,6 +277,7 @@ PoseStatus FollowPipeline::AddGimbal(const GimbalSample& sample) {
 void FollowPipeline::ChangeOptions(const FollowPipelineOptions& options) {
   impl_->ChangeOptions(options);
 }
+void FollowPipeline::SetGroundZero(double height_m) { impl_->SetGroundZero(height_m); }
 FollowObservation FollowPipeline::Mark(const cv::Mat& image, Time time, const cv::Rect2d& box_px) {
   return impl_->Mark(image, time, box_px);
 }

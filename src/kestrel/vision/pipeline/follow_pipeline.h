@@ -27,7 +27,8 @@ struct FollowPipelineOptions {
 
   static void Visit(auto& self, auto&& visit) {
     visit("ground_height_m", self.ground_height_m, Between(-1e5, 1e5),
-          "height in the world of the ground under what is followed");
+          "height of the ground under what is followed: in the world; in flight above the ground "
+          "of the take-off");
     visit("ground_sigma_m", self.ground_sigma_m, Range{0, 100, true, false},
           "error of that height, standard deviation");
     visit.Gone({"max_speed_mps"});
@@ -82,6 +83,10 @@ class FollowPipeline {
   // Changes the options, and keeps poses and mark. Throws InputError and changes nothing when they
   // are invalid.
   void ChangeOptions(const FollowPipelineOptions& options);
+
+  // Counts the height of the ground in the options from this height in the world (m), instead of
+  // from 0.
+  void SetGroundZero(double height_m);
 
   // Processes a frame in which a person has marked a region, in place of what was followed before.
   // 'image', 'box_px': as RegionTracker::Mark, which throws InputError; 'time': on the clock of the

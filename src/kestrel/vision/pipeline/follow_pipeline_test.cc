@@ -108,11 +108,11 @@ TEST(FollowPipelineTest, NothingIsFollowedBeforeTheMark) {
   EXPECT_EQ(seen.track_state, TrackState::kSearching);
 }
 
-// From 1.2 m above the ground what stands 40 m away is seen 1.7 degrees below the horizon.
+// From 1.2 m above the ground what stands 80 m away is seen 0.9 degrees below the horizon.
 TEST(FollowPipelineTest, NearTheHorizonOnlyTheBearingIsKnown) {
   FollowPipeline pipeline(FollowCalibration(), {});
   FollowScene scene(2);
-  const Eigen::Vector3d car(0, 40, 0);
+  const Eigen::Vector3d car(0, 80, 0);
   const RigidTransform camera = LookingFrom({0, 0, 1.2}, car);
   pipeline.AddPose({TimeOf(0), camera});
   const FollowObservation seen =
@@ -121,6 +121,21 @@ TEST(FollowPipelineTest, NearTheHorizonOnlyTheBearingIsKnown) {
   EXPECT_NEAR(seen.bearing->y(), 1, 0.01);
   EXPECT_FALSE(seen.place);
   EXPECT_FALSE(seen.target);
+}
+
+TEST(FollowPipelineTest, HeightOfGroundCountsFromItsZero) {
+  FollowPipeline pipeline(FollowCalibration(), {.ground_height_m = 0.5});
+  pipeline.SetGroundZero(2);
+  FollowScene scene(4);
+  const RigidTransform camera = CameraAt(0, 45);
+  RigidTransform raised = camera;
+  raised.translation.z() += 2.5;
+  pipeline.AddPose({TimeOf(0), raised});
+  const FollowObservation seen =
+      pipeline.Mark(scene.Take(camera, CarAt(0)), TimeOf(0), scene.BoxOf(camera, CarAt(0)));
+  ASSERT_TRUE(seen.place);
+  EXPECT_NEAR(seen.place->position.z(), 2.5, 1e-9);
+  EXPECT_LT((seen.place->position - CarAt(0)).head<2>().norm(), 1);
 }
 
 TEST(FollowPipelineTest, WithoutPosesTheRegionIsFollowed) {

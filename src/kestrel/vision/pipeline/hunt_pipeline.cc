@@ -44,6 +44,7 @@ class HuntPipeline::Impl {
   PoseStatus AddPose(const PoseSample& sample) { return poses_.Add(sample); }
   PoseStatus AddGimbal(const GimbalSample& sample) { return poses_.Add(sample); }
   void SetAltitude(std::optional<double> altitude_m) { altitude_m_ = altitude_m; }
+  void SetGroundZero(double height_m) { ground_zero_m_ = height_m; }
   void ChangeOptions(const HuntPipelineOptions& options);
   void Seek(const std::string& class_name) {
     sought_.emplace(detector_.model(), class_name, options_.map);
@@ -83,6 +84,7 @@ class HuntPipeline::Impl {
   ObjectWorkspace workspace_;
   CameraPoses poses_;
   std::optional<double> altitude_m_;
+  double ground_zero_m_ = 0;
   HuntObservation observation_;
   GroundHeightEstimator ground_;
   std::vector<GroundHeight> ground_sightings_;  // sightings of the current frame
@@ -150,9 +152,9 @@ void HuntPipeline::Impl::TrackSought() {
 
 std::optional<HuntPipeline::Impl::GivenHeights> HuntPipeline::Impl::FindGivenHeights() const {
   if (const auto& world_from_camera = observation_.world_from_camera) {
-    return GivenHeights{
-        world_from_camera->translation.z(),
-        {options_.ground_height_m, std::hypot(options_.pose_sigma_m, options_.ground_sigma_m)}};
+    return GivenHeights{world_from_camera->translation.z(),
+                        {ground_zero_m_ + options_.ground_height_m,
+                         std::hypot(options_.pose_sigma_m, options_.ground_sigma_m)}};
   }
   if (!altitude_m_) return std::nullopt;
   return GivenHeights{*altitude_m_,
@@ -321,6 +323,7 @@ HuntPipeline& HuntPipeline::operator=(HuntPipeline&&) noexcept = default;
 PoseStatus HuntPipeline::AddPose(const PoseSample& sample) { return impl_->AddPose(sample); }
 PoseStatus HuntPipeline::AddGimbal(const GimbalSample& sample) { return impl_->AddGimbal(sample); }
 void HuntPipeline::SetAltitude(std::optional<double> altitude_m) { impl_->SetAltitude(altitude_m); }
+void HuntPipeline::SetGroundZero(double height_m) { impl_->SetGroundZero(height_m); }
 void HuntPipeline::ChangeOptions(const HuntPipelineOptions& options) {
   impl_->ChangeOptions(options);
 }

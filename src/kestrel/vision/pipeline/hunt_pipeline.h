@@ -45,7 +45,8 @@ struct HuntPipelineOptions {
     visit.Group("detector", self.detector);
     visit.Group("map", self.map);
     visit("still", self.still, "independent frames: no state is carried from one to the next");
-    visit("ground_height_m", self.ground_height_m, "height of the ground in the world");
+    visit("ground_height_m", self.ground_height_m,
+          "height of the ground: in the world; in flight above the ground of the take-off");
     visit("is_ground_flat", self.is_ground_flat,
           "objects that are not on the ground are discarded, where there are poses");
     visit("ground_sigma_m", self.ground_sigma_m, AtLeast(0), "unevenness of the ground");
@@ -103,6 +104,10 @@ class HuntPipeline {
   // Sets the height (m) of the camera above the ground for frames without a pose; nothing when not
   // known. The camera is then assumed to look straight down.
   void SetAltitude(std::optional<double> altitude_m);
+
+  // Counts the height of the ground in the options from this height in the world (m), instead of
+  // from 0.
+  void SetGroundZero(double height_m);
 
   // Changes the options and keeps the map and the poses. The options in 'map' and 'unmodelled' and
   // those of the poses keep their old effect. Throws InputError and changes nothing when the

@@ -210,6 +210,17 @@ TEST(HuntPipeline, ChangedOptionsKeepMap) {
   EXPECT_THROW(pipeline.ChangeOptions(options), InputError);
 }
 
+TEST(HuntPipeline, HeightOfGroundCountsFromItsZero) {
+  HuntPipelineOptions options;
+  options.ground_height_m = 0.2;
+  HuntPipeline pipeline(Calibration(), DefaultObjectModel(), options);
+  pipeline.SetGroundZero(-0.5);
+  pipeline.AddPose({At(0), {Eigen::Quaterniond::Identity(), {0, 0, kHeight_m - 0.3}}});
+  const HuntObservation& seen = pipeline.Process(DrawDiscs({{420, 140}}), At(0));
+  ASSERT_TRUE(seen.in_world[0]);
+  EXPECT_NEAR(seen.in_world[0]->position.z(), 0.012 - 0.3, 0.01);
+}
+
 TEST(HuntPipeline, RefusesInvalidOptions) {
   HuntPipelineOptions options;
   options.readout_s = -1;
