@@ -237,7 +237,7 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 8));
   app.add_option("--wind", arguments.team_wind_mps,
                  "Steady wind of a team, m/s, with gusts of half of it (0)")
-      ->check(CLI::Range(0, 15));
+      ->check(CLI::Range(0.0, 15.0));
   app.add_option("--longest", arguments.longest_s, "Time after which a team stops, s (1200)");
   CLI11_PARSE(app, argc, argv);
   return kestrel::ReportMain([&] {

@@ -159,7 +159,6 @@ class Autopilot {
   std::optional<AutopilotRange> range() const { return status_.range(); }
   std::optional<GlobalPosition> origin() const { return status_.origin(); }  // local frame
   std::optional<GlobalPosition> home() const { return status_.home(); }
-  std::optional<GlobalPosition> take_off() const { return status_.take_off(); }  // of the body
   std::optional<AutopilotBattery> battery() const { return status_.battery(); }
   // True when the autopilot trusts its own attitude, velocity and position; nothing when it does
   // not report this, or has not for 'away_after_s'.

@@ -96,7 +96,6 @@ void AutopilotStatus::Handle(const mavlink::Packet& packet, const TimeSync& cloc
     HandleAltitude(*altitude);
   } else if (const auto home = packet.As<mavlink::HomePosition>()) {
     home_ = {home->latitude, home->longitude, kMetres * home->altitude};
-    if (!take_off_ || !IsInFlight(landed_)) take_off_ = home_;
   } else if (const auto version = packet.As<mavlink::AutopilotVersion>()) {
     version_ = VersionOf(version->flight_sw_version);
   }

@@ -68,9 +68,6 @@ class AutopilotStatus {
   const std::optional<AutopilotRange>& range() const { return range_; }
   const std::optional<GlobalPosition>& origin() const { return origin_; }  // local frame
   const std::optional<GlobalPosition>& home() const { return home_; }
-  // Home as it was when the UAV stood on the ground: of its body there. The first one where it was
-  // in the air before.
-  const std::optional<GlobalPosition>& take_off() const { return take_off_; }
   // Altitude of height 0 of the local frame, m above mean sea level; PX4 reports it on request.
   std::optional<double> frame_altitude_m() const { return frame_altitude_m_; }
   const std::optional<AutopilotBattery>& battery() const { return battery_; }
@@ -90,7 +87,6 @@ class AutopilotStatus {
   std::optional<AutopilotRange> range_;
   std::optional<GlobalPosition> origin_;
   std::optional<GlobalPosition> home_;
-  std::optional<GlobalPosition> take_off_;
   std::optional<double> frame_altitude_m_;
   std::optional<AutopilotBattery> battery_;
   std::optional<AutopilotGnss> gnss_;

@@ -367,24 +367,6 @@ TEST_F(AutopilotTest, ReportsVehicleState) {
   EXPECT_EQ(EventsOf(AutopilotEventKind::kFailsafe), 1);
 }
 
-TEST_F(AutopilotTest, HomeThatIsSetInFlightMovesNoTakeOff) {
-  Start();
-  Pass(1);
-  const auto set_home = [&](std::uint8_t landed, std::int32_t altitude_mm) {
-    SendMessage(mavlink::ExtendedSysState{0, landed});
-    mavlink::HomePosition home;
-    home.altitude = altitude_mm;
-    SendMessage(home);
-  };
-  EXPECT_FALSE(autopilot_->take_off());
-  set_home(mavlink::kLandedInAir, 620000);
-  EXPECT_EQ(autopilot_->take_off()->altitude_m, 620) << "better than none";
-  set_home(mavlink::kLandedOnGround, 584000);
-  set_home(mavlink::kLandedInAir, 610000);
-  EXPECT_EQ(autopilot_->home()->altitude_m, 610);
-  EXPECT_EQ(autopilot_->take_off()->altitude_m, 584);
-}
-
 TEST_F(AutopilotTest, ReportsQualityOfEstimate) {
   Start();
   Pass(1);

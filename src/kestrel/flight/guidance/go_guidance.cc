@@ -237,7 +237,8 @@ Guidance::Wish GoGuidance::Choose(const GuidanceInput& input) {
   // Gusts are met at the object only: on the way drag looks like one, and on the ground the load on
   // the legs does.
   if (!IsLow() || Rests(input.now)) flight_model().Rest();
-  wish.follows_target = input.target.has_value() && !carries_ && job_.target != GoTarget::kPlace;
+  // Above a place the height of the job is floor enough: it counts from the ground there.
+  wish.follows_target = input.target.has_value() && !carries_;
   if (input.gripper.number == answers_before_) wish.request = motion_;
   wish.set_point = Command(input, now);
   wish.set_point.yaw = yaw_;

@@ -249,7 +249,7 @@ void FlightProgram::See() {
     if (camera_) camera_->ApplyMarks(Now(), parts_.vision);
     AssignObject();
     parts_.vision->Leave(ended_mark_);
-    parts_.vision->SetTakeOffGround(take_off_ground_m_);
+    parts_.vision->SetGroundZero(ground_zero_m_);
     const TrackSnapshot snapshot = See(frame);
     latency_.step(kDetection).Add(snapshot.detect_time);
     frames_ = snapshot.frames;
@@ -398,6 +398,7 @@ void FlightProgram::Fly(Time now, const TrackSnapshot& track) {
   if (GuidedFlight* const guided = set_point_flight_->by_position()) {
     guided->Take(order_);
     guided->set_video_delay(VideoDelay());
+    guided->set_take_off_ground(take_off_ground_m_);
     const std::lock_guard lock(team_mutex_);
     if (auto team = std::exchange(team_, std::nullopt)) guided->Take(*std::move(team));
     to_objects_ = kestrel::ToObjects(*guided, poses_, now, to_objects_);
@@ -451,11 +452,9 @@ void FlightProgram::WatchFlight(Time now) {
   if (parts_.autopilot->is_here()) {
     was_heard_ = true;
     heard_ = now;
-    if (!parts_.source_has_poses) {
-      const auto ground_m = TakeOffGround(*parts_.autopilot, options_.guidance.leg_m);
-      take_off_ground_m_ = ground_m.value_or(0);
-    }
-    landing_.Observe(LandingInput(now));
+    const LandingWatchInput input = LandingInput(now);
+    landing_.Observe(input);
+    WatchGround(input);
     if (landing_.end()) EndByLanding(*landing_.end());
     return;
   }
@@ -464,6 +463,19 @@ void FlightProgram::WatchFlight(Time now) {
   End({FlightOutcome::kLinkLost,
        {},
        fmt::format("no heartbeat of the autopilot for {:g} s", options_.autopilot_timeout_s)});
+}
+
+// The ground is under the feet as long as they stand on it. A program that starts in flight takes
+// that under home, once. Poses of the source are in a world of their own.
+void FlightProgram::WatchGround(const LandingWatchInput& input) {
+  if (std::exchange(reboots_, input.reboots) != input.reboots) take_off_ground_m_.reset();
+  const bool has_poses = !parts_.source_has_poses;
+  if (has_poses && input.state == LandedState::kOnGround && input.body) {
+    take_off_ground_m_ = input.body->feet.z();
+  } else if (!take_off_ground_m_) {
+    take_off_ground_m_ = GroundUnderHome(*parts_.autopilot, options_.guidance.leg_m);
+  }
+  if (has_poses) ground_zero_m_ = take_off_ground_m_.value_or(0);
 }
 
 // Until the first heartbeat. That one which was there is gone is reported by its events.

@@ -150,6 +150,7 @@ class FlightProgram {
   bool flies_by_set_points() const { return parts_.guidance || parts_.without_position; }
   void WatchFlight(Time now);
   LandingWatchInput LandingInput(Time now);
+  void WatchGround(const LandingWatchInput& input);
   void ShowAutopilot(Time now);
   void ReportWhatItWaitsFor(Time now);
   std::string SourceTrouble() const;
@@ -189,7 +190,9 @@ class FlightProgram {
   TurnNoise noise_;                            // how the predicted track may turn
   std::optional<GuardWatch> guard_;
   LandingWatch landing_;
-  Time landing_due_{};   // when the landing is looked at next
+  std::optional<double> take_off_ground_m_;  // its height in the autopilot's world
+  int reboots_ = 0;                          // of the autopilot, when that was found
+  Time landing_due_{};                       // when the landing is looked at next
   std::string gave_up_;  // why guidance gave up last; empty: it flies, or has not
   Time heard_;           // the newest time at which the autopilot was heard
   bool was_heard_ = false;
@@ -209,8 +212,8 @@ class FlightProgram {
 
   std::atomic<int> repeated_frames_{0}, frames_{0}, detections_{0}, messages_{0};
   std::atomic<TargetPhase> phase_{TargetPhase::kSearching};
-  std::atomic<int> ended_mark_{0};  // see Guidance::ended
-  std::atomic<double> take_off_ground_m_{0};
+  std::atomic<int> ended_mark_{0};        // see Guidance::ended
+  std::atomic<double> ground_zero_m_{0};  // see Vision::SetGroundZero
   std::atomic<GuidancePhase> guidance_phase_{GuidancePhase::kIdle};
   std::atomic<int> set_points_{0};
   std::atomic<int> orders_{0};

@@ -114,10 +114,9 @@ std::optional<Eigen::Vector2d> HomeOf(const Autopilot& autopilot) {
   return LocalFromGlobal(autopilot.kind(), *autopilot.origin(), *autopilot.home()).head<2>();
 }
 
-std::optional<double> TakeOffGround(const Autopilot& autopilot, double leg_m) {
-  if (!autopilot.take_off() || !autopilot.origin()) return std::nullopt;
-  const auto body = LocalFromGlobal(autopilot.kind(), *autopilot.origin(), *autopilot.take_off());
-  return body.z() - leg_m;
+std::optional<double> GroundUnderHome(const Autopilot& autopilot, double leg_m) {
+  if (!autopilot.home() || !autopilot.origin()) return std::nullopt;
+  return LocalFromGlobal(autopilot.kind(), *autopilot.origin(), *autopilot.home()).z() - leg_m;
 }
 
 std::string WhyNotFly(const Autopilot& autopilot, bool has_position) {

@@ -27,9 +27,9 @@ GuidanceOptions OptionsFor(const Autopilot& autopilot, GuidanceOptions options,
 // The autopilot's home position in the world, if it has reported one.
 std::optional<Eigen::Vector2d> HomeOf(const Autopilot& autopilot);
 
-// The height in the world of the ground from which the UAV took off, with the body's origin 'leg_m'
+// The height in the world of the ground under home, where a body stands whose origin is 'leg_m'
 // above its feet; nothing while the autopilot has not reported a home position.
-std::optional<double> TakeOffGround(const Autopilot& autopilot, double leg_m);
+std::optional<double> GroundUnderHome(const Autopilot& autopilot, double leg_m);
 
 // Returns one line that says why this autopilot is not flown by set-points at all: not a
 // multicopter, or in a failsafe, with what the pilot has to do about that. PX4 stays in its

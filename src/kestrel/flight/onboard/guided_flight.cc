@@ -208,7 +208,8 @@ void GuidedFlight::ShowPlace(GuidanceInput* input) const {
   input->mark = 0;
   input->target.reset();
   const auto place = InWorld(place_);
-  const auto ground_m = TakeOffGround(autopilot_, options_.guidance.leg_m);
+  const auto ground_m = take_off_ground_m_ ? take_off_ground_m_
+                                           : GroundUnderHome(autopilot_, options_.guidance.leg_m);
   if (!place || !ground_m) return;
   TargetEstimate& target = input->target.emplace();
   target.time = input->now;

@@ -46,7 +46,7 @@ class GuidedFlight {
   void Take(TeamInFlight team) { team_ = std::move(team); }
   // Where objects are delivered.
   void set_box(const GlobalPosition& box) { box_ = box; }
-  // A place on the ground as high as home: guidance has it as its target.
+  // A place on ground as high as that of the take-off: guidance has it as its target.
   void set_place(const GlobalPosition& place) { place_ = place; }
   // See Guidance.
   ObjectEnd ended() const { return guidance_->ended(); }
@@ -62,6 +62,8 @@ class GuidedFlight {
   bool is_position_by_pad() const { return is_position_by_pad_; }
   // The images come late by this time, which is known. See GuidanceInput::target_age_s.
   void set_video_delay(Duration delay) { video_delay_ = delay; }
+  // The height of the ground at a place, in the world; nothing: as under home.
+  void set_take_off_ground(std::optional<double> height_m) { take_off_ground_m_ = height_m; }
   // True when the autopilot's pose was known at the last set-point that was due.
   bool has_pose() const { return has_pose_; }
 
@@ -112,6 +114,7 @@ class GuidedFlight {
   std::unique_ptr<Guidance> guidance_;  // for this autopilot, once its parameters are known
   bool is_position_by_pad_ = false;
   Duration video_delay_{};
+  std::optional<double> take_off_ground_m_;
   bool has_pose_ = false;
   FollowOrder order_;  // the newest one
   TeamInFlight team_;

@@ -23,23 +23,24 @@ namespace {
 using std::chrono_literals::operator""ms;
 using testing::HasSubstr;
 
-// Stands still and notes how old the sight is.
+// Stands still and notes how old the sight is, and how high the target.
 class StandingGuidance : public Guidance {
  public:
-  StandingGuidance(const GuidanceOptions& options, double* age_s)
-      : Guidance(options, std::nullopt), age_s_(age_s) {}
+  StandingGuidance(const GuidanceOptions& options, double* age_s, double* target_z_m = nullptr)
+      : Guidance(options, std::nullopt), age_s_(age_s), target_z_m_(target_z_m) {}
 
  protected:
   void Begin(const GuidanceInput& /*input*/) override {}
   Wish Choose(const GuidanceInput& input) override {
     *age_s_ = input.target_age_s;
+    if (target_z_m_ && input.target) *target_z_m_ = input.target->motion.position().z();
     return {};
   }
   const char* WhyGiveUp(const GuidanceInput& /*input*/) override { return nullptr; }
   bool IsBehind(const GuidanceInput& /*input*/) const override { return false; }
 
  private:
-  double* age_s_;
+  double *age_s_, *target_z_m_;
 };
 
 // An autopilot that reports what it is set to, and a UAV that hovers at (3, 1, 8) m. Time is
@@ -218,6 +219,21 @@ TEST_F(GuidedFlightTest, KnownDelayOfVideoIsNoAgeOfSight) {
   guided_->set_video_delay(std::chrono::seconds(2));
   Pass(0.5);
   EXPECT_NEAR(age_s, 0.1, 0.06) << "no more than a track is predicted well";
+}
+
+TEST_F(GuidedFlightTest, PlaceIsOnTheGroundOfTheTakeOff) {
+  double age_s = 0, z_m = 0;
+  Start(mavlink::kAutopilotArduPilot, {}, [&](const GuidanceOptions& guidance) {
+    return std::make_unique<StandingGuidance>(guidance, &age_s, &z_m);
+  });
+  guided_->set_place({473977420, 85455940, 0});
+  Pass(2);
+  heartbeat_.custom_mode = kGuided;
+  Pass(1);
+  EXPECT_NEAR(z_m, -GuidanceOptions().leg_m, 1e-6) << "home is where the body stood, at z = 0";
+  guided_->set_take_off_ground(-1.2);
+  Pass(0.5);
+  EXPECT_NEAR(z_m, -1.2, 1e-6) << "where it was seen to stand";
 }
 
 TEST_F(GuidedFlightTest, SendsNothingDuringTakeOff) {

@@ -97,7 +97,7 @@ class FollowVision : public Vision {
     return pipeline_.options().Tracker();
   }
   bool has_world() const override { return has_world_; }
-  void SetTakeOffGround(double height_m) override { pipeline_.SetGroundZero(height_m); }
+  void SetGroundZero(double height_m) override { pipeline_.SetGroundZero(height_m); }
   void Change(const TaskOptions& options, std::optional<double> /*altitude_m*/) override {
     pipeline_.ChangeOptions(InFlight(options.follow, is_live_));
   }

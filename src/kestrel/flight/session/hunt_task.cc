@@ -94,7 +94,7 @@ class HuntVision : public Vision {
   void Leave(int number) override { pipeline_.Leave(number); }
   const ObjectMap* map() const override { return &pipeline_.map(); }
   bool has_world() const override { return has_world_ && !pipeline_.options().still; }
-  void SetTakeOffGround(double height_m) override { pipeline_.SetGroundZero(height_m); }
+  void SetGroundZero(double height_m) override { pipeline_.SetGroundZero(height_m); }
   void Change(const TaskOptions& options, std::optional<double> altitude_m) override;
   std::unique_ptr<ObservationSink> MakeTables(const OutputOptions& output) const override;
   ObservationPainter MakePainter() const override;

@@ -64,9 +64,9 @@ class Vision {
   // True when results have places in the world, which are kept from frame to frame.
   virtual bool has_world() const { return false; }
 
-  // Counts the heights of the ground in the options from this height in the world (0): in flight
-  // from where the UAV took off.
-  virtual void SetTakeOffGround(double /*height_m*/) {}
+  // Counts the height of the ground in the options from this height in the world (m), instead of
+  // from 0.
+  virtual void SetGroundZero(double /*height_m*/) {}
 
   // Continues with other options and another altitude. Track and map stay. Throws InputError and
   // changes nothing when the options are not valid.

@@ -191,7 +191,8 @@ mavlink::GpsGlobalOrigin GlobalOriginOf(const GlobalOrigin& origin, std::int64_t
           .time_usec = static_cast<std::uint64_t>(boot_us)};
 }
 
-// Home is where the body stands at the local frame's origin.
+// Home is the body's place when it stands at the origin. Height 0 of the simulated local frame is
+// the ground, of a real one the body.
 mavlink::HomePosition HomePositionOf(const GlobalOrigin& origin, double leg_m,
                                      std::int64_t boot_us) {
   const GeoPoint at = GeoPointAt({0, 0, leg_m}, origin);

@@ -17,10 +17,11 @@ namespace {
 
 constexpr Duration kPoseGap = std::chrono::milliseconds(500);
 
-// Errors of the place of a box, as shares of its size: from image to image, and those that stay.
+// Errors of the place of a box, as shares of its size: from image to image, and those that stay, as
+// the tracker leaves out legs, or keeps the form of what has turned.
 constexpr double kBoxNoise = 0.03, kBoxDrift = 0.1;
-constexpr double kHintNoise = 0.05;  // the same of the place where it is expected, at least
-// A thing is taken for as far as it would be seen from this height, this much below the horizon.
+constexpr double kHintNoise = 0.05;  // least error of the place where a box is expected
+// Least height of the camera and depression of the sight by which the distance is reckoned.
 constexpr double kLeastHeight_m = 0.5, kLeastDepression = 0.02;
 // Beyond it (and above the horizon) the errors of a place are not linear any more.
 constexpr double kMostOfDepression = 0.3;
@@ -35,20 +36,23 @@ double SizeOf(const cv::Rect2d& box) { return std::sqrt(box.width * box.height);
 
 // The place in the image of the foot of a thing, from the middle of its box.
 struct FootInImage {
-  Eigen::Vector2d from_middle_px;
-  double sigma_px;  // along that, by the shape of the thing, which is not known
+  Eigen::Vector2d from_middle_px = Eigen::Vector2d::Zero();
+  double sigma_px = 0;        // along that, by the shape of the thing, which is not known
+  double middle_above_m = 0;  // height of its middle above the foot
 };
 
 // 'down': the world's down in the image, of any length.
 FootInImage FootOf(const cv::Rect2d& box, const Eigen::Vector2d& down, double depression_rad,
                    double m_per_px) {
   constexpr double kLeastLength = 1e-6;
-  if (down.norm() < kLeastLength) return {Eigen::Vector2d::Zero(), 0};  // straight below
+  if (down.norm() < kLeastLength) return {};  // straight below
   const Eigen::Vector2d along = down.normalized(), across(-along.y(), along.x());
   const Eigen::Vector2d size_m = m_per_px * Eigen::Vector2d(box.width, box.height);
   const FootBelow foot = EstimateFoot(size_m.cwiseProduct(across).norm(),
                                       size_m.cwiseProduct(along).norm(), depression_rad);
-  return {foot.mean_m / m_per_px * along, foot.sigma_m / m_per_px};
+  constexpr double kLeastCosine = 0.3;
+  return {foot.mean_m / m_per_px * along, foot.sigma_m / m_per_px,
+          foot.mean_m / std::max(std::cos(depression_rad), kLeastCosine)};
 }
 
 }  // namespace
@@ -123,11 +127,12 @@ class FollowPipeline::Impl {
   struct FootSight {
     Eigen::Vector3d in_world;  // direction, of length 1
     double shape_rad;          // standard deviation by the shape of the thing, which is not known
+    double size_rad;           // of the thing
   };
   std::optional<FootSight> SightOfFoot(const RigidTransform& world_from_camera,
                                        const cv::Rect2d& box);
   double AnglePerPixel(const Eigen::Vector2d& pixel) const;
-  void Place(double size_rad, double shape_rad, FollowObservation* seen);
+  void Place(const FootSight& foot, FollowObservation* seen);
 
   FollowPipelineOptions options_;
   CameraModel camera_;
@@ -196,7 +201,7 @@ void FollowPipeline::Impl::Locate(FollowObservation* seen) {
     if (const auto foot = SightOfFoot(*seen->world_from_camera, region.box_px)) {
       seen->bearing = foot->in_world;
       size_px_ = SizeOf(region.box_px);
-      Place(AnglePerPixel(CenterOf(region.box_px)) * size_px_, foot->shape_rad, seen);
+      Place(*foot, seen);
     }
   }
   seen->track_state = tracker_.StateAt(seen->time);
@@ -221,13 +226,19 @@ std::optional<FollowPipeline::Impl::FootSight> FollowPipeline::Impl::SightOfFoot
   const double level = ray.cross(down).norm(), angle_per_px = AnglePerPixel(middle);
   const double depression = std::max(std::atan2(ray.dot(down), level), kLeastDepression);
   const double above_m = world_from_camera.translation.z() - ground_m();
-  const double range_m = std::max(above_m, kLeastHeight_m) / std::sin(depression);
-  const FootInImage foot = FootOf(box, by_point * down, depression, range_m * angle_per_px);
+  FootInImage foot;
+  constexpr int kRounds = 3;  // nearer than the ground behind its middle, it is smaller
+  for (int i = 0; i < kRounds; ++i) {
+    const double down_m = std::max(above_m - foot.middle_above_m, kLeastHeight_m);
+    const double m_per_px = down_m / std::sin(depression) * angle_per_px;
+    foot = FootOf(box, by_point * down, depression, m_per_px);
+  }
   foot_px_ = foot.from_middle_px;
   if (camera_.Unproject(center + foot_px_, &ray) == ProjectionStatus::kOutsideModel) {
     return std::nullopt;
   }
-  return FootSight{world_from_camera.rotation * ray, foot.sigma_px * angle_per_px};
+  return FootSight{world_from_camera.rotation * ray, foot.sigma_px * angle_per_px,
+                   SizeOf(box) * angle_per_px};
 }
 
 double FollowPipeline::Impl::AnglePerPixel(const Eigen::Vector2d& pixel) const {
@@ -240,16 +251,16 @@ double FollowPipeline::Impl::AnglePerPixel(const Eigen::Vector2d& pixel) const {
   return ray.cross(beside).norm();
 }
 
-void FollowPipeline::Impl::Place(double size_rad, double shape_rad, FollowObservation* seen) {
+void FollowPipeline::Impl::Place(const FootSight& foot, FollowObservation* seen) {
   const RigidTransform& world_from_camera = *seen->world_from_camera;
   const auto ground = LocateByAltitude(world_from_camera.rotation.conjugate() * *seen->bearing,
                                        world_from_camera, ground_m());
   if (!ground) return;
   const Eigen::Vector3d sight = *ground - world_from_camera.translation;
   const MeasurementNoise noise = WithPose({}, pose_uncertainty_);
-  const double stays_rad = std::hypot(kBoxDrift * size_rad, shape_rad);
+  const double stays_rad = std::hypot(kBoxDrift * foot.size_rad, foot.shape_rad);
   constexpr double kUnevenness_m = 0.05;
-  const SightErrors own{std::hypot(Radians(noise.attitude_sigma_deg), kBoxNoise * size_rad),
+  const SightErrors own{std::hypot(Radians(noise.attitude_sigma_deg), kBoxNoise * foot.size_rad),
                         noise.pose_sigma_m, kUnevenness_m};
   const SightErrors shared{std::hypot(Radians(noise.attitude_bias_deg), stays_rad),
                            noise.pose_bias_m, options_.ground_sigma_m};

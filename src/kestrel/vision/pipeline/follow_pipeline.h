@@ -26,9 +26,10 @@ struct FollowPipelineOptions {
   double pose_extrapolation_s = 0;  // longest prediction of the pose; a flight sets it
 
   static void Visit(auto& self, auto&& visit) {
-    visit("ground_height_m", self.ground_height_m, Between(-1e5, 1e5),
-          "height of the ground under what is followed: in the world; in flight above the ground "
-          "of the take-off");
+    visit(
+        "ground_height_m", self.ground_height_m, Between(-1e5, 1e5),
+        "height of the ground under what is followed: in the world; by an autopilot's poses above "
+        "that of the take-off");
     visit("ground_sigma_m", self.ground_sigma_m, Range{0, 100, true, false},
           "error of that height, standard deviation");
     visit.Gone({"max_speed_mps"});

@@ -46,7 +46,7 @@ struct HuntPipelineOptions {
     visit.Group("map", self.map);
     visit("still", self.still, "independent frames: no state is carried from one to the next");
     visit("ground_height_m", self.ground_height_m,
-          "height of the ground: in the world; in flight above the ground of the take-off");
+          "height of the ground: in the world; by an autopilot's poses above that of the take-off");
     visit("is_ground_flat", self.is_ground_flat,
           "objects that are not on the ground are discarded, where there are poses");
     visit("ground_sigma_m", self.ground_sigma_m, AtLeast(0), "unevenness of the ground");

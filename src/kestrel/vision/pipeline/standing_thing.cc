@@ -13,7 +13,7 @@ namespace {
 struct Box {
   double length_m, width_m, height_m;
 };
-// As high as their ends are, on average: a car is higher in the middle only.
+// The height is that of the ends: the roof of a car does not change where its image begins.
 constexpr std::array<Box, 7> kThings = {{{0.3, 0.5, 1.75},   // person
                                          {1.7, 0.6, 1.7},    // rider
                                          {4.5, 1.8, 1.1},    // car
@@ -21,7 +21,7 @@ constexpr std::array<Box, 7> kThings = {{{0.3, 0.5, 1.75},   // person
                                          {5.5, 2.0, 0.9},    // boat
                                          {1.0, 1.0, 1.0},    // anything else,
                                          {0.4, 0.4, 0.4}}};  // and small
-constexpr int kSides = 8;  // in a quarter turn
+constexpr int kSides = 8;                                    // in a quarter turn
 // Standard deviation of the sizes of one kind, and of the box around it in the image, of the
 // logarithm.
 constexpr double kSpread = 0.25;

@@ -19,16 +19,16 @@ struct Thing {
 };
 
 class StandingThing : public testing::TestWithParam<std::tuple<Thing, double>> {};
-INSTANTIATE_TEST_SUITE_P(
-    Kinds, StandingThing,
-    testing::Combine(testing::Values(Thing{"child", 0.25, 0.4, 1.2, 0.25},
-                                     Thing{"tall person", 0.35, 0.6, 1.95, 0.25},
-                                     Thing{"small car", 3.6, 1.6, 1.2, 0.5},
-                                     Thing{"long car", 5, 1.95, 1.1, 0.5},
-                                     Thing{"motor boat", 6.4, 2.3, 1, 0.7},
-                                     Thing{"bus", 12, 2.5, 3.2, 1.6},
-                                     Thing{"crate", 0.5, 0.5, 0.5, 0.25}),
-                     testing::Values(20, 34, 50, 70)));
+INSTANTIATE_TEST_SUITE_P(Kinds, StandingThing,
+                         testing::Combine(testing::Values(Thing{"child", 0.25, 0.4, 1.2, 0.25},
+                                                          Thing{"tall person", 0.35, 0.6, 1.95,
+                                                                0.25},
+                                                          Thing{"small car", 3.6, 1.6, 1.2, 0.5},
+                                                          Thing{"long car", 5, 1.95, 1.1, 0.5},
+                                                          Thing{"motor boat", 6.4, 2.3, 1, 0.7},
+                                                          Thing{"bus", 12, 2.5, 3.2, 1.6},
+                                                          Thing{"crate", 0.5, 0.5, 0.5, 0.25}),
+                                          testing::Values(20, 34, 50, 70)));
 
 TEST_P(StandingThing, IsPlacedFromAllSides) {
   const auto& [thing, depression_deg] = GetParam();
