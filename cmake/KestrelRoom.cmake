@@ -19,7 +19,8 @@ function(kestrel_room name)
     set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     set(scope PUBLIC)
     target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
-    target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Werror)
+    # Clang's -Wshadow also refuses a local name that is a constant of another file of the unit.
+    target_compile_options(${target} PRIVATE -Wall -Wextra $<$<CXX_COMPILER_ID:GNU>:-Wshadow> -Werror)
     # Eigen's blocked product is for larger matrices than a state's, and takes seconds to compile.
     target_compile_definitions(${target} PRIVATE EIGEN_CACHEFRIENDLY_PRODUCT_THRESHOLD=16)
   else()

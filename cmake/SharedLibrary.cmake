@@ -28,7 +28,7 @@ endif()
 function(kestrel_loaded_library room folder)
   set(target kestrel_${room}_${folder})
   add_library(${target} SHARED ${ARGN})
-  target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Werror)
+  target_compile_options(${target} PRIVATE -Wall -Wextra $<$<CXX_COMPILER_ID:GNU>:-Wshadow> -Werror)
   target_include_directories(
     ${target} PRIVATE ${PROJECT_SOURCE_DIR}/src ${OpenCV_INCLUDE_DIRS}
                       $<TARGET_PROPERTY:Eigen3::Eigen,INTERFACE_INCLUDE_DIRECTORIES>)
