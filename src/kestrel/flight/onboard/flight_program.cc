@@ -469,13 +469,13 @@ void FlightProgram::WatchFlight(Time now) {
 // that under home, once. Poses of the source are in a world of their own.
 void FlightProgram::WatchGround(const LandingWatchInput& input) {
   if (std::exchange(reboots_, input.reboots) != input.reboots) take_off_ground_m_.reset();
-  const bool has_poses = !parts_.source_has_poses;
-  if (has_poses && input.state == LandedState::kOnGround && input.body) {
+  const bool is_in_its_world = !parts_.source_has_poses;
+  if (is_in_its_world && input.state == LandedState::kOnGround && input.body) {
     take_off_ground_m_ = input.body->feet.z();
   } else if (!take_off_ground_m_) {
     take_off_ground_m_ = GroundUnderHome(*parts_.autopilot, options_.guidance.leg_m);
   }
-  if (has_poses) ground_zero_m_ = take_off_ground_m_.value_or(0);
+  if (is_in_its_world) ground_zero_m_ = take_off_ground_m_.value_or(0);
 }
 
 // Until the first heartbeat. That one which was there is gone is reported by its events.

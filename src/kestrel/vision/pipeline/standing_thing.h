@@ -3,8 +3,8 @@
 
 namespace kestrel {
 
-// How far something on the ground reaches below the middle of its image, to the middle of what it
-// stands on, across the line of sight.
+// Distance from the middle of the image of a thing down to its foot, the middle of what it stands
+// on; across the line of sight.
 struct FootBelow {
   double mean_m = 0;
   double sigma_m = 0;

@@ -98,9 +98,9 @@ struct RegionTracker::Impl {
       sharpness = kShare * peak.sharpness;
     }
     void Add(const FilterPeak& peak) {
-      constexpr double kShareOfOne = 0.05;
-      value += kShareOfOne * (peak.value - value);
-      sharpness += kShareOfOne * (peak.sharpness - sharpness);
+      constexpr double kNewShare = 0.05;
+      value += kNewShare * (peak.value - value);
+      sharpness += kNewShare * (peak.sharpness - sharpness);
     }
 
     double value = 0, sharpness = 0;
