@@ -247,10 +247,10 @@ Guidance::Wish GoGuidance::Choose(const GuidanceInput& input) {
   return wish;
 }
 
-// Near the ground, and where the gripper opens, there is no way to the sides. At work the others
-// keep away, except those that go first.
+// At work near the ground, and where the gripper opens, there is no way to the sides.
 void GoGuidance::KeepAway(const GuidanceInput& input, const Situation& now, SetPoint* command) {
-  const bool is_near_ground = input.target && now.height_m < options().sight_height_m;
+  const bool is_near_ground =
+      is_at_work() && input.target && now.height_m < options().sight_height_m;
   if (is_near_ground || phase() == GuidancePhase::kAct) return;
   const Vector2d fed = flight_model().fed_velocity();
   const Vector2d own = command->velocity.head<2>() - fed;

@@ -305,6 +305,17 @@ TEST(GoGuidanceTest, GivesWayNearTheGround) {
   EXPECT_TRUE(flight.FlyUntilDone()) << flight.output.reason;
 }
 
+TEST(GoGuidanceTest, OnItsWayGivesWayAtEachHeight) {
+  GoFlight flight("pick");
+  ASSERT_TRUE(flight.FlyUntilPhase(Phase::kApproach));
+  flight.uav = TestUav({}, flight.object.Position(0) + Eigen::Vector3d(0, -5, 1.5));
+  flight.others = {
+      {.position = flight.uav.position().head<2>() + Eigen::Vector2d(0, 4), .goes_first = true}};
+  flight.Step([](GuidanceInput&) {});
+  EXPECT_EQ(flight.output.phase, Phase::kApproach);
+  EXPECT_LT(flight.output.set_point->velocity.y(), 0);
+}
+
 TEST(GoGuidanceTest, ClimbsBeforeItGivesWayOnTheGround) {
   GoFlight flight("pick");
   ASSERT_TRUE(flight.FlyUntil([&] { return flight.FromObject().z() < 0.3; }));

@@ -17,8 +17,18 @@ constexpr double kReaction_s = 1;
 constexpr int kRounds = 3;
 // Further away from the distance nobody is gone around yet.
 constexpr double kAround_m = 6;
+// From a UAV at work to those that give way to it.
+constexpr double kAtWork_m = 4;
 
-double DistanceTo(const OtherUav& other) { return other.goes_first ? kGiveWay_m : kApart_m; }
+// At work it comes no nearer to those that give way to it, but does not move off from them either.
+bool StaysAtWork(const OwnMotion& own, const OtherUav& other) {
+  return own.is_at_work && !other.goes_first;
+}
+
+double DistanceTo(const OwnMotion& own, const OtherUav& other) {
+  if (other.goes_first) return kGiveWay_m;
+  return own.is_at_work ? kAtWork_m : kApart_m;
+}
 
 // Largest speed at which two may come to each other that are so far from the distance; less than 0
 // within it.
@@ -35,8 +45,9 @@ struct Nearing {
     const Vector2d way = other.position - own.position;
     const double distance_m = std::max(way.norm(), 1e-3);
     to = way / distance_m;
-    free_m = distance_m - DistanceTo(other);
-    const double most_mps = SafeSpeed(free_m) + std::min(other.velocity.dot(to), 0.0);
+    free_m = distance_m - DistanceTo(own, other);
+    double most_mps = SafeSpeed(free_m) + std::min(other.velocity.dot(to), 0.0);
+    if (StaysAtWork(own, other)) most_mps = std::max(most_mps, 0.0);
     // A UAV lags behind its commands: what it flies too fast now is commanded the other way.
     const double lag_mps = std::max(own.velocity.dot(to) - most_mps, 0.0);
     excess_mps = std::max(commanded.dot(to) + lag_mps - most_mps, 0.0);
@@ -47,10 +58,6 @@ struct Nearing {
   double excess_mps;  // speed beyond the largest that is safe
 };
 
-bool KeepsFrom(const OtherUav& other, const OwnMotion& own) {
-  return other.goes_first || !own.is_at_work;
-}
-
 }  // namespace
 
 void KeepApart(const OwnMotion& own, const Vector2d& destination, std::span<const OtherUav> others,
@@ -58,11 +65,10 @@ void KeepApart(const OwnMotion& own, const Vector2d& destination, std::span<cons
   const double wanted_mps = command->velocity.head<2>().norm();
   Vector2d velocity = command->velocity.head<2>();
   for (const OtherUav& other : others) {
-    if (!KeepsFrom(other, own)) continue;
     const Nearing nearing(own, velocity, other);
     velocity -= nearing.excess_mps * nearing.to;
-    const bool is_at_destination = (destination - other.position).norm() < DistanceTo(other);
-    if (is_at_destination || nearing.free_m > kAround_m) continue;
+    const bool is_at_destination = (destination - other.position).norm() < DistanceTo(own, other);
+    if (StaysAtWork(own, other) || is_at_destination || nearing.free_m > kAround_m) continue;
     // To the right, as all do, so that two that meet do not go to the same side.
     velocity +=
         std::min(nearing.excess_mps, wanted_mps) * Vector2d(nearing.to.y(), -nearing.to.x());
@@ -70,7 +76,6 @@ void KeepApart(const OwnMotion& own, const Vector2d& destination, std::span<cons
   // The way around one, or away from it, may lead to another one.
   for (int round = 0; round < kRounds; ++round) {
     for (const OtherUav& other : others) {
-      if (!KeepsFrom(other, own)) continue;
       const Nearing nearing(own, velocity, other);
       velocity -= nearing.excess_mps * nearing.to;
     }

@@ -19,7 +19,7 @@ inline constexpr double kGiveWay_m = 6.5;
 struct OwnMotion {
   Eigen::Vector2d position;  // m, world
   Eigen::Vector2d velocity;  // m/s, as it flies
-  bool is_at_work = false;   // keeps only from those that go first
+  bool is_at_work = false;   // does not move off from those that give way to it
 };
 
 // Limits the horizontal velocity of a set-point for a UAV on its way to 'destination' (m, world):

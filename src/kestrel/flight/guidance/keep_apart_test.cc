@@ -71,14 +71,30 @@ TEST(KeepApartTest, DoesNotMoveOffFromOneToAnother) {
   EXPECT_GT(FlyTo({-12, 12}, {beside, in_its_way}, &position, 5), 5);
 }
 
-TEST(KeepApartTest, AtWorkKeepsOnlyFromThoseThatGoFirst) {
+// Speed at which a UAV in the origin, on its way at 3 m/s, is sent to another one before it.
+double SpeedTowards(const OtherUav& other, bool is_at_work) {
   SetPoint command;
   command.velocity = {3, 0, 0};
-  const std::vector<OtherUav> others = {{.position = {6, 0}}};
-  KeepApart({{0, 0}, {3, 0}, true}, {3, 0}, others, &command);
-  EXPECT_EQ(command.velocity, Eigen::Vector3d(3, 0, 0));
-  KeepApart({{0, 0}, {3, 0}}, {3, 0}, others, &command);
-  EXPECT_LT(command.velocity.x(), 1);
+  const std::vector<OtherUav> others = {other};
+  KeepApart({{0, 0}, {0, 0}, is_at_work}, {20, 0}, others, &command);
+  return command.velocity.x();
+}
+
+TEST(KeepApartTest, AtWorkComesNoNearerToUavThatGivesWay) {
+  EXPECT_EQ(SpeedTowards({.position = {15, 0}}, true), 3);
+  EXPECT_LT(SpeedTowards({.position = {6, 0}}, true), 1.5);
+  EXPECT_EQ(SpeedTowards({.position = {4, 0}}, true), 0);
+  EXPECT_LT(SpeedTowards({.position = {8, 0}}, false), SpeedTowards({.position = {8, 0}}, true));
+}
+
+TEST(KeepApartTest, AtWorkDoesNotMoveOffFromUavThatGivesWay) {
+  const OtherUav coming{.position = {3, 0}, .velocity = {-1, 0}};
+  EXPECT_EQ(SpeedTowards(coming, true), 0);
+  EXPECT_LT(SpeedTowards(coming, false), -1);
+}
+
+TEST(KeepApartTest, AtWorkMovesOffFromUavThatGoesFirst) {
+  EXPECT_LT(SpeedTowards({.position = {3, 0}, .goes_first = true}, true), -1);
 }
 
 TEST(KeepApartTest, LeavesCommandAloneFarFromOthers) {
