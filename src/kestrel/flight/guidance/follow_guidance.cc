@@ -68,8 +68,7 @@ FollowGuidance::FollowGuidance(const GuidanceOptions& options,
 }
 
 void FollowGuidance::Begin(const GuidanceInput& input) {
-  order_ = input.order.number;
-  mark_ = 0;
+  confirmation_.Begin(input.order);
   yaw_ = HeadingOf(input.uav->world_from_body.rotation);
   Stop("waits for a mark, and for its confirmation");
 }
@@ -93,10 +92,10 @@ Guidance::Wish FollowGuidance::Choose(const GuidanceInput& input) {
 void FollowGuidance::ChoosePhase(const GuidanceInput& input) {
   const char* trouble = WhyNotFollow(input);
   TakeOrder(input, trouble);
-  if (mark_ == 0) return;
+  if (confirmation_.mark() == 0) return;
   Remember(trouble != nullptr, input.now, &lost_);
   if (IsLongerThan(kResume_s, lost_, input.now)) {
-    mark_ = 0;
+    confirmation_.Withdraw();
     return Stop("was lost for too long: needs a new confirmation");
   }
   if (trouble != nullptr) {
@@ -104,7 +103,7 @@ void FollowGuidance::ChoosePhase(const GuidanceInput& input) {
     return;
   }
   if (HasJumped(input)) {
-    mark_ = 0;
+    confirmation_.Withdraw();
     return Stop("was seen again where it cannot be: needs a new confirmation");
   }
   followed_ = {*input.target, SeenAt(input)};
@@ -147,27 +146,14 @@ bool FollowGuidance::HasJumped(const GuidanceInput& input) const {
   return jump.head<2>().norm() > kSigmas * std::hypot(sigma_m, gone_m);
 }
 
-// An order that comes while the target cannot be followed is void, and so is one for another mark.
 void FollowGuidance::TakeOrder(const GuidanceInput& input, const char* trouble) {
-  if (input.order.number != order_) {
-    order_ = input.order.number;
-    mark_ = 0;
+  const char* refusal = "refused: what is marked is not seen, or its place is too uncertain";
+  const char* reason = confirmation_.Update(input.order, input.mark, trouble ? refusal : nullptr);
+  if (confirmation_.is_new()) {
     lost_.reset();
     followed_.reset();
-    if (input.order.mark == 0) {
-      Stop("was stopped: needs a new confirmation");
-    } else if (input.order.mark != input.mark) {
-      Stop("refused: something else is marked now");
-    } else if (trouble != nullptr) {
-      Stop("refused: what is marked is not seen, or its place is too uncertain");
-    } else {
-      mark_ = input.mark;
-    }
   }
-  if (mark_ != 0 && mark_ != input.mark) {
-    mark_ = 0;
-    Stop("something else is marked: needs a confirmation");
-  }
+  if (reason != nullptr) Stop(reason);
 }
 
 void FollowGuidance::Stop(const char* reason) {

@@ -7,6 +7,7 @@
 
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/poses/set_point.h"
+#include "kestrel/flight/guidance/confirmation.h"
 #include "kestrel/flight/guidance/guidance.h"  // IWYU pragma: export
 #include "kestrel/flight/guidance/guidance_options.h"
 #include "kestrel/flight/guidance/stand_off.h"
@@ -50,8 +51,7 @@ class FollowGuidance : public Guidance {
 
   std::optional<ViewLimits> view_;
   StandOff stand_off_;
-  int order_ = 0;                        // number of the newest order that was looked at
-  int mark_ = 0;                         // the mark that the UAV may fly to; 0: none
+  Confirmation confirmation_;
   std::optional<Time> lost_;             // since when that is lost
   std::optional<Followed> followed_;     // the newest place of it
   std::optional<Eigen::Vector3d> stay_;  // where it stands still; nothing: it still brakes

@@ -124,7 +124,7 @@ GoGuidance::GoGuidance(const GuidanceOptions& options, const GoJob& job)
 void GoGuidance::Begin(const GuidanceInput& input) {
   yaw_ = HeadingOf(input.uav->world_from_body.rotation);
   home_ = input.uav->world_from_body.translation.head<2>();
-  order_ = input.order.number;
+  confirmation_.Begin(input.order);
   Reset();
   StartSearch();
   if (job_.target == GoTarget::kMarked) Await("waits for a mark, and for its confirmation");
@@ -142,28 +142,24 @@ void GoGuidance::Reset() {
   gripped_.reset();
 }
 
-// An order counts for what is marked now. Another one begins anew.
+// Another order begins anew.
 void GoGuidance::TakeOrder(const GuidanceInput& input) {
-  if (input.order.number != order_) {
-    order_ = input.order.number;
-    if (input.order.mark == 0) return Await("was stopped: needs a new confirmation");
-    if (input.order.mark != input.mark) {
-      return Await("refused: something else is marked now");
-    }
-    if (!IsSeen(input)) return Await("refused: what is marked is not seen");
-    Reset();
-    is_confirmed_ = true;
-    return StartSearch();
-  }
-  if (is_confirmed_ && mark_ != 0 && mark_ != input.mark) {
-    Await("something else is marked: needs a confirmation");
-  }
+  const char* refusal = IsSeen(input) ? nullptr : "refused: what is marked is not seen";
+  const char* reason = confirmation_.Update(input.order, input.mark, refusal);
+  if (reason != nullptr) return Await(reason);
+  if (!confirmation_.is_new()) return;
+  Reset();
+  StartSearch();
 }
 
 void GoGuidance::Await(const char* reason) {
-  is_confirmed_ = false;
+  confirmation_.Withdraw();
   waits_at_.reset();
   Enter(GuidancePhase::kLook, reason);
+}
+
+bool GoGuidance::AwaitsPerson() const {
+  return job_.target == GoTarget::kMarked && confirmation_.mark() == 0;
 }
 
 void GoGuidance::ResumeAfterLink() {
@@ -203,12 +199,12 @@ bool GoGuidance::IsInFence(const Vector2d& place) const {
 
 Guidance::Wish GoGuidance::Choose(const GuidanceInput& input) {
   // A gripper may rest on the object: the climb takes the UAV off again.
-  if (input.is_landed && is_confirmed_ && !IsLow() && phase() != GuidancePhase::kGoAround) {
+  if (input.is_landed && !AwaitsPerson() && !IsLow() && phase() != GuidancePhase::kGoAround) {
     End("the UAV is on the ground");
     return {};
   }
   if (job_.target == GoTarget::kMarked) TakeOrder(input);
-  if (!is_confirmed_) {
+  if (AwaitsPerson()) {
     Wish wish;
     wish.set_point = Wait(Look(input));
     wish.set_point.yaw = yaw_;

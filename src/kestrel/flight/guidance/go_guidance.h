@@ -7,6 +7,7 @@
 
 #include "kestrel/core/base/time.h"
 #include "kestrel/core/poses/set_point.h"
+#include "kestrel/flight/guidance/confirmation.h"
 #include "kestrel/flight/guidance/descent_guidance.h"  // IWYU pragma: export
 #include "kestrel/flight/guidance/go_delivery.h"
 #include "kestrel/flight/guidance/go_job.h"
@@ -52,6 +53,7 @@ class GoGuidance : public DescentGuidance {
   // A person's orders.
   void TakeOrder(const GuidanceInput& input);
   void Await(const char* reason);
+  bool AwaitsPerson() const;
 
   // Choice of the phase.
   void ChoosePhase(const GuidanceInput& input, const Situation& now);
@@ -98,10 +100,9 @@ class GoGuidance : public DescentGuidance {
   ObjectEnd ended_;
   bool carries_ = false;  // an object, to the box
   bool is_near_box_ = false;
-  bool skips_ = false;                       // leaves the object, once it has climbed
-  double yaw_ = 0;                           // of the nose, rad
-  int order_ = 0;                            // number of the newest one
-  bool is_confirmed_ = true;                 // no person is waited for
+  bool skips_ = false;  // leaves the object, once it has climbed
+  double yaw_ = 0;      // of the nose, rad
+  Confirmation confirmation_;
   std::optional<Eigen::Vector3d> waits_at_;  // for a person, once it stands still; of the feet
   int mark_ = 0;                             // number of the object; 0: none yet
   double object_z_m_ = 0;                    // its height in the world
