@@ -16,7 +16,7 @@ class Confirmation {
   const char* Update(const FollowOrder& order, int mark, const char* refusal);
   void Withdraw() { mark_ = 0; }
 
-  int mark() const { return mark_; }      // 0: none is confirmed
+  int mark() const { return mark_; }       // 0: none is confirmed
   bool is_new() const { return is_new_; }  // the last update has taken an order
 
  private:

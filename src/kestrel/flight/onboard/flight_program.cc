@@ -398,7 +398,7 @@ void FlightProgram::Fly(Time now, const TrackSnapshot& track) {
   if (GuidedFlight* const guided = set_point_flight_->by_position()) {
     guided->Take(order_);
     guided->set_video_delay(VideoDelay());
-    guided->set_take_off_ground(take_off_ground_m_);
+    guided->set_take_off_ground(ground_.height_m());
     const std::lock_guard lock(team_mutex_);
     if (auto team = std::exchange(team_, std::nullopt)) guided->Take(*std::move(team));
     to_objects_ = kestrel::ToObjects(*guided, poses_, now, to_objects_);
@@ -465,17 +465,14 @@ void FlightProgram::WatchFlight(Time now) {
        fmt::format("no heartbeat of the autopilot for {:g} s", options_.autopilot_timeout_s)});
 }
 
-// The ground is under the feet as long as they stand on it. A program that starts in flight takes
-// that under home, once. Poses of the source are in a world of their own.
+// Poses of the source are in a world of their own.
 void FlightProgram::WatchGround(const LandingWatchInput& input) {
-  if (std::exchange(reboots_, input.reboots) != input.reboots) take_off_ground_m_.reset();
   const bool is_in_its_world = !parts_.source_has_poses;
-  if (is_in_its_world && input.state == LandedState::kOnGround && input.body) {
-    take_off_ground_m_ = input.body->feet.z();
-  } else if (!take_off_ground_m_) {
-    take_off_ground_m_ = GroundUnderHome(*parts_.autopilot, options_.guidance.leg_m);
-  }
-  if (is_in_its_world) ground_zero_m_ = take_off_ground_m_.value_or(0);
+  std::optional<double> feet_z_m;
+  if (is_in_its_world && input.body) feet_z_m = input.body->feet.z();
+  ground_.Update(input.state, input.reboots, feet_z_m,
+                 GroundUnderHome(*parts_.autopilot, options_.guidance.leg_m));
+  if (is_in_its_world) ground_zero_m_ = ground_.height_m().value_or(0);
 }
 
 // Until the first heartbeat. That one which was there is gone is reported by its events.

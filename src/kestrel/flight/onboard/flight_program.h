@@ -29,6 +29,7 @@
 #include "kestrel/flight/onboard/recording_switch.h"
 #include "kestrel/flight/onboard/set_point_flight.h"
 #include "kestrel/flight/onboard/sign_of_life.h"
+#include "kestrel/flight/onboard/take_off_ground.h"
 #include "kestrel/flight/onboard/target_sender.h"
 #include "kestrel/flight/onboard/tracking_camera.h"
 #include "kestrel/flight/session/flight_report.h"
@@ -190,9 +191,8 @@ class FlightProgram {
   TurnNoise noise_;                            // how the predicted track may turn
   std::optional<GuardWatch> guard_;
   LandingWatch landing_;
-  std::optional<double> take_off_ground_m_;  // its height in the autopilot's world
-  int reboots_ = 0;                          // of the autopilot, when that was found
-  Time landing_due_{};                       // when the landing is looked at next
+  TakeOffGround ground_;
+  Time landing_due_{};   // when the landing is looked at next
   std::string gave_up_;  // why guidance gave up last; empty: it flies, or has not
   Time heard_;           // the newest time at which the autopilot was heard
   bool was_heard_ = false;

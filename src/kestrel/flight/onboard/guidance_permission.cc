@@ -109,14 +109,15 @@ GuidanceOptions OptionsFor(const Autopilot& autopilot, GuidanceOptions options,
   return options;
 }
 
-std::optional<Eigen::Vector2d> HomeOf(const Autopilot& autopilot) {
+std::optional<Eigen::Vector3d> HomeOf(const Autopilot& autopilot) {
   if (!autopilot.home() || !autopilot.origin()) return std::nullopt;
-  return LocalFromGlobal(autopilot.kind(), *autopilot.origin(), *autopilot.home()).head<2>();
+  return LocalFromGlobal(autopilot.kind(), *autopilot.origin(), *autopilot.home());
 }
 
 std::optional<double> GroundUnderHome(const Autopilot& autopilot, double leg_m) {
-  if (!autopilot.home() || !autopilot.origin()) return std::nullopt;
-  return LocalFromGlobal(autopilot.kind(), *autopilot.origin(), *autopilot.home()).z() - leg_m;
+  const auto home = HomeOf(autopilot);
+  if (!home) return std::nullopt;
+  return home->z() - leg_m;
 }
 
 std::string WhyNotFly(const Autopilot& autopilot, bool has_position) {
@@ -146,8 +147,7 @@ std::string WhyNotGuide(const Autopilot& autopilot, const GuidanceOptions& optio
   }
   auto home = HomeOf(autopilot);
   // PX4 has none without a global position.
-  if (!home && is_position_by_pad && autopilot.kind() == AutopilotKind::kPx4)
-    home = position.head<2>();
+  if (!home && is_position_by_pad && autopilot.kind() == AutopilotKind::kPx4) home = position;
   if (!home) return "the autopilot has no home position";
   if (!autopilot.parameters().is_done()) return "the autopilot's limits are not read yet";
   if (const std::vector<std::string> beyond = ViolationsOf(LimitsOf(autopilot), limits);
@@ -159,7 +159,7 @@ std::string WhyNotGuide(const Autopilot& autopilot, const GuidanceOptions& optio
     return unsafe +
            " (`kestrel doctor --fix` sets it; --set fly.guidance.accept_unsafe_loss=true flies so)";
   }
-  return FlightLimits(limits, *home).WhyNot(position);
+  return FlightLimits(limits, home->head<2>()).WhyNot(position);
 }
 
 std::string UnsafeLoss(const Autopilot& autopilot, bool is_position_by_pad) {

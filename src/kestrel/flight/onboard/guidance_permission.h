@@ -25,7 +25,7 @@ GuidanceOptions OptionsFor(const Autopilot& autopilot, GuidanceOptions options,
                            bool is_in_its_frame);
 
 // The autopilot's home position in the world, if it has reported one.
-std::optional<Eigen::Vector2d> HomeOf(const Autopilot& autopilot);
+std::optional<Eigen::Vector3d> HomeOf(const Autopilot& autopilot);
 
 // The height in the world of the ground under home, where a body stands whose origin is 'leg_m'
 // above its feet; nothing while the autopilot has not reported a home position.

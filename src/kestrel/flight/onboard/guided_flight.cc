@@ -133,7 +133,7 @@ void GuidedFlight::WatchMode(const GuidanceInput& input, Time now) {
   CheckPermission(input, now);
   is_begun_ = may_begin_;
   is_given_ = false;
-  if (const auto home = HomeOf(autopilot_)) guidance_->SetFenceCenter(*home);
+  if (const auto home = HomeOf(autopilot_)) guidance_->SetFenceCenter(home->head<2>());
   if (!is_begun_) Notify(mavlink::kSeverityWarning, "guidance refused: " + refusal_);
 }
 
