@@ -11,8 +11,9 @@ class Confirmation {
   // Nothing is confirmed; orders so far do not count.
   void Begin(const FollowOrder& order);
   // Takes a new order. One for another mark is void, and so is one that comes while the UAV cannot
-  // fly to the mark: 'refusal' says why, nullptr where it can. Returns why the UAV stops and waits
-  // for a person from now on, else nullptr. 'mark': the present one.
+  // fly to the mark: 'refusal' says why, nullptr where it can. Another mark ends a confirmation.
+  // Returns why the UAV stops and waits for a person from now on, else nullptr. 'mark': the present
+  // one.
   const char* Update(const FollowOrder& order, int mark, const char* refusal);
   void Withdraw() { mark_ = 0; }
 

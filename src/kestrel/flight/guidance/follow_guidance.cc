@@ -30,10 +30,6 @@ Vector2d WayTo(const TargetEstimate& target, const UavState& uav) {
   return Vector2d(target.motion.position().head<2>()) - uav.world_from_body.translation.head<2>();
 }
 
-Time SeenAt(const GuidanceInput& input) {
-  return input.now - DurationFromSeconds(input.target_age_s);
-}
-
 // Returns the options with a braking for which a fixed camera, at its place beside the target, does
 // not lose it.
 GuidanceOptions WithinView(GuidanceOptions options, const std::optional<ViewLimits>& view) {
@@ -102,11 +98,10 @@ void FollowGuidance::ChoosePhase(const GuidanceInput& input) {
     if (IsFollowing()) Stop(trouble);
     return;
   }
-  if (HasJumped(input)) {
+  if (jump_.Update(input)) {
     confirmation_.Withdraw();
     return Stop("was seen again where it cannot be: needs a new confirmation");
   }
-  followed_ = {*input.target, SeenAt(input)};
   if (!IsFollowing()) {
     stand_off_.Start(input.target->motion.position().head<2>(),
                      input.uav->world_from_body.translation.head<2>());
@@ -133,25 +128,13 @@ const char* FollowGuidance::WhyNotFollow(const GuidanceInput& input) {
   return nullptr;
 }
 
-// True when the target is farther from where it was than it can have gone since it was seen there:
-// what is followed now is something else. The tracker looks as far, by the same speed.
-bool FollowGuidance::HasJumped(const GuidanceInput& input) const {
-  if (!followed_) return false;
-  constexpr double kSigmas = 2, kWalk_mps = 1;
-  const TurnState& before = followed_->target.motion;
-  const double speed = std::max(kWalk_mps, before.velocity().head<2>().norm());
-  const double gone_m = speed * ToSeconds(SeenAt(input) - followed_->seen);
-  const double sigma_m = std::sqrt(before.covariance.topLeftCorner<2, 2>().trace());
-  const Vector3d jump = input.target->motion.position() - before.position();
-  return jump.head<2>().norm() > kSigmas * std::hypot(sigma_m, gone_m);
-}
-
 void FollowGuidance::TakeOrder(const GuidanceInput& input, const char* trouble) {
   const char* refusal = "refused: what is marked is not seen, or its place is too uncertain";
-  const char* reason = confirmation_.Update(input.order, input.mark, trouble ? refusal : nullptr);
+  const char* reason =
+      confirmation_.Update(input.order, input.mark, trouble != nullptr ? refusal : nullptr);
   if (confirmation_.is_new()) {
     lost_.reset();
-    followed_.reset();
+    jump_.Reset();
   }
   if (reason != nullptr) Stop(reason);
 }

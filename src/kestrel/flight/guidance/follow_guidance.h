@@ -11,6 +11,7 @@
 #include "kestrel/flight/guidance/guidance.h"  // IWYU pragma: export
 #include "kestrel/flight/guidance/guidance_options.h"
 #include "kestrel/flight/guidance/stand_off.h"
+#include "kestrel/flight/guidance/target_jump.h"
 #include "kestrel/flight/guidance/view_limits.h"
 
 namespace kestrel {
@@ -26,11 +27,6 @@ class FollowGuidance : public Guidance {
   FollowGuidance(const GuidanceOptions& options, const std::optional<ViewLimits>& view);
 
  private:
-  struct Followed {
-    TargetEstimate target;
-    Time seen;  // when it was seen last
-  };
-
   void Begin(const GuidanceInput& input) override;
   Wish Choose(const GuidanceInput& input) override;
   const char* WhyGiveUp(const GuidanceInput& /*input*/) override { return nullptr; }
@@ -38,7 +34,6 @@ class FollowGuidance : public Guidance {
 
   void ChoosePhase(const GuidanceInput& input);
   const char* WhyNotFollow(const GuidanceInput& input);
-  bool HasJumped(const GuidanceInput& input) const;
   void TakeOrder(const GuidanceInput& input, const char* trouble);
   void Stop(const char* reason);
   bool IsFollowing() const;
@@ -52,8 +47,8 @@ class FollowGuidance : public Guidance {
   std::optional<ViewLimits> view_;
   StandOff stand_off_;
   Confirmation confirmation_;
-  std::optional<Time> lost_;             // since when that is lost
-  std::optional<Followed> followed_;     // the newest place of it
+  std::optional<Time> lost_;  // since when that is lost
+  TargetJump jump_;
   std::optional<Eigen::Vector3d> stay_;  // where it stands still; nothing: it still brakes
   double yaw_ = 0;                       // where the nose is to point, rad
   double yaw_rate_ = 0;                  // rad/s

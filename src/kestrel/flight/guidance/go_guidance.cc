@@ -142,12 +142,13 @@ void GoGuidance::Reset() {
   gripped_.reset();
 }
 
-// Another order begins anew.
+// A new confirmation begins anew.
 void GoGuidance::TakeOrder(const GuidanceInput& input) {
   const char* refusal = IsSeen(input) ? nullptr : "refused: what is marked is not seen";
   const char* reason = confirmation_.Update(input.order, input.mark, refusal);
   if (reason != nullptr) return Await(reason);
   if (!confirmation_.is_new()) return;
+  jump_.Reset();
   Reset();
   StartSearch();
 }
@@ -160,6 +161,12 @@ void GoGuidance::Await(const char* reason) {
 
 bool GoGuidance::AwaitsPerson() const {
   return job_.target == GoTarget::kMarked && confirmation_.mark() == 0;
+}
+
+// Until the gripper has closed: what it took is carried away.
+bool GoGuidance::HasJumped(const GuidanceInput& input) {
+  if (confirmation_.mark() == 0 || !IsSeen(input) || has_gripped_ || is_done_) return false;
+  return jump_.Update(input);
 }
 
 void GoGuidance::ResumeAfterLink() {
@@ -204,6 +211,7 @@ Guidance::Wish GoGuidance::Choose(const GuidanceInput& input) {
     return {};
   }
   if (job_.target == GoTarget::kMarked) TakeOrder(input);
+  if (HasJumped(input)) Await("was seen again where it cannot be: needs a new confirmation");
   if (AwaitsPerson()) {
     Wish wish;
     wish.set_point = Wait(Look(input));
@@ -243,11 +251,12 @@ Guidance::Wish GoGuidance::Choose(const GuidanceInput& input) {
   return wish;
 }
 
-// At work near the ground, and where the gripper opens, there is no way to the sides.
+// Near the ground, at work or after it, and where the gripper moves, there is no way to the sides.
 void GoGuidance::KeepAway(const GuidanceInput& input, const Situation& now, SetPoint* command) {
   const bool is_near_ground =
-      is_at_work() && input.target && now.height_m < options().sight_height_m;
-  if (is_near_ground || phase() == GuidancePhase::kAct) return;
+      (is_at_work() || is_done_) && input.target && now.height_m < options().sight_height_m;
+  const bool uses_gripper = phase() == GuidancePhase::kAct && job_.grips();
+  if (is_near_ground || uses_gripper) return;
   const Vector2d fed = flight_model().fed_velocity();
   const Vector2d own = command->velocity.head<2>() - fed;
   command->velocity.head<2>() = own;

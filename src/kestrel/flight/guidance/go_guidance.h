@@ -12,6 +12,7 @@
 #include "kestrel/flight/guidance/go_delivery.h"
 #include "kestrel/flight/guidance/go_job.h"
 #include "kestrel/flight/guidance/guidance_options.h"
+#include "kestrel/flight/guidance/target_jump.h"
 
 namespace kestrel {
 
@@ -54,6 +55,7 @@ class GoGuidance : public DescentGuidance {
   void TakeOrder(const GuidanceInput& input);
   void Await(const char* reason);
   bool AwaitsPerson() const;
+  bool HasJumped(const GuidanceInput& input);
 
   // Choice of the phase.
   void ChoosePhase(const GuidanceInput& input, const Situation& now);
@@ -103,6 +105,7 @@ class GoGuidance : public DescentGuidance {
   bool skips_ = false;  // leaves the object, once it has climbed
   double yaw_ = 0;      // of the nose, rad
   Confirmation confirmation_;
+  TargetJump jump_;                          // of what is marked
   std::optional<Eigen::Vector3d> waits_at_;  // for a person, once it stands still; of the feet
   int mark_ = 0;                             // number of the object; 0: none yet
   double object_z_m_ = 0;                    // its height in the world

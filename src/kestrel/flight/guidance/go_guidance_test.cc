@@ -481,6 +481,55 @@ TEST(GoGuidanceTest, MarkedThingNeedsConfirmation) {
       flight.FlyUntil([&] { return flight.guidance.phase() == Phase::kAct; }, 60, order(5, 8)));
 }
 
+TEST(GoGuidanceTest, MarkedThingThatJumpsNeedsConfirmation) {
+  GoJob job = ParseGoJob("hover,2.5,3");
+  job.target = GoTarget::kMarked;
+  GoFlight flight(job);
+  flight.FlyUntil([] { return false; }, 1);
+  const auto order = [](GuidanceInput& input) { input.order = {1, 7}; };
+  ASSERT_TRUE(
+      flight.FlyUntil([&] { return flight.guidance.phase() == Phase::kDescend; }, 30, order));
+  flight.FlyUntil([] { return false; }, 1,
+                  [&](GuidanceInput& input) {
+                    order(input);
+                    input.target->motion.mean.head<2>() += Eigen::Vector2d(5, 0);
+                  });
+  EXPECT_EQ(flight.guidance.phase(), Phase::kLook);
+  EXPECT_THAT(flight.output.reason, HasSubstr("where it cannot be"));
+}
+
+TEST(GoGuidanceTest, HoversNoNearerToUavThatGivesWay) {
+  GoFlight flight("hover,3,60", {.path = "straight", .speed_mps = 1});
+  ASSERT_TRUE(flight.FlyUntilPhase(Phase::kAct));
+  const Eigen::Vector3d drive =
+      flight.object.Position(flight.time_s + 1) - flight.object.Position(flight.time_s);
+  flight.others = {{.position = flight.uav.position().head<2>() + 10 * drive.head<2>()}};
+  double nearest_m = 10;
+  flight.FlyUntil(
+      [&] {
+        const Eigen::Vector2d way = flight.others[0].position - flight.uav.position().head<2>();
+        nearest_m = std::min(nearest_m, way.norm());
+        return false;
+      },
+      20);
+  EXPECT_GT(nearest_m, 3);  // gusts push it
+}
+
+TEST(GoGuidanceTest, DoneNearTheGroundClimbsBeforeItGivesWay) {
+  GoFlight flight("hover,0.3,1");
+  ASSERT_TRUE(flight.FlyUntilDone());
+  flight.others = {
+      {.position = flight.uav.position().head<2>() + Eigen::Vector2d(4, 0), .goes_first = true}};
+  double off_m = 0;
+  ASSERT_TRUE(flight.FlyUntil(
+      [&] {
+        off_m = std::max(off_m, flight.FromObject().head<2>().norm());
+        return flight.FromObject().z() > 1.9;
+      },
+      10));
+  EXPECT_LT(off_m, 0.2);
+}
+
 TEST(GoGuidanceTest, LostMarkedThingIsNotSearchedFor) {
   GoJob job = ParseGoJob("hover,2.5,3");
   job.target = GoTarget::kMarked;

@@ -17,8 +17,6 @@ constexpr double kReaction_s = 1;
 constexpr int kRounds = 3;
 // Further away from the distance nobody is gone around yet.
 constexpr double kAround_m = 6;
-// From a UAV at work to those that give way to it.
-constexpr double kAtWork_m = 4;
 
 // At work it comes no nearer to those that give way to it, but does not move off from them either.
 bool StaysAtWork(const OwnMotion& own, const OtherUav& other) {

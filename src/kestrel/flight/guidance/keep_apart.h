@@ -10,10 +10,11 @@
 
 namespace kestrel {
 
-// Horizontal distance that a UAV keeps from the others of its team (m), and from those to which it
-// gives way: it is they who decide how near the two come to each other.
+// Horizontal distance that a UAV on its way keeps from the others of its team (m), and each UAV
+// from those to which it gives way; one at work comes no nearer to those that give way to it.
 inline constexpr double kApart_m = 5;
 inline constexpr double kGiveWay_m = 6.5;
+inline constexpr double kAtWork_m = 4;
 
 // The UAV itself, horizontally.
 struct OwnMotion {
@@ -24,7 +25,8 @@ struct OwnMotion {
 
 // Limits the horizontal velocity of a set-point for a UAV on its way to 'destination' (m, world):
 // it comes to others no faster than it can stop before the distance, goes around those that are in
-// its way, waits for those that are at its destination, and moves off from those that come to it.
+// its way, waits for those that are at its destination, and moves off from those that come to it;
+// at work only from those that go first.
 // No allocation.
 void KeepApart(const OwnMotion& own, const Eigen::Vector2d& destination,
                std::span<const OtherUav> others, SetPoint* command);

@@ -10,7 +10,7 @@ void TakeOffGround::Update(LandedState state, int reboots, std::optional<double>
   if (std::exchange(reboots_, reboots) != reboots) height_m_.reset();
   if (state == LandedState::kOnGround && feet_z_m) {
     height_m_ = feet_z_m;
-  } else if (!height_m_) {
+  } else if (!height_m_ || (state == LandedState::kOnGround && under_home_m)) {
     height_m_ = under_home_m;
   }
 }

@@ -10,9 +10,9 @@ namespace kestrel {
 // The height of the ground at the take-off, in the autopilot's world (m).
 class TakeOffGround {
  public:
-  // The ground is under the feet as long as they stand on it. A program that starts in flight takes
-  // that under home, once. A reboot begins anew: the autopilot may have another world then.
-  // 'feet_z_m': nothing while their height in the autopilot's world is not known.
+  // The ground is under the feet as long as they stand on it, or under home where their height in
+  // the autopilot's world is not known ('feet_z_m'). A program that starts in flight takes that
+  // under home, once. A reboot begins anew: the autopilot may have another world then.
   void Update(LandedState state, int reboots, std::optional<double> feet_z_m,
               std::optional<double> under_home_m);
 

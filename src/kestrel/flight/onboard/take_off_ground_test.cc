@@ -30,9 +30,11 @@ TEST(TakeOffGroundTest, LandingElsewhereMovesIt) {
   EXPECT_EQ(ground.height_m(), 3);
 }
 
-TEST(TakeOffGroundTest, FeetOfAnotherWorldDoNotCount) {
+TEST(TakeOffGroundTest, IsUnderHomeWhereTheFeetAreOfAnotherWorld) {
   TakeOffGround ground;
-  ground.Update(LandedState::kOnGround, 0, std::nullopt, -0.35);
+  ground.Update(LandedState::kOnGround, 0, std::nullopt, 2);
+  ground.Update(LandedState::kOnGround, 1, std::nullopt, -0.35);  // a new home after a reboot
+  ground.Update(LandedState::kInAir, 1, std::nullopt, 4);
   EXPECT_EQ(ground.height_m(), -0.35);
 }
 
