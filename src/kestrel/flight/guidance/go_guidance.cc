@@ -360,9 +360,11 @@ void GoGuidance::ChooseDescent(const GuidanceInput& input, const Situation& now)
   }
 }
 
-// A gripper must be nearer than a view from above.
+// A gripper must be nearer than a view from above; at a place, which is not known to centimetres,
+// only until that has failed once.
 bool GoGuidance::IsAbove(const Situation& now) const {
-  if (!job_.is_exact()) return now.off_m < kConePart * Cone(now.height_m);
+  const bool is_precise = job_.is_exact() || (job_.grips() && failures_ == 0);
+  if (!is_precise) return now.off_m < kConePart * Cone(now.height_m);
   return now.off_m < kAim_m && now.slip_mps < kAim_mps;
 }
 

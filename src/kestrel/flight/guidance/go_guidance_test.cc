@@ -447,6 +447,7 @@ TEST(GoGuidanceTest, DropsAbovePlaceNoLowerThanTheFloor) {
     return flight.guidance.is_done();
   })) << flight.output.reason;
   EXPECT_GT(flight.released_at.z(), 3);
+  EXPECT_LT((flight.released_at - flight.object.Position(0)).head<2>().norm(), 0.12);
   EXPECT_NEAR(lowest_m, 2.7, 0.2);
   EXPECT_FALSE(flight.guidance.is_at_deck());
 }
