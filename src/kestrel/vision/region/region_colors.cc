@@ -3,17 +3,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace kestrel {
 namespace {
 
 constexpr int kLevels = 16;  // of a channel; of gray images all of the 256
 constexpr int kColors = kLevels * kLevels * kLevels;
-constexpr float kRate = 0.05f;       // of the colours around it, by one image
-constexpr double kGap = 1.3;         // sizes of the box, from where on a pixel is around it
-constexpr double kInner = 0.6;       // of the box: there the region is for sure
-constexpr double kNearest = 0.4;     // half sizes of the box, from its middle to the region's end
-constexpr double kFarthest = 2;      // the same, at most
+constexpr float kRate = 0.05f;    // of the colours around it, by one image
+constexpr double kGap = 1.3;      // sizes of the box, from where on a pixel is around it
+constexpr double kInner = 0.6;    // of the box: there the region is for sure
+constexpr double kNearest = 0.4;  // half sizes of the box, from its middle to the region's end
+constexpr double kFarthest = 2;   // the same, at most
+constexpr double kCore = 0.8;     // of the box: there most is the region
+constexpr float kAllOfColor = std::numeric_limits<float>::max();
+constexpr float kMostOfColor = 3;    // times as much of it as in the region: it may be seen in part
+constexpr float kUnknown = 1e-4f;    // share of a colour that is known of neither
 constexpr float kLeastClear = 0.3f;  // probability within the box, less that around it
 constexpr float kEdge = 0.4f;  // of the way from the probability around the box to that within
 
@@ -45,19 +50,23 @@ RegionColors::RegionColors(int side)
       new_inside_(kColors),
       new_around_(kColors),
       probability_(kColors),
-      profile_(side) {}
+      profile_(side),
+      sums_(std::size_t(side + 1) * (side + 1)) {}
 
 void RegionColors::Mark(const SampledWindow& window, const Box& box) {
   Count(window, box);
   inside_ = new_inside_;
   around_ = new_around_;
   Rate();
+  marked_ = CompareWithOutline(window, box);
+  usual_share_ = ShareOf(window, box, kAllOfColor);
 }
 
 void RegionColors::LearnAround(const SampledWindow& window, const Box& box) {
   Count(window, box);
   for (int i = 0; i < kColors; ++i) around_[i] += kRate * (new_around_[i] - around_[i]);
   Rate();
+  usual_share_ += kRate * (ShareOf(window, box, kAllOfColor) - usual_share_);
 }
 
 void RegionColors::Count(const SampledWindow& window, const Box& box) {
@@ -78,13 +87,109 @@ void RegionColors::Count(const SampledWindow& window, const Box& box) {
 }
 
 void RegionColors::Rate() {
-  constexpr float kUnknown = 1e-4f;  // share of a colour that is known of neither
   for (int i = 0; i < kColors; ++i) {
     probability_[i] = (inside_[i] + 0.5f * kUnknown) / (inside_[i] + around_[i] + kUnknown);
   }
 }
 
+std::optional<RegionColors::Box> RegionColors::CompareWithOutline(const SampledWindow& window,
+                                                                  const Box& box) {
+  constexpr double kLeast = 0.7, kMost = 1.4, kAside = 0.2;
+  const auto outline = Outline(window, box);
+  if (!outline) return std::nullopt;
+  const Box part{(box.middle - outline->middle).cwiseQuotient(outline->size),
+                 box.size.cwiseQuotient(outline->size)};
+  const bool is_alike = part.size.minCoeff() > kLeast && part.size.maxCoeff() < kMost &&
+                        part.middle.cwiseAbs().maxCoeff() < kAside;
+  if (!is_alike) return std::nullopt;
+  return part;
+}
+
 std::optional<RegionColors::Box> RegionColors::Fit(const SampledWindow& window, const Box& box) {
+  if (!marked_) return std::nullopt;
+  const auto outline = Outline(window, box);
+  if (!outline) return std::nullopt;
+  return Box{outline->middle + marked_->middle.cwiseProduct(outline->size),
+             marked_->size.cwiseProduct(outline->size)};
+}
+
+double RegionColors::AgreementOf(const SampledWindow& window, const Box& box) {
+  return ShareOf(window, box, kAllOfColor) / usual_share_;
+}
+
+double RegionColors::MatchOf(const SampledWindow& window, const Box& box) {
+  return ShareOf(window, box, kMostOfColor) / usual_share_;
+}
+
+// Returns the mean probability of the pixels in a box, where a colour counts at most
+// 'most_of_color' times as often as in the region.
+double RegionColors::ShareOf(const SampledWindow& window, const Box& box, float most_of_color) {
+  const auto limit = [&](double at) {
+    return std::clamp(static_cast<int>(std::lround(at)), 0, side_ - 1);
+  };
+  const Eigen::Vector2d half = 0.5 * kCore * box.size;
+  const int left = limit(box.middle.x() - half.x()), right = limit(box.middle.x() + half.x());
+  const int top = limit(box.middle.y() - half.y()), bottom = limit(box.middle.y() + half.y());
+  std::vector<float>& shares = new_inside_;
+  std::ranges::fill(shares, 0);
+  for (int y = top; y <= bottom; ++y) {
+    for (int x = left; x <= right; ++x) ++shares[ColorAt(window, std::size_t(y) * side_ + x)];
+  }
+  Normalize(&shares);
+  float sum = 0;
+  for (int i = 0; i < kColors; ++i) {
+    if (shares[i] == 0) continue;
+    const bool is_known = inside_[i] + around_[i] > kUnknown;
+    sum +=
+        probability_[i] * (is_known ? std::min(shares[i], most_of_color * inside_[i]) : shares[i]);
+  }
+  return sum;
+}
+
+RegionColors::Place RegionColors::Find(const SampledWindow& window, const Eigen::Vector2d& size) {
+  SumUp(window);
+  const Eigen::Vector2i box = size.array().round().cast<int>().max(1).min(side_).matrix();
+  Place best{{}, -1};
+  for (Eigen::Vector2i at(0, 0); at.y() + box.y() <= side_; ++at.y()) {
+    for (at.x() = 0; at.x() + box.x() <= side_; ++at.x()) {
+      const double contrast = ContrastOf(at, box);
+      if (contrast <= best.contrast) continue;
+      const Eigen::Vector2d inner = 0.5 * (box - Eigen::Vector2i::Ones()).cast<double>();
+      best = {{at.cast<double>() + inner, size}, contrast};
+    }
+  }
+  return best;
+}
+
+void RegionColors::SumUp(const SampledWindow& window) {
+  const int stride = side_ + 1;
+  for (int y = 0; y < side_; ++y) {
+    float row = 0;
+    for (int x = 0; x < side_; ++x) {
+      row += probability_[ColorAt(window, std::size_t(y) * side_ + x)];
+      sums_[(y + 1) * stride + x + 1] = sums_[y * stride + x + 1] + row;
+    }
+  }
+}
+
+// Of the box from a pixel on, against a frame around it that is half as wide as the box.
+double RegionColors::ContrastOf(const Eigen::Vector2i& first, const Eigen::Vector2i& size) const {
+  const auto sum = [&](const Eigen::Vector2i& from, const Eigen::Vector2i& to) {
+    const int stride = side_ + 1;
+    return sums_[to.y() * stride + to.x()] - sums_[from.y() * stride + to.x()] -
+           sums_[to.y() * stride + from.x()] + sums_[from.y() * stride + from.x()];
+  };
+  const Eigen::Vector2i end = first + size, half = size / 2;
+  const Eigen::Vector2i from = (first - half).cwiseMax(0), to = (end + half).cwiseMin(side_);
+  const float within = sum(first, end), area = static_cast<float>(size.prod());
+  const float frame = static_cast<float>((to - from).prod()) - area;
+  return within / area - (sum(from, to) - within) / std::max(1.0f, frame);
+}
+
+// Returns the box around the region's colours near 'box'; nothing where they end nowhere, or are
+// those around it as well.
+std::optional<RegionColors::Box> RegionColors::Outline(const SampledWindow& window,
+                                                       const Box& box) {
   const auto x = ExtentAlong(0, window, box), y = ExtentAlong(1, window, box);
   if (!x || !y) return std::nullopt;
   return Box{{0.5 * (x->first + x->last), 0.5 * (y->first + y->last)},

@@ -58,5 +58,45 @@ TEST_P(RegionColorsPlanes, FitReturnsNothingWhereColorsDoNotEnd) {
   EXPECT_FALSE(colors.Fit(Draw(GetParam(), {{64, 64}, {100, 30}}, 70), marked));
 }
 
+TEST_P(RegionColorsPlanes, AgreementIsOneOnRegionAndLowBesideIt) {
+  const RegionColors::Box marked{{64, 64}, {24, 30}};
+  const SampledWindow window = Draw(GetParam(), marked, 70);
+  colors.Mark(window, marked);
+  EXPECT_NEAR(colors.AgreementOf(window, marked), 1, 0.01);
+  EXPECT_LT(colors.AgreementOf(window, {{30, 64}, {24, 30}}), 0.2);
+}
+
+TEST_P(RegionColorsPlanes, AgreementIsAHalfOnUnknownColors) {
+  const RegionColors::Box marked{{64, 64}, {24, 30}};
+  colors.Mark(Draw(GetParam(), marked, 70), marked);
+  EXPECT_NEAR(colors.AgreementOf(Draw(GetParam(), marked, 140), marked), 0.5, 0.1);
+}
+
+// The marked box holds a shadow, which is alone in the second image.
+TEST_P(RegionColorsPlanes, OnlyMatchIsLowWhereOneColorOfRegionIsAlone) {
+  const RegionColors::Box marked{{64, 64}, {30, 30}};
+  SampledWindow window = Draw(GetParam(), marked, 70);
+  const SampledWindow shadow = Draw(GetParam(), marked, -70);
+  for (int plane = 0; plane < GetParam(); ++plane) {
+    for (int y = 75; y < kSide; ++y) {
+      for (int x = 0; x < kSide; ++x) {
+        window.values[plane][y * kSide + x] = shadow.values[plane][y * kSide + x];
+      }
+    }
+  }
+  colors.Mark(window, marked);
+  EXPECT_NEAR(colors.MatchOf(window, marked), 1, 0.1);
+  EXPECT_GT(colors.AgreementOf(shadow, marked), 0.8);
+  EXPECT_LT(colors.MatchOf(shadow, marked), 0.6);
+}
+
+TEST_P(RegionColorsPlanes, FindReturnsPlaceOfRegionsColors) {
+  const RegionColors::Box marked{{64, 64}, {24, 30}}, moved{{30, 90}, {24, 30}};
+  colors.Mark(Draw(GetParam(), marked, 70), marked);
+  const RegionColors::Place found = colors.Find(Draw(GetParam(), moved, 70), marked.size);
+  EXPECT_LT((found.box.middle - moved.middle).norm(), 2);
+  EXPECT_GT(found.contrast, 0.5);
+}
+
 }  // namespace
 }  // namespace kestrel

@@ -23,6 +23,7 @@ namespace {
 // that were reduced to objects of 5 to 20 px; the least window, and when a region is lost, also on
 // those listed. Those of the colours: on rendered cars.
 constexpr int kCells = 32, kCellPx = 4;
+constexpr double kMiddle = 0.5 * (kCells * kCellPx - 1);  // of a window, samples
 constexpr int kChannels = AppearanceFeatures::kChannels;
 constexpr double kPadding = 5;          // side of the window by that of a square like the region
 constexpr double kLeastWindow_px = 64;  // small things move as fast as large ones
@@ -36,8 +37,15 @@ constexpr double kPredictedShare = 0.5;  // how much of the velocity counts: it 
 // Agreement is 1 where a region looks as it usually did.
 constexpr double kLeastToSee = 0.35;
 constexpr double kLeastToLearn = 0.65;
+constexpr double kLeastToLearnSlowly = 0.6;
 constexpr double kLeastToFind = 0.65;
 constexpr double kLeastSharpness = 0.5;
+constexpr double kLeastColorsToFind = 0.6;
+// Images in a row; colours alone are more often those of something else.
+constexpr int kHits = 2, kHitsByColors = 3;
+// The mean of the slow filter's agreement and that of the colours: the other filter learns whatever
+// it is on.
+constexpr double kLeastToKnow = 0.4;
 
 constexpr double kLeastSide_px = 4;
 constexpr double kCoasting_s = 0.5;
@@ -114,11 +122,19 @@ struct RegionTracker::Impl {
     std::optional<RegionColors::Box> by_colors = std::nullopt;  // px
   };
 
+  // A place by colours.
+  struct ColorPlace {
+    Eigen::Vector2d center_px;
+    double contrast;
+  };
+
   void Mark(const cv::Mat& image, Time now, const cv::Rect2d& box);
   RegionReport Track(const cv::Mat& image, Time now, const std::optional<RegionHint>& hint);
 
   // Computes the spectrum of the window around a place.
   void See(const cv::Mat& image, const Eigen::Vector2d& at, double scale);
+  // A filter begins with the region in the middle of what was seen.
+  void StartOn(double temporal, AppearanceFilter* by, UsualResponse* usually);
   Look LookAt(const cv::Mat& image, const AppearanceFilter& by, const Eigen::Vector2d& at,
               double scale);
   // Looks for the region near a place, at three scales.
@@ -128,13 +144,14 @@ struct RegionTracker::Impl {
   double Accept(const cv::Mat& image, const Look& look);
   // Returns the region's box, as it is seen at scale 1, in the window.
   RegionColors::Box BoxInWindow(const Eigen::Vector2d& center_px) const {
-    constexpr double kMiddle = 0.5 * (kCells * kCellPx - 1);
-    return {(center_px - window_center) / PixelsPerSample() + Eigen::Vector2d(kMiddle, kMiddle),
+    return {((center_px - window_center) / PixelsPerSample()).array() + kMiddle,
             size / PixelsPerSample()};
   }
+  // Returns where in the image a place in the window is, which is seen at scale 1.
+  Eigen::Vector2d PixelOf(const Eigen::Vector2d& in_window) const {
+    return window_center + PixelsPerSample() * (in_window.array() - kMiddle).matrix();
+  }
   double PixelsPerSample() const { return window_px / (kCells * kCellPx); }
-  // Returns the marked box in sizes of the one by its colours; nothing where these do not show it.
-  std::optional<RegionColors::Box> CompareWithColors();
   // Returns the box (px) that the region's colours show near a place in the window, which is seen
   // at scale 1; nothing where they show none.
   std::optional<RegionColors::Box> FitColors(const Eigen::Vector2d& near_px);
@@ -143,6 +160,11 @@ struct RegionTracker::Impl {
   void TakeByColors(const cv::Mat& image, const Eigen::Vector2d& expected, Look* look);
   // True when the box has stopped with the background, which the region had not done.
   bool HasDrifted(const Eigen::Vector2d& shift, double seconds, double agreement);
+  // True where the slow filter and the colours find what was marked in the window.
+  bool IsLike(const Look& look);
+  // True where the colours show it in the middle of the window, in another form: it has turned.
+  bool IsTurned(Look* look);
+  void FollowAgain(const cv::Mat& image, bool is_turned);
   // Looks for a region that is not seen, around the expected place.
   // 'reach_px': farther from there it cannot be.
   void Search(const cv::Mat& image, const Eigen::Vector2d& expected, double radius_px,
@@ -170,8 +192,6 @@ struct RegionTracker::Impl {
   FilterWorkspace workspace{kCells, kChannels};
   AppearanceFilter filter{kCells, kChannels}, slow{kCells, kChannels};
   RegionColors colors{kCells * kCellPx};
-  // The marked box in sizes of the one by colours; nothing: these do not show the region.
-  std::optional<RegionColors::Box> marked;
   BackgroundMotion background;
   std::array<float, kCells> taper;
 
@@ -185,9 +205,9 @@ struct RegionTracker::Impl {
   Eigen::Vector2d velocity;       // against the background, px/s
   double usual_speed = 0, still_s = 0;
   UsualResponse usual, slow_usual;
-  int learnt = 0;       // images
-  int place = 0;        // the next of the search
-  bool is_hit = false;  // the last image had it at 'center', while it is looked for
+  int learnt = 0;  // images
+  int place = 0;   // the next of the search
+  int hits = 0;    // images in a row that had it at 'center', while it is looked for
 };
 
 void RegionTracker::Impl::See(const cv::Mat& image, const Eigen::Vector2d& at, double scale) {
@@ -232,18 +252,18 @@ void RegionTracker::Impl::Mark(const cv::Mat& image, Time now, const cv::Rect2d&
   velocity.setZero();
   usual_speed = still_s = 0;
   learnt = place = 0;
-  is_hit = false;
-  const Eigen::Vector2d target = size * (kCells / window_px);
-  filter.Reset(target, &workspace);
-  slow.Reset(target, &workspace);
+  hits = 0;
   See(image, center, 1);
-  filter.Learn(sample, kTemporal, &workspace);
-  slow.Learn(sample, kSlowTemporal, &workspace);
+  StartOn(kTemporal, &filter, &usual);
+  StartOn(kSlowTemporal, &slow, &slow_usual);
   colors.Mark(window, BoxInWindow(center));
-  marked = CompareWithColors();
-  usual.Start(filter.Find(sample, &workspace));
-  slow_usual.Start(slow.Find(sample, &workspace));
   background.Update(image);
+}
+
+void RegionTracker::Impl::StartOn(double temporal, AppearanceFilter* by, UsualResponse* usually) {
+  by->Reset(size * (kCells / window_px), &workspace);
+  by->Learn(sample, temporal, &workspace);
+  usually->Start(by->Find(sample, &workspace));
 }
 
 RegionReport RegionTracker::Impl::Report(double probability) const {
@@ -290,11 +310,13 @@ double RegionTracker::Impl::Accept(const cv::Mat& image, const Look& look) {
   const FilterPeak slow_peak = slow.Find(sample, &workspace);
   const double slow_share = slow_peak.value / slow_usual.value;
   const double agreement = 0.5 * (share + slow_share);
+  const double color_share = colors.AgreementOf(window, BoxInWindow(center));
+  if (0.5 * (slow_share + color_share) < kLeastToKnow) return 0;
   if (share > kLeastToLearn || look.by_colors) {
     usual.Add(look.peak);
     filter.Learn(sample, kTemporal, &workspace);
   }
-  if (agreement > kLeastToLearn) {
+  if (std::min(share, slow_share) > kLeastToLearnSlowly) {
     slow_usual.Add(slow_peak);
     if (++learnt % kSlowPeriod == 0) {
       slow.Learn(sample, kSlowTemporal, &workspace);
@@ -304,27 +326,10 @@ double RegionTracker::Impl::Accept(const cv::Mat& image, const Look& look) {
   return agreement;
 }
 
-std::optional<RegionColors::Box> RegionTracker::Impl::CompareWithColors() {
-  constexpr double kLeast = 0.7, kMost = 1.4, kAside = 0.2;
-  const RegionColors::Box box = BoxInWindow(center);
-  const auto fit = colors.Fit(window, box);
-  if (!fit) return std::nullopt;
-  const RegionColors::Box part{(box.middle - fit->middle).cwiseQuotient(fit->size),
-                               box.size.cwiseQuotient(fit->size)};
-  const bool is_alike = part.size.minCoeff() > kLeast && part.size.maxCoeff() < kMost &&
-                        part.middle.cwiseAbs().maxCoeff() < kAside;
-  if (!is_alike) return std::nullopt;
-  return part;
-}
-
 std::optional<RegionColors::Box> RegionTracker::Impl::FitColors(const Eigen::Vector2d& near_px) {
-  if (!marked) return std::nullopt;
-  const RegionColors::Box near = BoxInWindow(near_px);
-  const auto fit = colors.Fit(window, near);
+  const auto fit = colors.Fit(window, BoxInWindow(near_px));
   if (!fit) return std::nullopt;
-  const Eigen::Vector2d middle = fit->middle + marked->middle.cwiseProduct(fit->size);
-  return RegionColors::Box{near_px + PixelsPerSample() * (middle - near.middle),
-                           PixelsPerSample() * marked->size.cwiseProduct(fit->size)};
+  return RegionColors::Box{PixelOf(fit->middle), PixelsPerSample() * fit->size};
 }
 
 void RegionTracker::Impl::TakeByColors(const cv::Mat& image, const Eigen::Vector2d& expected,
@@ -374,28 +379,59 @@ Eigen::Vector2d RegionTracker::Impl::NextPlace(const Eigen::Vector2d& around, do
 void RegionTracker::Impl::Search(const cv::Mat& image, const Eigen::Vector2d& expected,
                                  double radius_px, double reach_px) {
   Look best;
+  ColorPlace by_colors{expected, 0};
   for (int i = 0; i < kPlacesPerImage; ++i) {
     const Eigen::Vector2d at = i == 0 ? expected : NextPlace(expected, radius_px);
     const Look look = LookAt(image, slow, at, 1);
     if (look.peak.value > best.peak.value) best = look;
+    const auto [box, contrast] = colors.Find(window, size / PixelsPerSample());
+    if (contrast > by_colors.contrast) by_colors = {PixelOf(box.middle), contrast};
   }
+  const auto can_be_at = [&](const Eigen::Vector2d& at) {
+    return IsInImage(at) && (at - expected).norm() < reach_px;
+  };
   // A second look, from the place itself: a window's middle is seen best.
   best = LookAt(image, slow, best.center_px, 1);
-  const bool was_hit = is_hit;
-  is_hit = IsInImage(best.center_px) && (best.center_px - expected).norm() < reach_px &&
-           best.peak.value > kLeastToFind * slow_usual.value &&
-           best.peak.sharpness > kLeastSharpness * slow_usual.sharpness;
-  if (!is_hit) return;
-  center = best.center_px;
-  if (!was_hit) return;
+  const bool is_alike = can_be_at(best.center_px) && IsLike(best);
+  if (!is_alike) best = LookAt(image, slow, by_colors.center_px, 1);
+  const bool is_turned = !is_alike && can_be_at(by_colors.center_px) && IsTurned(&best);
+  hits = is_alike || is_turned ? hits + 1 : 0;
+  if (hits == 0) return;
+  center = is_turned ? best.by_colors->middle : best.center_px;
+  if (hits >= (is_turned ? kHitsByColors : kHits)) FollowAgain(image, is_turned);
+}
+
+bool RegionTracker::Impl::IsLike(const Look& look) {
+  return look.peak.value > kLeastToFind * slow_usual.value &&
+         look.peak.sharpness > kLeastSharpness * slow_usual.sharpness &&
+         colors.MatchOf(window, BoxInWindow(look.center_px)) > kLeastColorsToFind;
+}
+
+bool RegionTracker::Impl::IsTurned(Look* look) {
+  constexpr double kLeast = 0.2;  // of the usual response
+  constexpr double kMost = 2;     // by which sides and area may have changed
+  look->by_colors = FitColors(window_center);
+  if (!look->by_colors) return false;
+  const Eigen::Vector2d ratio = look->by_colors->size.cwiseQuotient(size);
+  return look->peak.value > kLeast * slow_usual.value &&
+         std::max({ratio.maxCoeff(), ratio.prod()}) < kMost &&
+         std::min({ratio.minCoeff(), ratio.prod()}) > 1 / kMost &&
+         colors.MatchOf(window, BoxInWindow(window_center)) > kLeastColorsToFind;
+}
+
+void RegionTracker::Impl::FollowAgain(const cv::Mat& image, bool is_turned) {
   state = RegionState::kFollowing;
   seen = time;
   filter = slow;
   usual = slow_usual;
+  if (is_turned) {
+    See(image, center, 1);
+    StartOn(kTemporal, &filter, &usual);
+  }
   velocity.setZero();
   usual_speed = still_s = 0;
   place = 0;
-  is_hit = false;
+  hits = 0;
 }
 
 RegionReport RegionTracker::Impl::Track(const cv::Mat& image, Time now,
@@ -411,7 +447,7 @@ RegionReport RegionTracker::Impl::Track(const cv::Mat& image, Time now,
   Eigen::Vector2d expected = center + shift;
   if (state == RegionState::kFollowing) expected += kPredictedShare * seconds * velocity;
   if (state == RegionState::kCoasting) expected += seconds * velocity;
-  if (hint && !is_hit) expected = hint->center_px;
+  if (hint && hits == 0) expected = hint->center_px;
   if (state != RegionState::kLost) {
     const Eigen::Vector2d before = center + shift;
     const Look look = Follow(image, expected);
@@ -421,13 +457,19 @@ RegionReport RegionTracker::Impl::Track(const cv::Mat& image, Time now,
     const bool is_there = IsInImage(look.center_px) &&
                           (!hint || (look.center_px - hint->center_px).norm() < ReachOf(*hint));
     if (share > kLeastToSee && is_there) {
+      const Eigen::Vector2d size_before = size;
+      const double window_before_px = window_px;
       const double agreement = Accept(image, look);
-      if (agreement > kLeastToSee && !HasDrifted(center - before, seconds, agreement)) {
+      // What hides a region may look a little like it.
+      const double least = state == RegionState::kFollowing ? kLeastToSee : kLeastToFind;
+      if (agreement > least && !HasDrifted(center - before, seconds, agreement)) {
         state = RegionState::kFollowing;
         seen = now;
-        is_hit = false;
+        hits = 0;
         return Report(ProbabilityOf(agreement));
       }
+      size = size_before;
+      window_px = window_before_px;
     }
   }
   if (state != RegionState::kLost) state = RegionState::kCoasting;

@@ -134,6 +134,48 @@ TEST_P(RegionTrackerSeeds, IsLostWithinHalfASecondAndFoundAgainWithinOne) {
   EXPECT_GT(Overlap(report.box_px, scene.Box()), 0.5);
 }
 
+// A car under a bridge: it comes out on another course than it went in.
+TEST_P(RegionTrackerSeeds, TargetThatTurnedWhileHiddenIsFoundByItsColors) {
+  scene.target.look = RegionTexture({44, 64}, static_cast<std::uint64_t>(GetParam()), 12);
+  scene.target.look += cv::Scalar(-60, 90, 10);
+  Mark();
+  for (int i = 0; i < 20; ++i) Next();
+  HideTarget();
+  for (int i = 0; i < 30; ++i) Next();
+  scene.cover.reset();
+  scene.target.turn_deg += 90;
+  scene.target.center_px += Eigen::Vector2d(30, 20);
+  RegionReport report;
+  for (int i = 0; i < 20; ++i) report = Next();
+  ASSERT_EQ(report.state, RegionState::kFollowing);
+  const Eigen::Vector2d at = scene.InImage();
+  EXPECT_GT(Overlap(report.box_px, {at.x() - 32, at.y() - 22, 64, 44}), 0.5);
+}
+
+// So slowly that the filter which learns each image would learn the tree.
+TEST_P(RegionTrackerSeeds, TreeThatHidesTargetSlowlyIsNotFollowed) {
+  constexpr double kSpeed = 0.5;  // px per image
+  scene.target.look = RegionTexture({40, 52}, static_cast<std::uint64_t>(GetParam()), 12);
+  scene.target.look += cv::Scalar(-60, 90, 10);
+  Mark();
+  for (int i = 0; i < 20; ++i) Next();
+  RegionThing tree;
+  tree.look = RegionTexture({60, 100}, static_cast<std::uint64_t>(50 + GetParam()), 8);
+  tree.look += cv::Scalar(-40, -40, -60);
+  tree.center_px = scene.target.center_px + Eigen::Vector2d(50, 0);
+  scene.cover = tree;
+  while (scene.target.center_px.x() < tree.center_px.x()) {
+    scene.target.center_px.x() += kSpeed;
+    Next();
+  }
+  for (int i = 0; i < 40; ++i) {
+    const RegionReport report = Next();
+    if (i > 12) {
+      ASSERT_NE(report.state, RegionState::kFollowing) << i;
+    }
+  }
+}
+
 // The camera turns away within a second: what the border repeats is not followed.
 TEST_P(RegionTrackerSeeds, IsLostBeyondTheImage) {
   Mark();
