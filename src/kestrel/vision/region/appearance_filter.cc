@@ -118,38 +118,57 @@ double Sharpness(const FeatureGrid& response, const ResponseRange& range) {
   return height * height / (sum / (0.5 * response.values.size()) + 1e-12);
 }
 
-// Moves from the highest cell to the maximum of the trigonometric polynomial through all cells, by
-// Newton's method.
-Eigen::Vector2d Refine(const GridSpectrum& spectrum, const Eigen::Vector2d& highest) {
-  constexpr int kSteps = 2;
+// The trigonometric polynomial through all cells, and its derivatives.
+struct ResponseBetween {
+  double value = 0;
+  Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d hessian = Eigen::Matrix2d::Zero();
+};
+
+ResponseBetween ResponseAt(const GridSpectrum& spectrum, const Eigen::Vector2d& at) {
   const int cells = spectrum.side;
   const double turn = 2 * kPi / cells;
-  Eigen::Vector2d at = highest;
-  for (int step = 0; step < kSteps; ++step) {
-    const std::complex<double> step_x = std::polar(1.0, turn * at.x());
-    Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
-    Eigen::Matrix2d hessian = Eigen::Matrix2d::Zero();
-    for (int row = 0; row < cells; ++row) {
-      const int ky = row < cells / 2 ? row : row - cells;
-      std::complex<double> phase = std::polar(1.0, turn * ky * at.y());
-      const float* bin = spectrum.Bin(row * (cells / 2 + 1));
-      for (int kx = 0; kx < cells / 2; ++kx, bin += 4, phase *= step_x) {
-        const double twice = kx == 0 ? 1 : 2;
-        const double real = twice * (bin[0] * phase.real() - bin[2] * phase.imag());
-        const double imaginary = twice * (bin[0] * phase.imag() + bin[2] * phase.real());
-        const Eigen::Vector2d k(turn * kx, turn * ky);
-        gradient -= imaginary * k;
-        hessian -= real * k * k.transpose();
-      }
+  const std::complex<double> step_x = std::polar(1.0, turn * at.x());
+  ResponseBetween response;
+  for (int row = 0; row < cells; ++row) {
+    const int ky = row < cells / 2 ? row : row - cells;
+    std::complex<double> phase = std::polar(1.0, turn * ky * at.y());
+    const float* bin = spectrum.Bin(row * (cells / 2 + 1));
+    for (int kx = 0; kx < cells / 2; ++kx, bin += 4, phase *= step_x) {
+      const double twice = kx == 0 ? 1 : 2;
+      const double real = twice * (bin[0] * phase.real() - bin[2] * phase.imag());
+      const double imaginary = twice * (bin[0] * phase.imag() + bin[2] * phase.real());
+      const Eigen::Vector2d k(turn * kx, turn * ky);
+      response.value += real;
+      response.gradient -= imaginary * k;
+      response.hessian -= real * k * k.transpose();
     }
-    const double determinant = hessian.determinant();
-    if (!(hessian(0, 0) < 0 && determinant > 0)) break;
-    at -= Eigen::Vector2d(hessian(1, 1) * gradient.x() - hessian(0, 1) * gradient.y(),
-                          hessian(0, 0) * gradient.y() - hessian(0, 1) * gradient.x()) /
-          determinant;
   }
-  const bool is_near = (at - highest).cwiseAbs().maxCoeff() <= 1;
-  return is_near ? at : highest;
+  const double scale = 1.0 / (cells * cells);
+  return {scale * response.value, scale * response.gradient, scale * response.hessian};
+}
+
+// Moves from the highest cell to the maximum of the polynomial near it: by half cells, as a sharp
+// response between cells is flat over four of them, then by Newton's method.
+Eigen::Vector2d Refine(const GridSpectrum& spectrum, const Eigen::Vector2d& highest) {
+  constexpr int kSteps = 3;
+  constexpr double kHalf = 0.5;
+  Eigen::Vector2d at = highest;
+  ResponseBetween best = ResponseAt(spectrum, highest);
+  for (int i = 0; i < 9; ++i) {
+    const Eigen::Vector2d near = highest + kHalf * Eigen::Vector2d(i % 3 - 1, i / 3 - 1);
+    const ResponseBetween response = ResponseAt(spectrum, near);
+    if (response.value > best.value) best = response, at = near;
+  }
+  for (int step = 0; step < kSteps; ++step) {
+    const Eigen::Matrix2d& hessian = best.hessian;
+    if (!(hessian(0, 0) < 0 && hessian.determinant() > 0)) break;
+    const Eigen::Vector2d near = at - hessian.inverse() * best.gradient;
+    const ResponseBetween response = ResponseAt(spectrum, near);
+    if (!(response.value > best.value) || (near - at).norm() > kHalf) break;
+    best = response, at = near;
+  }
+  return at;
 }
 
 }  // namespace
@@ -236,6 +255,7 @@ FilterPeak AppearanceFilter::Find(const GridSpectrum& sample, FilterWorkspace* w
   peak.value = range.most;
   peak.sharpness = Sharpness(workspace->response, range);
   const Eigen::Vector2d at = Refine(spectrum, Eigen::Vector2d(range.x, range.y));
+  peak.value = std::max(peak.value, ResponseAt(spectrum, at).value);
   for (int i = 0; i < 2; ++i) peak.displacement[i] = at[i] > 0.5 * cells_ ? at[i] - cells_ : at[i];
   return peak;
 }
