@@ -94,7 +94,7 @@ void RegionColors::Rate() {
 
 std::optional<RegionColors::Box> RegionColors::CompareWithOutline(const SampledWindow& window,
                                                                   const Box& box) {
-  constexpr double kLeast = 0.7, kMost = 1.4, kAside = 0.2;
+  constexpr double kLeast = 0.7, kMost = 2, kAside = 0.4;  // a person marks more than the thing
   const auto outline = Outline(window, box);
   if (!outline) return std::nullopt;
   const Box part{(box.middle - outline->middle).cwiseQuotient(outline->size),
