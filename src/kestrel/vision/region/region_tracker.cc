@@ -154,7 +154,8 @@ struct RegionTracker::Impl {
   double PixelsPerSample() const { return window_px / (kCells * kCellPx); }
   // Returns the box (px) that the region's colours show near a place in the window, which is seen
   // at scale 1; nothing where they show none.
-  std::optional<RegionColors::Box> FitColors(const Eigen::Vector2d& near_px);
+  // 'larger': sizes of the region to begin with.
+  std::optional<RegionColors::Box> FitColors(const Eigen::Vector2d& near_px, double larger = 1);
   // The colours near the expected place replace a weak look elsewhere. The response counts as just
   // strong enough: it is low while the form changes.
   void TakeByColors(const cv::Mat& image, const Eigen::Vector2d& expected, Look* look);
@@ -326,8 +327,10 @@ double RegionTracker::Impl::Accept(const cv::Mat& image, const Look& look) {
   return agreement;
 }
 
-std::optional<RegionColors::Box> RegionTracker::Impl::FitColors(const Eigen::Vector2d& near_px) {
-  const auto fit = colors.Fit(window, BoxInWindow(near_px));
+std::optional<RegionColors::Box> RegionTracker::Impl::FitColors(const Eigen::Vector2d& near_px,
+                                                                double larger) {
+  const RegionColors::Box box = BoxInWindow(near_px);
+  const auto fit = colors.Fit(window, {box.middle, larger * box.size});
   if (!fit) return std::nullopt;
   return RegionColors::Box{PixelOf(fit->middle), PixelsPerSample() * fit->size};
 }
@@ -408,15 +411,18 @@ bool RegionTracker::Impl::IsLike(const Look& look) {
 }
 
 bool RegionTracker::Impl::IsTurned(Look* look) {
-  constexpr double kLeast = 0.2;  // of the usual response
-  constexpr double kMost = 2;     // by which sides and area may have changed
+  constexpr double kLeast = 0.45;  // mean of the slow filter's agreement and that of the colours
+  constexpr double kMost = 2;      // by which sides and area may have changed
+  constexpr double kNearer = 1.4;  // times as large, if it has come nearer meanwhile
   look->by_colors = FitColors(window_center);
+  if (!look->by_colors) look->by_colors = FitColors(window_center, kNearer);
   if (!look->by_colors) return false;
   const Eigen::Vector2d ratio = look->by_colors->size.cwiseQuotient(size);
-  return look->peak.value > kLeast * slow_usual.value &&
+  const double slow_share = look->peak.value / slow_usual.value;
+  const double match = colors.MatchOf(window, BoxInWindow(window_center));
+  return 0.5 * (slow_share + match) > kLeast &&
          std::max({ratio.maxCoeff(), ratio.prod()}) < kMost &&
-         std::min({ratio.minCoeff(), ratio.prod()}) > 1 / kMost &&
-         colors.MatchOf(window, BoxInWindow(window_center)) > kLeastColorsToFind;
+         std::min({ratio.minCoeff(), ratio.prod()}) > 1 / kMost;
 }
 
 void RegionTracker::Impl::FollowAgain(const cv::Mat& image, bool is_turned) {
