@@ -22,7 +22,8 @@ GridSpectrum MoveFeatures(GridSpectrum spectrum, const Eigen::Vector2d& cells) {
           std::polar(1.0, -2 * kPi / kFilterCells * (kx * cells.x() + ky * cells.y()));
       float* bin = spectrum.Bin(row * (kFilterCells / 2 + 1) + kx);
       for (int c = 0; c < kFilterFeatures; ++c) {
-        const std::complex<double> value = phase * std::complex<double>(bin[c], bin[kFilterFeatures + c]);
+        const std::complex<double> value =
+            phase * std::complex<double>(bin[c], bin[kFilterFeatures + c]);
         bin[c] = static_cast<float>(value.real());
         bin[kFilterFeatures + c] = static_cast<float>(value.imag());
       }
