@@ -36,8 +36,8 @@ void BackgroundMotion::Shrink(const cv::Mat& image) {
       const int row = (2 * (y * kSamples + k) + 1) * image.rows / (2 * kAcross);
       const std::uint8_t* pixels = image.ptr<std::uint8_t>(row) + channel;
       for (int i = 0; i < kAcross; ++i) {
-        grid_.Cell(i / kSamples, y)[0] +=
-            pixels[(2 * i + 1) * image.cols / (2 * kAcross) * channels];
+        const int column = (2 * i + 1) * image.cols / (2 * kAcross);
+        grid_.Cell(i / kSamples, y)[0] += pixels[column * channels];
       }
     }
   }

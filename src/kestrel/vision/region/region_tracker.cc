@@ -373,7 +373,7 @@ Eigen::Vector2d RegionTracker::Impl::NextPlace(const Eigen::Vector2d& around, do
     const double angle = place * kGoldenAngle;
     ++place;
     if (away + spacing > radius_px) place = 0;
-    const Eigen::Vector2d at = around + away * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    Eigen::Vector2d at = around + away * Eigen::Vector2d(std::cos(angle), std::sin(angle));
     if (IsInImage(at)) return at;
   }
   return around;
