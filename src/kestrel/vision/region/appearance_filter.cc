@@ -120,6 +120,7 @@ double Sharpness(const FeatureGrid& response, const ResponseRange& range) {
 
 // The trigonometric polynomial through all cells, and its derivatives.
 struct ResponseBetween {
+  Eigen::Vector2d at = Eigen::Vector2d::Zero();  // cells
   double value = 0;
   Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
   Eigen::Matrix2d hessian = Eigen::Matrix2d::Zero();
@@ -129,7 +130,7 @@ ResponseBetween ResponseAt(const GridSpectrum& spectrum, const Eigen::Vector2d& 
   const int cells = spectrum.side;
   const double turn = 2 * kPi / cells;
   const std::complex<double> step_x = std::polar(1.0, turn * at.x());
-  ResponseBetween response;
+  ResponseBetween response{.at = at};
   for (int row = 0; row < cells; ++row) {
     const int ky = row < cells / 2 ? row : row - cells;
     std::complex<double> phase = std::polar(1.0, turn * ky * at.y());
@@ -145,30 +146,31 @@ ResponseBetween ResponseAt(const GridSpectrum& spectrum, const Eigen::Vector2d& 
     }
   }
   const double scale = 1.0 / (cells * cells);
-  return {scale * response.value, scale * response.gradient, scale * response.hessian};
+  return {at, scale * response.value, scale * response.gradient, scale * response.hessian};
 }
 
-// Moves from the highest cell to the maximum of the polynomial near it: by half cells, as a sharp
+// Returns the maximum of the polynomial near the highest cell: by half cells, as a sharp
 // response between cells is flat over four of them, then by Newton's method.
-Eigen::Vector2d Refine(const GridSpectrum& spectrum, const Eigen::Vector2d& highest) {
+ResponseBetween Refine(const GridSpectrum& spectrum, const Eigen::Vector2d& highest) {
   constexpr int kSteps = 3;
   constexpr double kHalf = 0.5;
-  Eigen::Vector2d at = highest;
   ResponseBetween best = ResponseAt(spectrum, highest);
-  for (int i = 0; i < 9; ++i) {
-    const Eigen::Vector2d near = highest + kHalf * Eigen::Vector2d(i % 3 - 1, i / 3 - 1);
-    const ResponseBetween response = ResponseAt(spectrum, near);
-    if (response.value > best.value) best = response, at = near;
+  for (const int y : {-1, 0, 1}) {
+    for (const int x : {-1, 0, 1}) {
+      if (x == 0 && y == 0) continue;
+      const auto response = ResponseAt(spectrum, highest + kHalf * Eigen::Vector2d(x, y));
+      if (response.value > best.value) best = response;
+    }
   }
   for (int step = 0; step < kSteps; ++step) {
     const Eigen::Matrix2d& hessian = best.hessian;
     if (!(hessian(0, 0) < 0 && hessian.determinant() > 0)) break;
-    const Eigen::Vector2d near = at - hessian.inverse() * best.gradient;
-    const ResponseBetween response = ResponseAt(spectrum, near);
-    if (!(response.value > best.value) || (near - at).norm() > kHalf) break;
-    best = response, at = near;
+    const Eigen::Vector2d move = -hessian.inverse() * best.gradient;
+    const ResponseBetween response = ResponseAt(spectrum, best.at + move);
+    if (!(response.value > best.value) || move.norm() > kHalf) break;
+    best = response;
   }
-  return at;
+  return best;
 }
 
 }  // namespace
@@ -252,10 +254,10 @@ FilterPeak AppearanceFilter::Find(const GridSpectrum& sample, FilterWorkspace* w
   workspace->response_transform.Inverse(spectrum, &workspace->response);
   const ResponseRange range = RangeOf(workspace->response);
   FilterPeak peak;
-  peak.value = range.most;
   peak.sharpness = Sharpness(workspace->response, range);
-  const Eigen::Vector2d at = Refine(spectrum, Eigen::Vector2d(range.x, range.y));
-  peak.value = std::max(peak.value, ResponseAt(spectrum, at).value);
+  const ResponseBetween highest = Refine(spectrum, Eigen::Vector2d(range.x, range.y));
+  const Eigen::Vector2d& at = highest.at;
+  peak.value = std::max<double>(range.most, highest.value);
   for (int i = 0; i < 2; ++i) peak.displacement[i] = at[i] > 0.5 * cells_ ? at[i] - cells_ : at[i];
   return peak;
 }

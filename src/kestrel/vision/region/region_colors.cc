@@ -172,7 +172,8 @@ void RegionColors::SumUp(const SampledWindow& window) {
   }
 }
 
-// Of the box from a pixel on, against a frame around it that is half as wide as the box.
+// Returns the mean probability in the box that begins at 'first', less that in the frame around it,
+// which is half as wide as the box.
 double RegionColors::ContrastOf(const Eigen::Vector2i& first, const Eigen::Vector2i& size) const {
   const auto sum = [&](const Eigen::Vector2i& from, const Eigen::Vector2i& to) {
     const int stride = side_ + 1;

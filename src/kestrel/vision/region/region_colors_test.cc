@@ -58,7 +58,7 @@ TEST_P(RegionColorsPlanes, FitReturnsNothingWhereColorsDoNotEnd) {
   EXPECT_FALSE(colors.Fit(Draw(GetParam(), {{64, 64}, {100, 30}}, 70), marked));
 }
 
-TEST_P(RegionColorsPlanes, AgreementIsOneOnRegionAndLowBesideIt) {
+TEST_P(RegionColorsPlanes, AgreementIsLowBesideRegion) {
   const RegionColors::Box marked{{64, 64}, {24, 30}};
   const SampledWindow window = Draw(GetParam(), marked, 70);
   colors.Mark(window, marked);

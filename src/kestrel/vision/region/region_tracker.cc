@@ -428,11 +428,12 @@ bool RegionTracker::Impl::IsTurned(Look* look) {
 void RegionTracker::Impl::FollowAgain(const cv::Mat& image, bool is_turned) {
   state = RegionState::kFollowing;
   seen = time;
-  filter = slow;
-  usual = slow_usual;
   if (is_turned) {
     See(image, center, 1);
     StartOn(kTemporal, &filter, &usual);
+  } else {
+    filter = slow;
+    usual = slow_usual;
   }
   velocity.setZero();
   usual_speed = still_s = 0;
@@ -466,7 +467,8 @@ RegionReport RegionTracker::Impl::Track(const cv::Mat& image, Time now,
       const Eigen::Vector2d size_before = size;
       const double window_before_px = window_px;
       const double agreement = Accept(image, look);
-      // What hides a region may look a little like it.
+      // A prediction counts as seen only by a sure look: what hides a region looks a little like
+      // it.
       const double least = state == RegionState::kFollowing ? kLeastToSee : kLeastToFind;
       if (agreement > least && !HasDrifted(center - before, seconds, agreement)) {
         state = RegionState::kFollowing;
