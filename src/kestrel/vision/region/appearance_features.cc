@@ -53,24 +53,24 @@ void NormalizeCell(const float* HWY_RESTRICT h, const float* HWY_RESTRICT norms,
                    float* HWY_RESTRICT out) {
   constexpr int kDirections = AppearanceFeatures::kDirections;
   constexpr int kOrientations = kDirections / 2;
+  constexpr int kBins = kDirections + kOrientations;
+  constexpr int kPadded = 32;      // of whole registers
   constexpr float kMost = 0.2f;  // share of the neighbourhood's length
-  float both[kOrientations], texture[4];
-  for (int o = 0; o < kOrientations; ++o) both[o] = h[o] + h[o + kOrientations];
-  for (int o = 0; o < AppearanceFeatures::kGradientChannels; ++o) out[o] = 0;
+  float bins[kPadded] = {}, sums[kPadded] = {};
+  for (int o = 0; o < kDirections; ++o) bins[o] = h[o];
+  for (int o = 0; o < kOrientations; ++o) bins[kDirections + o] = h[o] + h[o + kOrientations];
+  float texture[4];
   for (int k = 0; k < 4; ++k) {
-    const float norm = norms[k];
-    float shares[kDirections];
-    for (int o = 0; o < kDirections; ++o) {
-      shares[o] = h[o] * norm < kMost ? h[o] * norm : kMost;
-      out[o] += 0.5f * shares[o];
+    float shares[kPadded];
+    for (int i = 0; i < kPadded; ++i) {
+      shares[i] = bins[i] * norms[k] < kMost ? bins[i] * norms[k] : kMost;
+      sums[i] += 0.5f * shares[i];
     }
     float sum = 0;
-    for (const float share : shares) sum += share;
-    for (int o = 0; o < kOrientations; ++o) {
-      out[kDirections + o] += 0.5f * (both[o] * norm < kMost ? both[o] * norm : kMost);
-    }
+    for (int o = 0; o < kDirections; ++o) sum += shares[o];
     texture[k] = sum;
   }
+  for (int i = 0; i < kBins; ++i) out[i] = sums[i];
   for (int k = 0; k < 4; ++k) {
     out[AppearanceFeatures::kGradientChannels + 1 + k] = 0.2357f * texture[k];
   }

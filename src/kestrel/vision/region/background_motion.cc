@@ -2,6 +2,7 @@
 #include "kestrel/vision/region/background_motion.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -30,15 +31,20 @@ BackgroundMotion::BackgroundMotion()
 void BackgroundMotion::Shrink(const cv::Mat& image) {
   const int channels = image.channels(), channel = channels / 2;
   constexpr int kAcross = kSide * kSamples;
+  std::array<int, kAcross> offsets;
+  for (int i = 0; i < kAcross; ++i) {
+    offsets[i] = (2 * i + 1) * image.cols / (2 * kAcross) * channels + channel;
+  }
   for (int y = 0; y < kSide; ++y) {
-    for (int x = 0; x < kSide; ++x) grid_.Cell(x, y)[0] = grid_.Cell(x, y)[1] = 0;
+    std::array<float, kSide> sums{};
     for (int k = 0; k < kSamples; ++k) {
       const int row = (2 * (y * kSamples + k) + 1) * image.rows / (2 * kAcross);
-      const std::uint8_t* pixels = image.ptr<std::uint8_t>(row) + channel;
-      for (int i = 0; i < kAcross; ++i) {
-        const int column = (2 * i + 1) * image.cols / (2 * kAcross);
-        grid_.Cell(i / kSamples, y)[0] += pixels[column * channels];
-      }
+      const std::uint8_t* pixels = image.ptr<std::uint8_t>(row);
+      for (int i = 0; i < kAcross; ++i) sums[i / kSamples] += pixels[offsets[i]];
+    }
+    for (int x = 0; x < kSide; ++x) {
+      grid_.Cell(x, y)[0] = sums[x];
+      grid_.Cell(x, y)[1] = 0;
     }
   }
   float mean = 0;
