@@ -54,7 +54,7 @@ void NormalizeCell(const float* HWY_RESTRICT h, const float* HWY_RESTRICT norms,
   constexpr int kDirections = AppearanceFeatures::kDirections;
   constexpr int kOrientations = kDirections / 2;
   constexpr int kBins = kDirections + kOrientations;
-  constexpr int kPadded = 32;      // of whole registers
+  constexpr int kPadded = 32;    // of whole registers
   constexpr float kMost = 0.2f;  // share of the neighbourhood's length
   float bins[kPadded] = {}, sums[kPadded] = {};
   for (int o = 0; o < kDirections; ++o) bins[o] = h[o];

@@ -2,22 +2,23 @@
 #include "kestrel/vision/region/region_colors.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 
 namespace kestrel {
 namespace {
 
 constexpr int kLevels = 16;  // of a channel; of gray images all of the 256
 constexpr int kColors = kLevels * kLevels * kLevels;
-constexpr float kRate = 0.05f;    // of the colours around it, by one image
-constexpr double kGap = 1.3;      // sizes of the box, from where on a pixel is around it
-constexpr double kInner = 0.6;    // of the box: there the region is for sure
-constexpr double kNearest = 0.4;  // half sizes of the box, from its middle to the region's end
-constexpr double kFarthest = 2;   // the same, at most
-constexpr double kCore = 0.8;     // of the box: there most is the region
-constexpr float kAllOfColor = std::numeric_limits<float>::max();
-constexpr float kMostOfColor = 3;    // times as much of it as in the region: it may be seen in part
+constexpr float kRate = 0.05f;     // of the colours around it, by one image
+constexpr double kGap = 1.3;       // sizes of the box, from where on a pixel is around it
+constexpr double kInner = 0.6;     // of the box: there the region is for sure
+constexpr double kNearest = 0.4;   // half sizes of the box, from its middle to the region's end
+constexpr double kFarthest = 2;    // the same, at most
+constexpr double kCore = 0.8;      // of the box: there most is the region
+constexpr float kMostOfColor = 3;  // times as much of it as in the region: it may be seen in part
+// Brightness in a shadow, or beyond it, by that in the marked image.
+constexpr std::array<float, 4> kOtherLight = {0.4f, 0.63f, 1.6f, 2.5f};
 constexpr float kUnknown = 1e-4f;    // share of a colour that is known of neither
 constexpr float kLeastClear = 0.3f;  // probability within the box, less that around it
 constexpr float kEdge = 0.4f;  // of the way from the probability around the box to that within
@@ -50,23 +51,25 @@ RegionColors::RegionColors(int side)
       new_inside_(kColors),
       new_around_(kColors),
       probability_(kColors),
+      in_any_light_(kColors),
       profile_(side),
       sums_(std::size_t(side + 1) * (side + 1)) {}
 
 void RegionColors::Mark(const SampledWindow& window, const Box& box) {
+  has_hues_ = window.planes == 3;
   Count(window, box);
   inside_ = new_inside_;
   around_ = new_around_;
   Rate();
   marked_ = CompareWithOutline(window, box);
-  usual_share_ = ShareOf(window, box, kAllOfColor);
+  usual_share_ = ShareInAnyLight(window, box);
 }
 
 void RegionColors::LearnAround(const SampledWindow& window, const Box& box) {
   Count(window, box);
   for (int i = 0; i < kColors; ++i) around_[i] += kRate * (new_around_[i] - around_[i]);
   Rate();
-  usual_share_ += kRate * (ShareOf(window, box, kAllOfColor) - usual_share_);
+  usual_share_ += kRate * (ShareInAnyLight(window, box) - usual_share_);
 }
 
 void RegionColors::Count(const SampledWindow& window, const Box& box) {
@@ -90,6 +93,36 @@ void RegionColors::Rate() {
   for (int i = 0; i < kColors; ++i) {
     probability_[i] = (inside_[i] + 0.5f * kUnknown) / (inside_[i] + around_[i] + kUnknown);
   }
+  in_any_light_ = probability_;
+  if (!has_hues_) return;
+  for (int i = 0; i < kColors; ++i) {
+    in_any_light_[i] = std::max(in_any_light_[i], BestInOtherLight(i));
+  }
+}
+
+// Returns the largest probability of a colour in other light, of those that are known; 0 for gray,
+// which in other light is any gray.
+float RegionColors::BestInOtherLight(int color) const {
+  constexpr float kLeastSaturation = 0.2f;
+  const std::array<int, 3> levels = {color / (kLevels * kLevels), color / kLevels % kLevels,
+                                     color % kLevels};
+  const auto [least, most] = std::ranges::minmax(levels);
+  if (static_cast<float>(most - least) < kLeastSaturation * (static_cast<float>(most) + 0.5f)) {
+    return 0;
+  }
+  float best = 0;
+  for (const float light : kOtherLight) {
+    int lit = 0;
+    bool is_too_bright = false;
+    for (const int level : levels) {
+      const int lit_level = static_cast<int>((static_cast<float>(level) + 0.5f) * light);
+      is_too_bright |= lit_level >= kLevels;
+      lit = lit * kLevels + std::min(lit_level, kLevels - 1);
+    }
+    const bool is_known = inside_[lit] + around_[lit] > kUnknown;
+    if (is_known && !is_too_bright) best = std::max(best, probability_[lit]);
+  }
+  return best;
 }
 
 std::optional<RegionColors::Box> RegionColors::CompareWithOutline(const SampledWindow& window,
@@ -114,36 +147,40 @@ std::optional<RegionColors::Box> RegionColors::Fit(const SampledWindow& window, 
 }
 
 double RegionColors::AgreementOf(const SampledWindow& window, const Box& box) {
-  return ShareOf(window, box, kAllOfColor) / usual_share_;
+  return ShareInAnyLight(window, box) / usual_share_;
+}
+
+double RegionColors::ShareInAnyLight(const SampledWindow& window, const Box& box) {
+  CountCore(window, box);
+  float sum = 0;
+  for (int i = 0; i < kColors; ++i) sum += in_any_light_[i] * new_inside_[i];
+  return sum;
 }
 
 double RegionColors::MatchOf(const SampledWindow& window, const Box& box) {
-  return ShareOf(window, box, kMostOfColor) / usual_share_;
+  CountCore(window, box);
+  float sum = 0;
+  for (int i = 0; i < kColors; ++i) {
+    const bool is_known = inside_[i] + around_[i] > kUnknown;
+    const float most = is_known ? kMostOfColor * inside_[i] : 1;
+    sum += probability_[i] * std::min(new_inside_[i], most);
+  }
+  return sum / usual_share_;
 }
 
-// Returns the mean probability of the pixels in a box, where a colour counts at most
-// 'most_of_color' times as often as in the region.
-double RegionColors::ShareOf(const SampledWindow& window, const Box& box, float most_of_color) {
+// Counts the colours where most is the region.
+void RegionColors::CountCore(const SampledWindow& window, const Box& box) {
   const auto limit = [&](double at) {
     return std::clamp(static_cast<int>(std::lround(at)), 0, side_ - 1);
   };
   const Eigen::Vector2d half = 0.5 * kCore * box.size;
   const int left = limit(box.middle.x() - half.x()), right = limit(box.middle.x() + half.x());
   const int top = limit(box.middle.y() - half.y()), bottom = limit(box.middle.y() + half.y());
-  std::vector<float>& shares = new_inside_;
-  std::ranges::fill(shares, 0);
+  std::ranges::fill(new_inside_, 0);
   for (int y = top; y <= bottom; ++y) {
-    for (int x = left; x <= right; ++x) ++shares[ColorAt(window, std::size_t(y) * side_ + x)];
+    for (int x = left; x <= right; ++x) ++new_inside_[ColorAt(window, std::size_t(y) * side_ + x)];
   }
-  Normalize(&shares);
-  float sum = 0;
-  for (int i = 0; i < kColors; ++i) {
-    if (shares[i] == 0) continue;
-    const bool is_known = inside_[i] + around_[i] > kUnknown;
-    sum +=
-        probability_[i] * (is_known ? std::min(shares[i], most_of_color * inside_[i]) : shares[i]);
-  }
-  return sum;
+  Normalize(&new_inside_);
 }
 
 RegionColors::Place RegionColors::Find(const SampledWindow& window, const Eigen::Vector2d& size) {

@@ -31,11 +31,13 @@ class RegionColors {
   // Returns the box that the region's colours show near 'box'; nothing where they end nowhere, are
   // those around it as well, or did not show the box that was marked. Does not allocate.
   std::optional<Box> Fit(const SampledWindow& window, const Box& box);
-  // Returns how much of the region's colours, and not of those around it, is in a box: 1 for as
-  // much as usually; half of that, about, where all colours are unknown. Does not allocate.
+  // Returns how much of the region's colours, in any light, and not of those around it, is in a
+  // box: 1 for as much as usually; half of that, about, where all colours are unknown. Does not
+  // allocate.
   double AgreementOf(const SampledWindow& window, const Box& box);
-  // The same, where a colour counts at most three times as often as in the region: a shadow that
-  // the marked box held as well is not the region. Does not allocate.
+  // The same in the light of the marked image, where a colour counts at most three times as often
+  // as in the region: a shadow that the marked box held as well is not the region. Does not
+  // allocate.
   double MatchOf(const SampledWindow& window, const Box& box);
   // A box, and by how much it has more of the region's colours than what is around it.
   struct Place {
@@ -55,9 +57,11 @@ class RegionColors {
 
   void Count(const SampledWindow& window, const Box& box);
   void Rate();
+  float BestInOtherLight(int color) const;
   std::optional<Box> Outline(const SampledWindow& window, const Box& box);
   std::optional<Box> CompareWithOutline(const SampledWindow& window, const Box& box);
-  double ShareOf(const SampledWindow& window, const Box& box, float most_of_color);
+  void CountCore(const SampledWindow& window, const Box& box);
+  double ShareInAnyLight(const SampledWindow& window, const Box& box);
   void SumUp(const SampledWindow& window);
   double ContrastOf(const Eigen::Vector2i& first, const Eigen::Vector2i& size) const;
   void Project(const SampledWindow& window, int axis, Band across);
@@ -68,11 +72,13 @@ class RegionColors {
   std::vector<float> inside_, around_;          // shares of the colours
   std::vector<float> new_inside_, new_around_;  // of one image
   std::vector<float> probability_;              // that a pixel of a colour is of the region
+  std::vector<float> in_any_light_;             // the largest of it, of the colour in other light
   std::vector<float> profile_;                  // its mean across an axis
   std::vector<float> sums_;                     // of it, over all pixels above and left
   // The marked box in sizes of its outline; nothing where the colours did not show it.
   std::optional<Box> marked_;
   double usual_share_ = 1;
+  bool has_hues_ = false;  // of a colour image: what is gray has only its brightness
 };
 
 }  // namespace kestrel

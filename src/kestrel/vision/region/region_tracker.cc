@@ -75,6 +75,13 @@ void RequireBox(const cv::Rect2d& box, const cv::Size& size) {
   }
 }
 
+// Returns the largest factor by which a side or the area has changed.
+double ChangeOf(const Eigen::Vector2d& size, const Eigen::Vector2d& before) {
+  const Eigen::Vector2d ratio = size.cwiseQuotient(before);
+  return std::max(std::max(ratio.maxCoeff(), ratio.prod()),
+                  1 / std::min(ratio.minCoeff(), ratio.prod()));
+}
+
 // Returns how probably a region is what was marked, by the agreement of both filters: even where
 // half of the templates agree. Set by hand, not calibrated.
 double ProbabilityOf(double agreement) {
@@ -166,6 +173,9 @@ struct RegionTracker::Impl {
   // True where the colours show it in the middle of the window, in another form: it has turned.
   bool IsTurned(Look* look);
   void FollowAgain(const cv::Mat& image, bool is_turned);
+  // Searches for the region from now on: by its size when both filters knew it, where what it was
+  // taken for since, as a shadow, has another one.
+  void Lose();
   // Looks for a region that is not seen, around the expected place.
   // 'reach_px': farther from there it cannot be.
   void Search(const cv::Mat& image, const Eigen::Vector2d& expected, double radius_px,
@@ -200,8 +210,10 @@ struct RegionTracker::Impl {
   cv::Size image_size;
   Time time, seen;
   RegionState state = RegionState::kLost;
-  Eigen::Vector2d center, size;   // the region's, px
-  double window_px = 0;           // side
+  Eigen::Vector2d center, size;  // the region's, px
+  double window_px = 0;          // side
+  Eigen::Vector2d sure_size;     // when both filters knew it
+  double sure_window_px = 0;
   Eigen::Vector2d window_center;  // of what was seen last, px
   Eigen::Vector2d velocity;       // against the background, px/s
   double usual_speed = 0, still_s = 0;
@@ -248,8 +260,8 @@ void RegionTracker::Impl::Mark(const cv::Mat& image, Time now, const cv::Rect2d&
   time = seen = now;
   state = RegionState::kFollowing;
   center = {box.x + 0.5 * (box.width - 1), box.y + 0.5 * (box.height - 1)};
-  size = {box.width, box.height};
-  window_px = std::max(kPadding * std::sqrt(size.prod()), kLeastWindow_px);
+  size = sure_size = {box.width, box.height};
+  window_px = sure_window_px = std::max(kPadding * std::sqrt(size.prod()), kLeastWindow_px);
   velocity.setZero();
   usual_speed = still_s = 0;
   learnt = place = 0;
@@ -318,6 +330,8 @@ double RegionTracker::Impl::Accept(const cv::Mat& image, const Look& look) {
     filter.Learn(sample, kTemporal, &workspace);
   }
   if (std::min(share, slow_share) > kLeastToLearnSlowly) {
+    sure_size = size;
+    sure_window_px = window_px;
     slow_usual.Add(slow_peak);
     if (++learnt % kSlowPeriod == 0) {
       slow.Learn(sample, kSlowTemporal, &workspace);
@@ -413,16 +427,15 @@ bool RegionTracker::Impl::IsLike(const Look& look) {
 bool RegionTracker::Impl::IsTurned(Look* look) {
   constexpr double kLeast = 0.45;  // mean of the slow filter's agreement and that of the colours
   constexpr double kMost = 2;      // by which sides and area may have changed
-  constexpr double kNearer = 1.4;  // times as large, if it has come nearer meanwhile
-  look->by_colors = FitColors(window_center);
-  if (!look->by_colors) look->by_colors = FitColors(window_center, kNearer);
+  look->by_colors = std::nullopt;
+  // Meanwhile it may have come nearer, or its box was too large.
+  for (const double larger : {1.0, 1.4, 0.7, 0.5}) {
+    if (!look->by_colors) look->by_colors = FitColors(window_center, larger);
+  }
   if (!look->by_colors) return false;
-  const Eigen::Vector2d ratio = look->by_colors->size.cwiseQuotient(size);
   const double slow_share = look->peak.value / slow_usual.value;
   const double match = colors.MatchOf(window, BoxInWindow(window_center));
-  return 0.5 * (slow_share + match) > kLeast &&
-         std::max({ratio.maxCoeff(), ratio.prod()}) < kMost &&
-         std::min({ratio.minCoeff(), ratio.prod()}) > 1 / kMost;
+  return 0.5 * (slow_share + match) > kLeast && ChangeOf(look->by_colors->size, size) < kMost;
 }
 
 void RegionTracker::Impl::FollowAgain(const cv::Mat& image, bool is_turned) {
@@ -439,6 +452,15 @@ void RegionTracker::Impl::FollowAgain(const cv::Mat& image, bool is_turned) {
   usual_speed = still_s = 0;
   place = 0;
   hits = 0;
+}
+
+void RegionTracker::Impl::Lose() {
+  constexpr double kDoubtful = 1.5;
+  if (state == RegionState::kLost) return;
+  state = RegionState::kLost;
+  if (ChangeOf(size, sure_size) < kDoubtful) return;
+  size = sure_size;
+  window_px = sure_window_px;
 }
 
 RegionReport RegionTracker::Impl::Track(const cv::Mat& image, Time now,
@@ -483,7 +505,7 @@ RegionReport RegionTracker::Impl::Track(const cv::Mat& image, Time now,
   if (state != RegionState::kLost) state = RegionState::kCoasting;
   center = expected.cwiseMax(0).cwiseMin(Eigen::Vector2d(image_size.width, image_size.height));
   const double unseen_s = ToSeconds(now - seen);
-  if (unseen_s > kCoasting_s) state = RegionState::kLost;
+  if (unseen_s > kCoasting_s) Lose();
   // Without a hint the region may move on by a few of its sizes in a second.
   constexpr double kSizesPerSecond = 4;
   const double radius =
