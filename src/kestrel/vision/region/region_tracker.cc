@@ -171,7 +171,8 @@ struct RegionTracker::Impl {
   // True where the slow filter and the colours find what was marked in the window.
   bool IsLike(const Look& look);
   // True where the colours show it in the middle of the window, in another form: it has turned.
-  bool IsTurned(Look* look);
+  // 'contrast': of the colours there, see RegionColors::Place.
+  bool IsTurned(double contrast, Look* look);
   void FollowAgain(const cv::Mat& image, bool is_turned);
   // Searches for the region from now on: by its size when both filters knew it, where what it was
   // taken for since, as a shadow, has another one.
@@ -411,7 +412,8 @@ void RegionTracker::Impl::Search(const cv::Mat& image, const Eigen::Vector2d& ex
   best = LookAt(image, slow, best.center_px, 1);
   const bool is_alike = can_be_at(best.center_px) && IsLike(best);
   if (!is_alike) best = LookAt(image, slow, by_colors.center_px, 1);
-  const bool is_turned = !is_alike && can_be_at(by_colors.center_px) && IsTurned(&best);
+  const bool is_turned =
+      !is_alike && can_be_at(by_colors.center_px) && IsTurned(by_colors.contrast, &best);
   hits = is_alike || is_turned ? hits + 1 : 0;
   if (hits == 0) return;
   center = is_turned ? best.by_colors->middle : best.center_px;
@@ -424,18 +426,22 @@ bool RegionTracker::Impl::IsLike(const Look& look) {
          colors.MatchOf(window, BoxInWindow(look.center_px)) > kLeastColorsToFind;
 }
 
-bool RegionTracker::Impl::IsTurned(Look* look) {
+bool RegionTracker::Impl::IsTurned(double contrast, Look* look) {
   constexpr double kLeast = 0.45;  // mean of the slow filter's agreement and that of the colours
   constexpr double kMost = 2;      // by which sides and area may have changed
+  constexpr double kLeastContrast = 0.35, kLeastMatch = 0.8;  // without an outline
+  const double slow_share = look->peak.value / slow_usual.value;
+  const double match = colors.MatchOf(window, BoxInWindow(window_center));
   look->by_colors = std::nullopt;
   // Meanwhile it may have come nearer, or its box was too large.
   for (const double larger : {1.0, 1.4, 0.7, 0.5}) {
     if (!look->by_colors) look->by_colors = FitColors(window_center, larger);
   }
-  if (!look->by_colors) return false;
-  const double slow_share = look->peak.value / slow_usual.value;
-  const double match = colors.MatchOf(window, BoxInWindow(window_center));
-  return 0.5 * (slow_share + match) > kLeast && ChangeOf(look->by_colors->size, size) < kMost;
+  if (!look->by_colors && contrast > kLeastContrast && match > kLeastMatch) {
+    look->by_colors = {window_center, size};
+  }
+  return look->by_colors && 0.5 * (slow_share + match) > kLeast &&
+         ChangeOf(look->by_colors->size, size) < kMost;
 }
 
 void RegionTracker::Impl::FollowAgain(const cv::Mat& image, bool is_turned) {
