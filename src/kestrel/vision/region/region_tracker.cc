@@ -433,8 +433,8 @@ bool RegionTracker::Impl::IsTurned(double contrast, Look* look) {
   const double slow_share = look->peak.value / slow_usual.value;
   const double match = colors.MatchOf(window, BoxInWindow(window_center));
   look->by_colors = std::nullopt;
-  // Meanwhile it may have come nearer, or its box was too large.
-  for (const double larger : {1.0, 1.4, 0.7, 0.5}) {
+  // Meanwhile it may have come nearer. Smaller ones find shadows.
+  for (const double larger : {1.0, 1.4}) {
     if (!look->by_colors) look->by_colors = FitColors(window_center, larger);
   }
   if (!look->by_colors && contrast > kLeastContrast && match > kLeastMatch) {
