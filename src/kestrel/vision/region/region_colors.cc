@@ -100,6 +100,8 @@ void RegionColors::Rate() {
   }
 }
 
+bool RegionColors::IsKnown(int color) const { return inside_[color] + around_[color] > kUnknown; }
+
 // Returns the largest probability of a colour in other light, of those that are known; 0 for gray,
 // which in other light is any gray.
 float RegionColors::BestInOtherLight(int color) const {
@@ -119,8 +121,7 @@ float RegionColors::BestInOtherLight(int color) const {
       is_too_bright |= lit_level >= kLevels;
       lit = lit * kLevels + std::min(lit_level, kLevels - 1);
     }
-    const bool is_known = inside_[lit] + around_[lit] > kUnknown;
-    if (is_known && !is_too_bright) best = std::max(best, probability_[lit]);
+    if (IsKnown(lit) && !is_too_bright) best = std::max(best, probability_[lit]);
   }
   return best;
 }
@@ -161,14 +162,14 @@ double RegionColors::MatchOf(const SampledWindow& window, const Box& box) {
   CountCore(window, box);
   float sum = 0;
   for (int i = 0; i < kColors; ++i) {
-    const bool is_known = inside_[i] + around_[i] > kUnknown;
-    const float most = is_known ? kMostOfColor * inside_[i] : 1;
+    const float most = IsKnown(i) ? kMostOfColor * inside_[i] : 1;
     sum += probability_[i] * std::min(new_inside_[i], most);
   }
   return sum / usual_share_;
 }
 
-// Counts the colours where most is the region.
+// Counts the colours in the inner part of the box, where most pixels are the region's, as
+// 'new_inside_'.
 void RegionColors::CountCore(const SampledWindow& window, const Box& box) {
   const auto limit = [&](double at) {
     return std::clamp(static_cast<int>(std::lround(at)), 0, side_ - 1);

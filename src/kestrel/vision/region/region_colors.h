@@ -57,6 +57,7 @@ class RegionColors {
 
   void Count(const SampledWindow& window, const Box& box);
   void Rate();
+  bool IsKnown(int color) const;
   float BestInOtherLight(int color) const;
   std::optional<Box> Outline(const SampledWindow& window, const Box& box);
   std::optional<Box> CompareWithOutline(const SampledWindow& window, const Box& box);

@@ -174,8 +174,8 @@ struct RegionTracker::Impl {
   // 'contrast': of the colours there, see RegionColors::Place.
   bool IsTurned(double contrast, Look* look);
   void FollowAgain(const cv::Mat& image, bool is_turned);
-  // Searches for the region from now on: by its size when both filters knew it, where what it was
-  // taken for since, as a shadow, has another one.
+  // Counts the region as lost from now on. Its size is that of the last image in which both filters
+  // knew it, unless it has changed little since: the box may have grown to that of a shadow.
   void Lose();
   // Looks for a region that is not seen, around the expected place.
   // 'reach_px': farther from there it cannot be.
@@ -429,14 +429,12 @@ bool RegionTracker::Impl::IsLike(const Look& look) {
 bool RegionTracker::Impl::IsTurned(double contrast, Look* look) {
   constexpr double kLeast = 0.45;  // mean of the slow filter's agreement and that of the colours
   constexpr double kMost = 2;      // by which sides and area may have changed
+  constexpr double kNearer = 1.4;  // times as large, if it has come nearer meanwhile
   constexpr double kLeastContrast = 0.35, kLeastMatch = 0.8;  // without an outline
   const double slow_share = look->peak.value / slow_usual.value;
   const double match = colors.MatchOf(window, BoxInWindow(window_center));
-  look->by_colors = std::nullopt;
-  // Meanwhile it may have come nearer. Smaller ones find shadows.
-  for (const double larger : {1.0, 1.4}) {
-    if (!look->by_colors) look->by_colors = FitColors(window_center, larger);
-  }
+  look->by_colors = FitColors(window_center);
+  if (!look->by_colors) look->by_colors = FitColors(window_center, kNearer);
   if (!look->by_colors && contrast > kLeastContrast && match > kLeastMatch) {
     look->by_colors = {window_center, size};
   }
