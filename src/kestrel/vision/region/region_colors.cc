@@ -2,7 +2,6 @@
 #include "kestrel/vision/region/region_colors.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace kestrel {
@@ -17,10 +16,11 @@ constexpr double kNearest = 0.4;   // half sizes of the box, from its middle to 
 constexpr double kFarthest = 2;    // the same, at most
 constexpr double kCore = 0.8;      // of the box: there most is the region
 constexpr float kMostOfColor = 3;  // times as much of it as in the region: it may be seen in part
-// Brightness in a shadow, or beyond it, by that in the marked image.
-constexpr std::array<float, 4> kOtherLight = {0.4f, 0.63f, 1.6f, 2.5f};
-constexpr float kUnknown = 1e-4f;    // share of a colour that is known of neither
-constexpr float kLeastClear = 0.3f;  // probability within the box, less that around it
+constexpr int kHuesPerSextant = 4;
+constexpr int kGray = 6 * kHuesPerSextant;  // beside the hues
+constexpr double kLeastMarkedHues = 0.2;    // share of the box, from which on they must be seen
+constexpr double kLeastHues = 0.3;          // of those that were marked
+constexpr float kLeastClear = 0.3f;         // probability within the box, less that around it
 constexpr float kEdge = 0.4f;  // of the way from the probability around the box to that within
 
 int LevelOf(float value) {
@@ -33,97 +33,68 @@ int ColorAt(const SampledWindow& window, std::size_t i) {
          LevelOf(window.values[2][i]);
 }
 
-// Makes the sum 1; false where it is 0.
-bool Normalize(std::vector<float>* shares) {
-  float sum = 0;
-  for (const float share : *shares) sum += share;
-  if (sum == 0) return false;
-  for (float& share : *shares) share /= sum;
-  return true;
+// Returns the hue of HSV in steps; kGray where its channels differ too little.
+int HueAt(const SampledWindow& window, std::size_t i) {
+  constexpr float kDark = 8;  // added to each channel: the noise of a dark pixel is no hue
+  constexpr float kLeastSpread = 0.1f;
+  if (window.planes == 1) return kGray;
+  const float blue = window.values[0][i], green = window.values[1][i], red = window.values[2][i];
+  const auto [least, most] = std::ranges::minmax({blue, green, red});
+  const float spread = most - least;
+  if (spread < kLeastSpread * (blue + green + red + 3 * kDark)) return kGray;
+  const float sextant = most == red     ? 6 + (green - blue) / spread
+                        : most == green ? 2 + (blue - red) / spread
+                                        : 4 + (red - green) / spread;
+  return static_cast<int>(sextant * kHuesPerSextant) % kGray;
 }
 
 }  // namespace
 
 RegionColors::RegionColors(int side)
     : side_(side),
-      inside_(kColors),
-      around_(kColors),
-      new_inside_(kColors),
-      new_around_(kColors),
-      probability_(kColors),
-      in_any_light_(kColors),
+      colors_(kColors),
+      hues_(kGray + 1),
+      core_(kColors),
       profile_(side),
       sums_(std::size_t(side + 1) * (side + 1)) {}
 
 void RegionColors::Mark(const SampledWindow& window, const Box& box) {
-  has_hues_ = window.planes == 3;
   Count(window, box);
-  inside_ = new_inside_;
-  around_ = new_around_;
-  Rate();
+  colors_.Restart();
+  hues_.Restart();
   marked_ = CompareWithOutline(window, box);
+  marked_hues_ = ShareOfHues(window, box);
   usual_share_ = ShareInAnyLight(window, box);
 }
 
 void RegionColors::LearnAround(const SampledWindow& window, const Box& box) {
   Count(window, box);
-  for (int i = 0; i < kColors; ++i) around_[i] += kRate * (new_around_[i] - around_[i]);
-  Rate();
+  colors_.LearnAround(kRate);
+  hues_.LearnAround(kRate);
   usual_share_ += kRate * (ShareInAnyLight(window, box) - usual_share_);
 }
 
 void RegionColors::Count(const SampledWindow& window, const Box& box) {
-  std::ranges::fill(new_inside_, 0);
-  std::ranges::fill(new_around_, 0);
   for (int y = 0; y < side_; ++y) {
     const double away_y = 2 * std::abs(y - box.middle.y()) / box.size.y();
     for (int x = 0; x < side_; ++x) {
       const double away = std::max(away_y, 2 * std::abs(x - box.middle.x()) / box.size.x());
       if (away > 1 && away < kGap) continue;
-      ++(away <= 1 ? new_inside_ : new_around_)[ColorAt(window, std::size_t(y) * side_ + x)];
+      const std::size_t i = std::size_t(y) * side_ + x;
+      colors_.Count(ColorAt(window, i), away <= 1);
+      hues_.Count(HueAt(window, i), away <= 1);
     }
-  }
-  if (!Normalize(&new_inside_) || !Normalize(&new_around_)) {
-    new_inside_ = inside_;
-    new_around_ = around_;
   }
 }
 
-void RegionColors::Rate() {
-  for (int i = 0; i < kColors; ++i) {
-    probability_[i] = (inside_[i] + 0.5f * kUnknown) / (inside_[i] + around_[i] + kUnknown);
-  }
-  in_any_light_ = probability_;
-  if (!has_hues_) return;
-  for (int i = 0; i < kColors; ++i) {
-    in_any_light_[i] = std::max(in_any_light_[i], BestInOtherLight(i));
-  }
+float RegionColors::ProbabilityInAnyLight(const SampledWindow& window, std::size_t pixel) const {
+  return std::max(colors_.ProbabilityOf(ColorAt(window, pixel)), HueProbability(window, pixel));
 }
 
-bool RegionColors::IsKnown(int color) const { return inside_[color] + around_[color] > kUnknown; }
-
-// Returns the largest probability of a colour in other light, of those that are known; 0 for gray,
-// which in other light is any gray.
-float RegionColors::BestInOtherLight(int color) const {
-  constexpr float kLeastSaturation = 0.2f;
-  const std::array<int, 3> levels = {color / (kLevels * kLevels), color / kLevels % kLevels,
-                                     color % kLevels};
-  const auto [least, most] = std::ranges::minmax(levels);
-  if (static_cast<float>(most - least) < kLeastSaturation * (static_cast<float>(most) + 0.5f)) {
-    return 0;
-  }
-  float best = 0;
-  for (const float light : kOtherLight) {
-    int lit = 0;
-    bool is_too_bright = false;
-    for (const int level : levels) {
-      const int lit_level = static_cast<int>((static_cast<float>(level) + 0.5f) * light);
-      is_too_bright |= lit_level >= kLevels;
-      lit = lit * kLevels + std::min(lit_level, kLevels - 1);
-    }
-    if (IsKnown(lit) && !is_too_bright) best = std::max(best, probability_[lit]);
-  }
-  return best;
+// Returns 0 where a pixel is gray, which in other light is any gray, or its hue unknown.
+float RegionColors::HueProbability(const SampledWindow& window, std::size_t pixel) const {
+  const int hue = HueAt(window, pixel);
+  return hue != kGray && hues_.IsKnown(hue) ? hues_.ProbabilityOf(hue) : 0;
 }
 
 std::optional<RegionColors::Box> RegionColors::CompareWithOutline(const SampledWindow& window,
@@ -147,41 +118,62 @@ std::optional<RegionColors::Box> RegionColors::Fit(const SampledWindow& window, 
              marked_->size.cwiseProduct(outline->size)};
 }
 
-double RegionColors::AgreementOf(const SampledWindow& window, const Box& box) {
-  return ShareInAnyLight(window, box) / usual_share_;
+bool RegionColors::HasHues() const { return marked_hues_ > kLeastMarkedHues; }
+
+double RegionColors::AgreementOf(const SampledWindow& window, const Box& box) const {
+  return HasHues() && AreHuesMissing(window, box) ? 0 : ShareInAnyLight(window, box) / usual_share_;
 }
 
-double RegionColors::ShareInAnyLight(const SampledWindow& window, const Box& box) {
-  CountCore(window, box);
-  float sum = 0;
-  for (int i = 0; i < kColors; ++i) sum += in_any_light_[i] * new_inside_[i];
-  return sum;
+bool RegionColors::AreHuesMissing(const SampledWindow& window, const Box& box) const {
+  return ShareOfHues(window, box) < kLeastHues * marked_hues_;
+}
+
+double RegionColors::ShareInAnyLight(const SampledWindow& window, const Box& box) const {
+  double sum = 0;
+  const int pixels =
+      ForEachInCore(box, [&](std::size_t i) { sum += ProbabilityInAnyLight(window, i); });
+  return sum / pixels;
+}
+
+// Returns the share of the pixels that have a hue of the region.
+double RegionColors::ShareOfHues(const SampledWindow& window, const Box& box) const {
+  constexpr float kLeast = 0.6f;
+  double sum = 0;
+  const int pixels =
+      ForEachInCore(box, [&](std::size_t i) { sum += HueProbability(window, i) > kLeast; });
+  return sum / pixels;
 }
 
 double RegionColors::MatchOf(const SampledWindow& window, const Box& box) {
-  CountCore(window, box);
-  float sum = 0;
-  for (int i = 0; i < kColors; ++i) {
-    const float most = IsKnown(i) ? kMostOfColor * inside_[i] : 1;
-    sum += probability_[i] * std::min(new_inside_[i], most);
+  const bool by_hue = HasHues();
+  if (by_hue && AreHuesMissing(window, box)) return 0;
+  std::ranges::fill(core_, 0.0f);
+  const int pixels = ForEachInCore(box, [&](std::size_t i) {
+    const int bin = by_hue ? HueAt(window, i) : ColorAt(window, i);
+    core_[bin] += by_hue ? ProbabilityInAnyLight(window, i) : colors_.ProbabilityOf(bin);
+  });
+  const ColorShares& shares = by_hue ? hues_ : colors_;
+  double sum = 0;
+  for (int i = 0; i < shares.size(); ++i) {
+    const float most = shares.IsKnown(i) ? kMostOfColor * shares.Inside(i) : 1;
+    sum += std::min(core_[i] / static_cast<float>(pixels), most);
   }
   return sum / usual_share_;
 }
 
-// Counts the colours in the inner part of the box, where most pixels are the region's, as
-// 'new_inside_'.
-void RegionColors::CountCore(const SampledWindow& window, const Box& box) {
+// Visits the pixels in the inner part of the box, where most are the region's; returns how many.
+template <typename Visitor>
+int RegionColors::ForEachInCore(const Box& box, const Visitor& visit) const {
   const auto limit = [&](double at) {
     return std::clamp(static_cast<int>(std::lround(at)), 0, side_ - 1);
   };
   const Eigen::Vector2d half = 0.5 * kCore * box.size;
   const int left = limit(box.middle.x() - half.x()), right = limit(box.middle.x() + half.x());
   const int top = limit(box.middle.y() - half.y()), bottom = limit(box.middle.y() + half.y());
-  std::ranges::fill(new_inside_, 0);
   for (int y = top; y <= bottom; ++y) {
-    for (int x = left; x <= right; ++x) ++new_inside_[ColorAt(window, std::size_t(y) * side_ + x)];
+    for (int x = left; x <= right; ++x) visit(std::size_t(y) * side_ + x);
   }
-  Normalize(&new_inside_);
+  return (right - left + 1) * (bottom - top + 1);
 }
 
 RegionColors::Place RegionColors::Find(const SampledWindow& window, const Eigen::Vector2d& size) {
@@ -204,7 +196,7 @@ void RegionColors::SumUp(const SampledWindow& window) {
   for (int y = 0; y < side_; ++y) {
     float row = 0;
     for (int x = 0; x < side_; ++x) {
-      row += probability_[ColorAt(window, std::size_t(y) * side_ + x)];
+      row += colors_.ProbabilityOf(ColorAt(window, std::size_t(y) * side_ + x));
       sums_[(y + 1) * stride + x + 1] = sums_[y * stride + x + 1] + row;
     }
   }
@@ -240,8 +232,8 @@ void RegionColors::Project(const SampledWindow& window, int axis, Band across) {
   for (int i = 0; i < side_; ++i) {
     float sum = 0;
     for (int k = across.first; k <= across.last; ++k) {
-      sum +=
-          probability_[ColorAt(window, std::size_t(i) * along_step + std::size_t(k) * across_step)];
+      const std::size_t pixel = std::size_t(i) * along_step + std::size_t(k) * across_step;
+      sum += colors_.ProbabilityOf(ColorAt(window, pixel));
     }
     profile_[i] = sum / static_cast<float>(across.last - across.first + 1);
   }

@@ -72,26 +72,56 @@ TEST_P(RegionColorsPlanes, AgreementIsAHalfOnUnknownColors) {
   EXPECT_NEAR(colors.AgreementOf(Draw(GetParam(), marked, 140), marked), 0.5, 0.1);
 }
 
-// Returns the agreement of a rectangle with itself in a shadow of half the brightness. 'green': its
-// share of the channel, less than 1 for purple.
-double AgreementInShadow(float green) {
-  const RegionColors::Box marked{{64, 64}, {24, 30}};
-  SampledWindow window = Draw(3, marked, 70);
+// A rectangle that is purple where 'green', its share of the channel, is less than 1.
+SampledWindow DrawPurple(const RegionColors::Box& thing, float green) {
+  SampledWindow window = Draw(3, thing, 70);
   for (int y = 49; y < 79; ++y) {
     for (int x = 52; x < 76; ++x) window.values[1][y * kSide + x] *= green;
   }
+  return window;
+}
+
+void Dim(float factor, SampledWindow* window) {
+  for (auto& plane : window->values) {
+    for (float& value : plane) value *= factor;
+  }
+}
+
+struct Similarity {
+  double agreement, match;
+};
+
+// Returns how similar a rectangle is to itself in a shadow of half the brightness.
+Similarity SimilarityInShadow(float green) {
+  const RegionColors::Box marked{{64, 64}, {24, 30}};
+  SampledWindow window = DrawPurple(marked, green);
   RegionColors colors{kSide};
   colors.Mark(window, marked);
-  for (auto& plane : window.values) {
-    for (float& value : plane) value *= 0.5f;
-  }
-  return colors.AgreementOf(window, marked);
+  EXPECT_EQ(colors.HasHues(), green < 1);
+  Dim(0.5f, &window);
+  return {colors.AgreementOf(window, marked), colors.MatchOf(window, marked)};
 }
 
 // A gray rectangle in a shadow looks like the ground in the sun.
-TEST(RegionColors, AgreementInShadowIsHighForHueAndLowForGray) {
-  EXPECT_GT(AgreementInShadow(0.4f), 0.65);
-  EXPECT_LT(AgreementInShadow(1), 0.5);
+TEST(RegionColors, SimilarityInShadowIsHighForHueAndLowForGray) {
+  const Similarity purple = SimilarityInShadow(0.4f), gray = SimilarityInShadow(1);
+  EXPECT_GT(purple.agreement, 0.65);
+  EXPECT_GT(purple.match, 0.65);
+  EXPECT_LT(gray.agreement, 0.5);
+  EXPECT_LT(gray.match, 0.5);
+}
+
+// As dark as the rectangle, and in a place where its box is.
+TEST(RegionColors, SimilarityIsZeroWhereHueIsMissing) {
+  const RegionColors::Box marked{{64, 64}, {24, 30}};
+  SampledWindow purple = DrawPurple(marked, 0.3f), gray = Draw(3, marked, 70);
+  Dim(0.15f, &purple);
+  Dim(0.15f, &gray);
+  RegionColors colors{kSide};
+  colors.Mark(purple, marked);
+  EXPECT_NEAR(colors.MatchOf(purple, marked), 1, 0.1);
+  EXPECT_EQ(colors.AgreementOf(gray, marked), 0);
+  EXPECT_EQ(colors.MatchOf(gray, marked), 0);
 }
 
 // The marked box holds a shadow, which is alone in the second image.

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kestrel/vision/region/color_shares.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace kestrel {
+namespace {
+
+// Makes the sum 1; false where it is 0.
+bool Normalize(std::vector<float>* counts) {
+  const float sum = std::accumulate(counts->begin(), counts->end(), 0.0f);
+  if (sum == 0) return false;
+  for (float& count : *counts) count /= sum;
+  return true;
+}
+
+}  // namespace
+
+ColorShares::ColorShares(int colors)
+    : inside_(colors),
+      around_(colors),
+      new_inside_(colors),
+      new_around_(colors),
+      probability_(colors) {}
+
+void ColorShares::Restart() {
+  if (FinishCount()) {
+    inside_ = new_inside_;
+    around_ = new_around_;
+    Rate();
+  }
+  std::ranges::fill(new_inside_, 0);
+  std::ranges::fill(new_around_, 0);
+}
+
+void ColorShares::LearnAround(float rate) {
+  if (FinishCount()) {
+    for (std::size_t i = 0; i < around_.size(); ++i) {
+      around_[i] += rate * (new_around_[i] - around_[i]);
+    }
+    Rate();
+  }
+  std::ranges::fill(new_inside_, 0);
+  std::ranges::fill(new_around_, 0);
+}
+
+bool ColorShares::FinishCount() { return Normalize(&new_inside_) && Normalize(&new_around_); }
+
+void ColorShares::Rate() {
+  for (std::size_t i = 0; i < inside_.size(); ++i) {
+    probability_[i] = (inside_[i] + 0.5f * kUnknown) / (inside_[i] + around_[i] + kUnknown);
+  }
+}
+
+}  // namespace kestrel
