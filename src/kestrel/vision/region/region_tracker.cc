@@ -412,8 +412,10 @@ void RegionTracker::Impl::Search(const cv::Mat& image, const Eigen::Vector2d& ex
   best = LookAt(image, slow, best.center_px, 1);
   const bool is_alike = can_be_at(best.center_px) && IsLike(best);
   if (!is_alike) best = LookAt(image, slow, by_colors.center_px, 1);
+  // Something else has the brightness of what is gray, and may be anywhere.
+  const bool is_far = !colors.HasHues() && (by_colors.center_px - expected).norm() > window_px;
   const bool is_turned =
-      !is_alike && can_be_at(by_colors.center_px) && IsTurned(by_colors.contrast, &best);
+      !is_alike && !is_far && can_be_at(by_colors.center_px) && IsTurned(by_colors.contrast, &best);
   hits = is_alike || is_turned ? hits + 1 : 0;
   if (hits == 0) return;
   center = is_turned ? best.by_colors->middle : best.center_px;

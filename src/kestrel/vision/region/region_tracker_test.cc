@@ -152,6 +152,28 @@ TEST_P(RegionTrackerSeeds, TargetThatTurnedWhileHiddenIsFoundByItsColors) {
   EXPECT_GT(Overlap(report.box_px, {at.x() - 32, at.y() - 22, 64, 44}), 0.5);
 }
 
+// The other thing has the target's brightness, but another form.
+TEST_P(RegionTrackerSeeds, GrayThingFarAwayIsNotFoundByItsBrightness) {
+  const auto gray = [&](const cv::Size& size, int seed) {
+    const cv::Mat look = RegionTexture(size, static_cast<std::uint64_t>(seed), 3);
+    return cv::Mat(look + cv::Scalar(100, 100, 100));
+  };
+  scene.target.look = gray({44, 64}, GetParam());
+  Mark();
+  for (int i = 0; i < 20; ++i) Next();
+  RegionThing other;
+  other.look = gray({64, 44}, 50 + GetParam());
+  other.center_px = scene.target.center_px + Eigen::Vector2d(-270, 0);
+  scene.other = other;
+  HideTarget();
+  for (int i = 0; i < 60; ++i) {
+    const RegionReport report = Next();
+    if (report.state != RegionState::kFollowing) continue;
+    const Eigen::Vector2d at = scene.InImage();
+    ASSERT_LT(std::abs(report.box_px.x + 0.5 * report.box_px.width - at.x()), 100) << i;
+  }
+}
+
 // So slowly that the filter which learns each image would learn the tree.
 TEST_P(RegionTrackerSeeds, TreeThatHidesTargetSlowlyIsNotFollowed) {
   constexpr double kSpeed = 0.5;  // px per image
