@@ -39,7 +39,7 @@ int HueAt(const SampledWindow& window, std::size_t i) {
   constexpr float kLeastSpread = 0.1f;
   if (window.planes == 1) return kGray;
   const float blue = window.values[0][i], green = window.values[1][i], red = window.values[2][i];
-  const auto [least, most] = std::ranges::minmax({blue, green, red});
+  const auto [least, most] = std::minmax({blue, green, red});
   const float spread = most - least;
   if (spread < kLeastSpread * (blue + green + red + 3 * kDark)) return kGray;
   const float sextant = most == red     ? 6 + (green - blue) / spread
