@@ -25,32 +25,21 @@ ColorShares::ColorShares(int colors)
       probability_(colors) {}
 
 void ColorShares::Restart() {
-  if (FinishCount()) {
-    inside_ = new_inside_;
-    around_ = new_around_;
-    Rate();
-  }
-  std::ranges::fill(new_inside_, 0);
-  std::ranges::fill(new_around_, 0);
+  std::ranges::fill(inside_, 0.0f);
+  std::ranges::fill(around_, 0.0f);
+  Learn(1, 1);
 }
 
-void ColorShares::LearnAround(float rate) {
-  if (FinishCount()) {
-    for (std::size_t i = 0; i < around_.size(); ++i) {
-      around_[i] += rate * (new_around_[i] - around_[i]);
+void ColorShares::Learn(float rate_inside, float rate_around) {
+  if (Normalize(&new_inside_) && Normalize(&new_around_)) {
+    for (std::size_t i = 0; i < inside_.size(); ++i) {
+      inside_[i] += rate_inside * (new_inside_[i] - inside_[i]);
+      around_[i] += rate_around * (new_around_[i] - around_[i]);
+      probability_[i] = (inside_[i] + 0.5f * kUnknown) / (inside_[i] + around_[i] + kUnknown);
     }
-    Rate();
   }
-  std::ranges::fill(new_inside_, 0);
-  std::ranges::fill(new_around_, 0);
-}
-
-bool ColorShares::FinishCount() { return Normalize(&new_inside_) && Normalize(&new_around_); }
-
-void ColorShares::Rate() {
-  for (std::size_t i = 0; i < inside_.size(); ++i) {
-    probability_[i] = (inside_[i] + 0.5f * kUnknown) / (inside_[i] + around_[i] + kUnknown);
-  }
+  std::ranges::fill(new_inside_, 0.0f);
+  std::ranges::fill(new_around_, 0.0f);
 }
 
 }  // namespace kestrel

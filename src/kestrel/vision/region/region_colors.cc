@@ -121,11 +121,11 @@ std::optional<RegionColors::Box> RegionColors::Fit(const SampledWindow& window, 
 bool RegionColors::HasHues() const { return marked_hues_ > kLeastMarkedHues; }
 
 double RegionColors::AgreementOf(const SampledWindow& window, const Box& box) const {
-  return HasHues() && AreHuesMissing(window, box) ? 0 : ShareInAnyLight(window, box) / usual_share_;
+  return AreHuesMissing(window, box) ? 0 : ShareInAnyLight(window, box) / usual_share_;
 }
 
 bool RegionColors::AreHuesMissing(const SampledWindow& window, const Box& box) const {
-  return ShareOfHues(window, box) < kLeastHues * marked_hues_;
+  return HasHues() && ShareOfHues(window, box) < kLeastHues * marked_hues_;
 }
 
 double RegionColors::ShareInAnyLight(const SampledWindow& window, const Box& box) const {
@@ -145,8 +145,8 @@ double RegionColors::ShareOfHues(const SampledWindow& window, const Box& box) co
 }
 
 double RegionColors::MatchOf(const SampledWindow& window, const Box& box) {
+  if (AreHuesMissing(window, box)) return 0;
   const bool by_hue = HasHues();
-  if (by_hue && AreHuesMissing(window, box)) return 0;
   std::ranges::fill(core_, 0.0f);
   const int pixels = ForEachInCore(box, [&](std::size_t i) {
     const int bin = by_hue ? HueAt(window, i) : ColorAt(window, i);

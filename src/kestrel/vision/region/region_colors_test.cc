@@ -72,9 +72,11 @@ TEST_P(RegionColorsPlanes, AgreementIsAHalfOnUnknownColors) {
   EXPECT_NEAR(colors.AgreementOf(Draw(GetParam(), marked, 140), marked), 0.5, 0.1);
 }
 
-// A rectangle that is purple where 'green', its share of the channel, is less than 1.
-SampledWindow DrawPurple(const RegionColors::Box& thing, float green) {
-  SampledWindow window = Draw(3, thing, 70);
+const RegionColors::Box kThing{{64, 64}, {24, 30}};
+
+// The thing is purple where 'green', the share of its green channel, is less than 1.
+SampledWindow DrawThing(float green) {
+  SampledWindow window = Draw(3, kThing, 70);
   for (int y = 49; y < 79; ++y) {
     for (int x = 52; x < 76; ++x) window.values[1][y * kSide + x] *= green;
   }
@@ -91,15 +93,14 @@ struct Similarity {
   double agreement, match;
 };
 
-// Returns how similar a rectangle is to itself in a shadow of half the brightness.
+// Returns how similar the thing is to itself in a shadow of half the brightness.
 Similarity SimilarityInShadow(float green) {
-  const RegionColors::Box marked{{64, 64}, {24, 30}};
-  SampledWindow window = DrawPurple(marked, green);
+  SampledWindow window = DrawThing(green);
   RegionColors colors{kSide};
-  colors.Mark(window, marked);
+  colors.Mark(window, kThing);
   EXPECT_EQ(colors.HasHues(), green < 1);
   Dim(0.5f, &window);
-  return {colors.AgreementOf(window, marked), colors.MatchOf(window, marked)};
+  return {colors.AgreementOf(window, kThing), colors.MatchOf(window, kThing)};
 }
 
 // A gray rectangle in a shadow looks like the ground in the sun.
@@ -111,17 +112,16 @@ TEST(RegionColors, SimilarityInShadowIsHighForHueAndLowForGray) {
   EXPECT_LT(gray.match, 0.5);
 }
 
-// As dark as the rectangle, and in a place where its box is.
+// A gray thing, as dark as the purple one, is in its place.
 TEST(RegionColors, SimilarityIsZeroWhereHueIsMissing) {
-  const RegionColors::Box marked{{64, 64}, {24, 30}};
-  SampledWindow purple = DrawPurple(marked, 0.3f), gray = Draw(3, marked, 70);
+  SampledWindow purple = DrawThing(0.3f), gray = DrawThing(1);
   Dim(0.15f, &purple);
   Dim(0.15f, &gray);
   RegionColors colors{kSide};
-  colors.Mark(purple, marked);
-  EXPECT_NEAR(colors.MatchOf(purple, marked), 1, 0.1);
-  EXPECT_EQ(colors.AgreementOf(gray, marked), 0);
-  EXPECT_EQ(colors.MatchOf(gray, marked), 0);
+  colors.Mark(purple, kThing);
+  EXPECT_NEAR(colors.MatchOf(purple, kThing), 1, 0.1);
+  EXPECT_EQ(colors.AgreementOf(gray, kThing), 0);
+  EXPECT_EQ(colors.MatchOf(gray, kThing), 0);
 }
 
 // The marked box holds a shadow, which is alone in the second image.

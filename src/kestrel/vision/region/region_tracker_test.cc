@@ -154,7 +154,7 @@ TEST_P(RegionTrackerSeeds, TargetThatTurnedWhileHiddenIsFoundByItsColors) {
 
 // The other thing has the target's brightness, but another form.
 TEST_P(RegionTrackerSeeds, GrayThingFarAwayIsNotFoundByItsBrightness) {
-  const auto gray = [&](const cv::Size& size, int seed) {
+  const auto gray = [](const cv::Size& size, int seed) {
     const cv::Mat look = RegionTexture(size, static_cast<std::uint64_t>(seed), 3);
     return cv::Mat(look + cv::Scalar(100, 100, 100));
   };
