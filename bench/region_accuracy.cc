@@ -5,6 +5,11 @@
 // image, and the shares of the images in which the region is reported as lost, and in which
 // something else is followed. Then how probabilities and their truth compare (expected calibration
 // error), of regions below 20 px and of others. Usage: region_accuracy FOLDER... [--peers]
+// [--robustness]
+//
+// --robustness gives means over twelve first boxes for each sequence, which are a little off (the
+// spatial robustness of Wu, Lim, Yang, "Online object tracking: a benchmark", CVPR 2013): a single
+// run of a sequence is as much luck as skill.
 //
 // A FOLDER has a folder for each sequence: groundtruth_rect.txt (x,y,width,height by image; NaN
 // where the region is hidden) and img/*.jpg, as in OTB; or NAME.txt beside the folder NAME, as the
@@ -188,6 +193,15 @@ struct Score {
   double success = 0, precision = 0;
   double ms = 0, p99_ms = 0;   // of an image: mean, and 99th percentile
   double lost = 0, wrong = 0;  // shares of the images
+
+  void Add(const Score& other, double weight) {
+    success += weight * other.success;
+    precision += weight * other.precision;
+    ms += weight * other.ms;
+    p99_ms += weight * other.p99_ms;
+    lost += weight * other.lost;
+    wrong += weight * other.wrong;
+  }
 };
 
 // Reliability for regions below 20 px, and for others.
@@ -200,13 +214,32 @@ double Overlap(const cv::Rect2d& a, const cv::Rect2d& b) {
   return both / (a.area() + b.area() - both);
 }
 
+// The first boxes for a region: its own, or those around it.
+std::vector<cv::Rect2d> StartsOn(const cv::Rect2d& truth, bool is_off) {
+  if (!is_off) return {truth};
+  constexpr double kShift = 0.1;  // sizes
+  std::vector<cv::Rect2d> starts;
+  for (const int y : {-1, 0, 1}) {
+    for (const int x : {-1, 0, 1}) {
+      if (x == 0 && y == 0) continue;
+      starts.push_back(truth + cv::Point2d(kShift * x * truth.width, kShift * y * truth.height));
+    }
+  }
+  for (const double scale : {0.8, 0.9, 1.1, 1.2}) {
+    const cv::Point2d grown(0.5 * (scale - 1) * truth.width, 0.5 * (scale - 1) * truth.height);
+    starts.emplace_back(truth.tl() - grown, truth.br() + grown);
+  }
+  return starts;
+}
+
 // A tracker that has lost its region keeps its last box, as the benchmarks have it.
-Score Run(const Sequence& sequence, Tracker* tracker, Calibration* calibration) {
+Score Run(const Sequence& sequence, const cv::Rect2d& start, Tracker* tracker,
+          Calibration* calibration) {
   constexpr int kThresholds = 20;
   constexpr double kNear_px = 20, kSmall_px = 20;
   constexpr double kOnIt = 0.05;  // overlap of a box that is on the region
   Score score;
-  cv::Rect2d box = sequence.truth[0];
+  cv::Rect2d box = start;
   double scored = 0;
   std::vector<double> times_ms;  // of the processor: other programs do not count
   for (std::size_t i = 0; i < sequence.images.size(); ++i) {
@@ -255,7 +288,7 @@ void PrintRow(std::string_view sequence, std::string_view tracker, const Score& 
   std::fflush(stdout);
 }
 
-int Report(const std::vector<std::string>& folders, bool with_peers) {
+int Report(const std::vector<std::string>& folders, bool with_peers, bool is_off) {
   cv::setNumThreads(1);
   fmt::print("{:14} {:8} {:>7} {:>9} {:>9} {:>7} {:>6} {:>7}\n", "sequence", "tracker", "success",
              "precision", "images/s", "p99 ms", "lost %", "wrong %");
@@ -267,22 +300,21 @@ int Report(const std::vector<std::string>& folders, bool with_peers) {
     for (const Sequence& sequence : SequencesIn(folder)) {
       ++count;
       for (std::size_t i = 0; i < competitors.size(); ++i) {
-        const Score score = Run(sequence, competitors[i].make().get(), &calibration);
+        Score score;
+        const std::vector<cv::Rect2d> starts = StartsOn(sequence.truth[0], is_off);
+        for (const cv::Rect2d& start : starts) {
+          score.Add(Run(sequence, start, competitors[i].make().get(), &calibration),
+                    1.0 / static_cast<double>(starts.size()));
+        }
         PrintRow(sequence.name, competitors[i].name, score);
-        means[i].success += score.success;
-        means[i].precision += score.precision;
-        means[i].ms += score.ms;
-        means[i].p99_ms += score.p99_ms;
-        means[i].lost += score.lost;
-        means[i].wrong += score.wrong;
+        means[i].Add(score, 1);
       }
     }
   }
   for (std::size_t i = 0; i < competitors.size(); ++i) {
-    const Score& sum = means[i];
-    PrintRow("mean", competitors[i].name,
-             {sum.success / count, sum.precision / count, sum.ms / count, sum.p99_ms / count,
-              sum.lost / count, sum.wrong / count});
+    Score mean;
+    mean.Add(means[i], 1 / count);
+    PrintRow("mean", competitors[i].name, mean);
   }
   fmt::print("expected calibration error: {:.3f} of {} boxes below 20 px, {:.3f} of {} others\n",
              calibration.small.ExpectedError(), calibration.small.count(),
@@ -296,11 +328,12 @@ int Report(const std::vector<std::string>& folders, bool with_peers) {
 int main(int argc, char** argv) {
   CLI::App app("RegionTracker over sequences of images with truth");
   std::vector<std::string> folders;
-  bool with_peers = false;
+  bool with_peers = false, is_off = false;
   app.add_option("folder", folders, "Folders with sequences")
       ->required()
       ->check(CLI::ExistingDirectory);
   app.add_flag("--peers", with_peers, "OpenCV's CSRT, KCF and MOSSE, too");
+  app.add_flag("--robustness", is_off, "Means over twelve first boxes that are a little off");
   CLI11_PARSE(app, argc, argv);
-  return kestrel::ReportMain([&] { return kestrel::Report(folders, with_peers); });
+  return kestrel::ReportMain([&] { return kestrel::Report(folders, with_peers, is_off); });
 }

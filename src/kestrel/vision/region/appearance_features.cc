@@ -90,6 +90,8 @@ AppearanceFeatures::AppearanceFeatures(int cells, int cell_px)
     : cells_(cells),
       cell_px_(cell_px),
       side_(cells * cell_px),
+      left_cell_(side_),
+      right_(side_),
       gray_(std::size_t(side_) * side_),
       histograms_(std::size_t(cells) * cells * kDirections),
       // A cell more at both ends, which is not used.
@@ -97,7 +99,14 @@ AppearanceFeatures::AppearanceFeatures(int cells, int cell_px)
       energy_(std::size_t(cells) * cells),
       magnitude_(side_),
       bin_(side_),
-      inverse_norm_(std::size_t(cells + 1) * (cells + 1)) {}
+      inverse_norm_(std::size_t(cells + 1) * (cells + 1)) {
+  for (int x = 0; x < side_; ++x) {
+    const float at = (static_cast<float>(x) + 0.5f) / static_cast<float>(cell_px) + 0.5f;
+    const int cell = static_cast<int>(at);
+    left_cell_[x] = cell * kDirections;
+    right_[x] = at - static_cast<float>(cell);
+  }
+}
 
 void AppearanceFeatures::Compute(const SampledWindow& window, FeatureGrid* features) {
   const std::vector<float>* gray = &window.values[0];
@@ -122,13 +131,11 @@ void AppearanceFeatures::ComputeHistograms(const std::vector<float>& gray) {
     (row - side_, row, row + side_, side_, kDirections, magnitude_.data(), bin_.data());
     std::fill(row_.begin(), row_.end(), 0.0f);
     for (int x = 1; x < side_ - 1; ++x) {
-      const float at = (static_cast<float>(x) + 0.5f) / static_cast<float>(cell_px_) + 0.5f;
-      const int cell = static_cast<int>(at);
-      const float right = at - static_cast<float>(cell);
+      const float right = right_[x];
       const int floor = static_cast<int>(bin_[x]);
       const float next = bin_[x] - static_cast<float>(floor);
       const int bin = floor >= kDirections ? 0 : floor, bin2 = bin + 1 == kDirections ? 0 : bin + 1;
-      float* histogram = &row_[std::size_t(cell) * kDirections];
+      float* histogram = &row_[left_cell_[x]];
       const float m_right = magnitude_[x] * right, m_left = magnitude_[x] - m_right;
       histogram[bin] += m_left * (1 - next);
       histogram[bin2] += m_left * next;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 
 #include "kestrel/core/geometry/angles.h"
@@ -17,39 +18,89 @@ HWY_BEFORE_NAMESPACE();
 namespace kestrel {
 namespace HWY_NAMESPACE {
 
-// (a, b) <- (a + wb, a - wb) for pairs of cells that lie side by side.
-void Combine(float* HWY_RESTRICT a, float* HWY_RESTRICT b, int cells, int half, float cosine,
-             float sine) {
-  for (int cell = 0; cell < cells; ++cell, a += 2 * half, b += 2 * half) {
-    for (int i = 0; i < half; ++i) {
-      const float re = cosine * b[i] - sine * b[half + i];
-      const float im = cosine * b[half + i] + sine * b[i];
-      b[i] = a[i] - re;
-      b[half + i] = a[half + i] - im;
-      a[i] += re;
-      a[half + i] += im;
-    }
+// What a butterfly multiplies by.
+struct Twiddle {
+  float cosine, sine;
+};
+
+// (a, b) <- (a + wb, a - wb) for 'half' complex values.
+void Combine(float* HWY_RESTRICT a, float* HWY_RESTRICT b, int half, const Twiddle& w) {
+  for (int i = 0; i < half; ++i) {
+    const float re = w.cosine * b[i] - w.sine * b[half + i];
+    const float im = w.cosine * b[half + i] + w.sine * b[i];
+    b[i] = a[i] - re;
+    b[half + i] = a[half + i] - im;
+    a[i] += re;
+    a[half + i] += im;
   }
 }
 
-// The stages of a transform along both axes (Cooley, Tukey 1965, decimation in time) of cells in
-// bit-reversed order.
-void TransformStages(float* values, int side, int channels, const float* cosines,
-                     const float* sines, float sign) {
+// Two stages at once, which reads and writes the values once: first (a, b) and (c, d) with 'near',
+// then (a, c) with 'far' and (b, d) with 'far' and a quarter of a turn more.
+void CombineFour(float* HWY_RESTRICT a, float* HWY_RESTRICT b, float* HWY_RESTRICT c,
+                 float* HWY_RESTRICT d, int half, const Twiddle& near, const Twiddle& far,
+                 float sign) {
+  for (int i = 0; i < half; ++i) {
+    const int k = half + i;  // of the imaginary part
+    const float b_re = near.cosine * b[i] - near.sine * b[k];
+    const float b_im = near.cosine * b[k] + near.sine * b[i];
+    const float d_re = near.cosine * d[i] - near.sine * d[k];
+    const float d_im = near.cosine * d[k] + near.sine * d[i];
+    const float c_re = c[i] + d_re, c_im = c[k] + d_im;
+    const float e_re = c[i] - d_re, e_im = c[k] - d_im;
+    const float far_re = far.cosine * c_re - far.sine * c_im;
+    const float far_im = far.cosine * c_im + far.sine * c_re;
+    const float turned_re = -sign * (far.cosine * e_im + far.sine * e_re);
+    const float turned_im = sign * (far.cosine * e_re - far.sine * e_im);
+    const float sum_re = a[i] + b_re, sum_im = a[k] + b_im;
+    const float difference_re = a[i] - b_re, difference_im = a[k] - b_im;
+    a[i] = sum_re + far_re;
+    a[k] = sum_im + far_im;
+    b[i] = difference_re + turned_re;
+    b[k] = difference_im + turned_im;
+    c[i] = sum_re - far_re;
+    c[k] = sum_im - far_im;
+    d[i] = difference_re - turned_re;
+    d[k] = difference_im - turned_im;
+  }
+}
+
+// The stages of a transform (Cooley, Tukey 1965, decimation in time) of 'side' elements in
+// bit-reversed order, 'step' values apart. An element is a run of 'cells' cells.
+void TransformAlong(float* values, int side, std::size_t step, int cells, int channels,
+                    const float* cosines, const float* sines, float sign) {
   const int half = channels / 2;
-  const auto cell = [&](int x, int y) { return values + (y * side + x) * channels; };
-  for (int span = 1; span < side; span *= 2) {
+  const auto twiddle = [&](int turn) { return Twiddle{cosines[turn], sign * sines[turn]}; };
+  int span = 1;
+  for (; 4 * span <= side; span *= 4) {
     for (int j = 0; j < span; ++j) {
-      const int turn = j * (side / (2 * span));
-      const float cosine = cosines[turn], sine = sign * sines[turn];
-      for (int first = j; first < side; first += 2 * span) {
-        Combine(cell(0, first), cell(0, first + span), side, half, cosine, sine);
-        for (int y = 0; y < side; ++y) {
-          Combine(cell(first, y), cell(first + span, y), 1, half, cosine, sine);
+      const Twiddle near = twiddle(j * (side / (2 * span))), far = twiddle(j * (side / (4 * span)));
+      for (int first = j; first < side; first += 4 * span) {
+        float* at = values + first * step;
+        const std::size_t next = span * step;
+        for (int cell = 0; cell < cells; ++cell, at += channels) {
+          CombineFour(at, at + next, at + 2 * next, at + 3 * next, half, near, far, sign);
         }
       }
     }
   }
+  if (span == side) return;
+  for (int j = 0; j < span; ++j) {
+    float* at = values + j * step;
+    for (int cell = 0; cell < cells; ++cell, at += channels) {
+      Combine(at, at + span * step, half, twiddle(j));
+    }
+  }
+}
+
+// Along the rows, each of which stays in the cache, then along the columns, all at once.
+void TransformStages(float* values, int side, int channels, const float* cosines,
+                     const float* sines, float sign) {
+  const std::size_t row = std::size_t(side) * channels;
+  for (int y = 0; y < side; ++y) {
+    TransformAlong(values + y * row, side, channels, 1, channels, cosines, sines, sign);
+  }
+  TransformAlong(values, side, row, side, channels, cosines, sines, sign);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -55,7 +55,7 @@ void WindowSampler::Axis::Fill(int side, double center_px, double size_px, int l
 void WindowSampler::Reserve(const cv::Size& image_size, int channels) {
   // Each pixel of the image is in at most two triangles; an enlarged part has two taps a pixel.
   constexpr std::size_t kMostSide = 1024;
-  row_.reserve(std::size_t(image_size.width) * channels);
+  row_.reserve(std::size_t(image_size.width) * channels + 1);
   columns_.taps.reserve(kMostSide);
   rows_.taps.reserve(kMostSide);
   columns_.weights.reserve(2 * image_size.width + 4 * kMostSide);
@@ -64,13 +64,14 @@ void WindowSampler::Reserve(const cv::Size& image_size, int channels) {
 
 template <int channels>
 void WindowSampler::SampleRow(int first, int y, SampledWindow* window) const {
+  using Values = Eigen::Array<float, channels == 3 ? 4 : channels, 1>;  // 4 fill a register
   for (int x = 0; x < window->side; ++x) {
     const Taps& taps = columns_.taps[x];
     const float* from = &row_[std::size_t(taps.first - first) * channels];
     const float* weights = &columns_.weights[taps.first_weight];
-    std::array<float, channels> sum{};
+    Values sum = Values::Zero();
     for (int k = 0; k < taps.count; ++k, from += channels) {
-      for (int c = 0; c < channels; ++c) sum[c] += weights[k] * from[c];
+      sum += weights[k] * Eigen::Map<const Values>(from);
     }
     for (int c = 0; c < channels; ++c)
       window->values[c][std::size_t(y) * window->side + x] = sum[c];
@@ -84,14 +85,15 @@ void WindowSampler::Sample(const cv::Mat& image, const Eigen::Vector2d& center_p
   rows_.Fill(side, center_px.y(), size_px.y(), image.rows);
   const int first = columns_.taps.front().first;
   const int last = columns_.taps.back().first + columns_.taps.back().count;
-  row_.resize(std::size_t(last - first) * channels);
+  const int count = (last - first) * channels;
+  row_.resize(count + 1);
   for (int y = 0; y < side; ++y) {
     std::fill(row_.begin(), row_.end(), 0.0f);
     const Taps& rows = rows_.taps[y];
     for (int k = 0; k < rows.count; ++k) {
       HWY_DYNAMIC_DISPATCH(AddWeighted)
       (image.ptr<std::uint8_t>(rows.first + k) + first * channels,
-       rows_.weights[rows.first_weight + k], static_cast<int>(row_.size()), row_.data());
+       rows_.weights[rows.first_weight + k], count, row_.data());
     }
     if (channels == 3) {
       SampleRow<3>(first, y, window);

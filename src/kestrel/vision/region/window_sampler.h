@@ -52,7 +52,7 @@ class WindowSampler {
   void SampleRow(int first, int y, SampledWindow* window) const;
 
   Axis columns_, rows_;
-  std::vector<float> row_;
+  std::vector<float> row_;  // and one value that is read and not used
 };
 
 }  // namespace kestrel
