@@ -38,6 +38,8 @@ constexpr double kPredictedShare = 0.5;  // how much of the velocity counts: it 
 constexpr double kLeastToSee = 0.35;
 constexpr double kLeastToLearn = 0.65;
 constexpr double kLeastToLearnSlowly = 0.6;
+// Of the colours: a filter that has slid off a small region agrees with what it has learnt since.
+constexpr double kLeastColorsToLearnSlowly = 0.6;
 constexpr double kLeastToFind = 0.65;
 constexpr double kLeastSharpness = 0.5;
 constexpr double kLeastColorsToFind = 0.6;
@@ -330,7 +332,8 @@ double RegionTracker::Impl::Accept(const cv::Mat& image, const Look& look) {
     usual.Add(look.peak);
     filter.Learn(sample, kTemporal, &workspace);
   }
-  if (std::min(share, slow_share) > kLeastToLearnSlowly) {
+  if (std::min(share, slow_share) > kLeastToLearnSlowly &&
+      color_share > kLeastColorsToLearnSlowly) {
     sure_size = size;
     sure_window_px = window_px;
     slow_usual.Add(slow_peak);
