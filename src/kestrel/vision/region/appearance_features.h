@@ -31,8 +31,8 @@ class AppearanceFeatures {
   void AddMeans(const SampledWindow& window, FeatureGrid* features) const;
 
   int cells_, cell_px_, side_;
-  std::vector<int> left_cell_;  // by column: where in 'row_' the first of its two cells begins
-  std::vector<float> right_;    // by column: the share of the second
+  std::vector<int> left_cell_;     // by column: where in 'row_' the first of its two cells begins
+  std::vector<float> right_;       // by column: the share of the second
   std::vector<float> gray_;        // gray values where the window is in colour
   std::vector<float> histograms_;  // by cell, 18 directions
   std::vector<float> row_;         // histograms of a row of pixels
