@@ -215,8 +215,8 @@ double Overlap(const cv::Rect2d& a, const cv::Rect2d& b) {
 }
 
 // The first boxes for a region: its own, or those around it.
-std::vector<cv::Rect2d> StartsOn(const cv::Rect2d& truth, bool is_off) {
-  if (!is_off) return {truth};
+std::vector<cv::Rect2d> StartsOn(const cv::Rect2d& truth, bool is_box_off) {
+  if (!is_box_off) return {truth};
   constexpr double kShift = 0.1;  // sizes
   std::vector<cv::Rect2d> starts;
   for (const int y : {-1, 0, 1}) {
@@ -288,7 +288,7 @@ void PrintRow(std::string_view sequence, std::string_view tracker, const Score& 
   std::fflush(stdout);
 }
 
-int Report(const std::vector<std::string>& folders, bool with_peers, bool is_off) {
+int Report(const std::vector<std::string>& folders, bool with_peers, bool is_box_off) {
   cv::setNumThreads(1);
   fmt::print("{:14} {:8} {:>7} {:>9} {:>9} {:>7} {:>6} {:>7}\n", "sequence", "tracker", "success",
              "precision", "images/s", "p99 ms", "lost %", "wrong %");
@@ -301,7 +301,7 @@ int Report(const std::vector<std::string>& folders, bool with_peers, bool is_off
       ++count;
       for (std::size_t i = 0; i < competitors.size(); ++i) {
         Score score;
-        const std::vector<cv::Rect2d> starts = StartsOn(sequence.truth[0], is_off);
+        const std::vector<cv::Rect2d> starts = StartsOn(sequence.truth[0], is_box_off);
         for (const cv::Rect2d& start : starts) {
           score.Add(Run(sequence, start, competitors[i].make().get(), &calibration),
                     1.0 / static_cast<double>(starts.size()));
@@ -328,12 +328,12 @@ int Report(const std::vector<std::string>& folders, bool with_peers, bool is_off
 int main(int argc, char** argv) {
   CLI::App app("RegionTracker over sequences of images with truth");
   std::vector<std::string> folders;
-  bool with_peers = false, is_off = false;
+  bool with_peers = false, is_box_off = false;
   app.add_option("folder", folders, "Folders with sequences")
       ->required()
       ->check(CLI::ExistingDirectory);
   app.add_flag("--peers", with_peers, "OpenCV's CSRT, KCF and MOSSE, too");
-  app.add_flag("--robustness", is_off, "Means over twelve first boxes that are a little off");
+  app.add_flag("--robustness", is_box_off, "Means over twelve first boxes that are a little off");
   CLI11_PARSE(app, argc, argv);
-  return kestrel::ReportMain([&] { return kestrel::Report(folders, with_peers, is_off); });
+  return kestrel::ReportMain([&] { return kestrel::Report(folders, with_peers, is_box_off); });
 }

@@ -18,12 +18,12 @@ HWY_BEFORE_NAMESPACE();
 namespace kestrel {
 namespace HWY_NAMESPACE {
 
-// What a butterfly multiplies by.
+// The factor of a butterfly, a complex number of length 1.
 struct Twiddle {
   float cosine, sine;
 };
 
-// (a, b) <- (a + wb, a - wb) for 'half' complex values.
+// A stage, for 'half' complex values: (a, b) <- (a + wb, a - wb).
 void Combine(float* HWY_RESTRICT a, float* HWY_RESTRICT b, int half, const Twiddle& w) {
   for (int i = 0; i < half; ++i) {
     const float re = w.cosine * b[i] - w.sine * b[half + i];
@@ -35,7 +35,7 @@ void Combine(float* HWY_RESTRICT a, float* HWY_RESTRICT b, int half, const Twidd
   }
 }
 
-// Two stages at once, which reads and writes the values once: first (a, b) and (c, d) with 'near',
+// Two stages in one pass over the values: first (a, b) and (c, d) with 'near',
 // then (a, c) with 'far' and (b, d) with 'far' and a quarter of a turn more.
 void CombineFour(float* HWY_RESTRICT a, float* HWY_RESTRICT b, float* HWY_RESTRICT c,
                  float* HWY_RESTRICT d, int half, const Twiddle& near, const Twiddle& far,
@@ -47,11 +47,11 @@ void CombineFour(float* HWY_RESTRICT a, float* HWY_RESTRICT b, float* HWY_RESTRI
     const float d_re = near.cosine * d[i] - near.sine * d[k];
     const float d_im = near.cosine * d[k] + near.sine * d[i];
     const float c_re = c[i] + d_re, c_im = c[k] + d_im;
-    const float e_re = c[i] - d_re, e_im = c[k] - d_im;
+    const float less_re = c[i] - d_re, less_im = c[k] - d_im;
     const float far_re = far.cosine * c_re - far.sine * c_im;
     const float far_im = far.cosine * c_im + far.sine * c_re;
-    const float turned_re = -sign * (far.cosine * e_im + far.sine * e_re);
-    const float turned_im = sign * (far.cosine * e_re - far.sine * e_im);
+    const float turned_re = -sign * (far.cosine * less_im + far.sine * less_re);
+    const float turned_im = sign * (far.cosine * less_re - far.sine * less_im);
     const float sum_re = a[i] + b_re, sum_im = a[k] + b_im;
     const float difference_re = a[i] - b_re, difference_im = a[k] - b_im;
     a[i] = sum_re + far_re;

@@ -38,7 +38,8 @@ constexpr double kPredictedShare = 0.5;  // how much of the velocity counts: it 
 constexpr double kLeastToSee = 0.35;
 constexpr double kLeastToLearn = 0.65;
 constexpr double kLeastToLearnSlowly = 0.6;
-// Of the colours: a filter that has slid off a small region agrees with what it has learnt since.
+// The colours must agree as well: a filter that has slid off a small region agrees with what it has
+// learnt since.
 constexpr double kLeastColorsToLearnSlowly = 0.6;
 constexpr double kLeastToFind = 0.65;
 constexpr double kLeastSharpness = 0.5;
